@@ -138,7 +138,7 @@ def folder() -> Path | None:
 
 
 def make_private_folder(path: Path) -> None:
-    """Make a folder for this user alone, or close one that others may only read.
+    """Make a folder for this user alone, unless it is there.
 
     PermissionError where it belongs to another user or others may write it; OSError where it cannot be made."""
     path.mkdir(mode=PRIVATE_FOLDER, exist_ok=True)
@@ -147,8 +147,6 @@ def make_private_folder(path: Path) -> None:
         if status.st_uid != os.geteuid():
             raise PermissionError(f"{path} belongs to another user; XDG_CACHE_HOME can name a folder of yours")
         raise PermissionError(f"other users may write {path}; chmod go-w '{path}' mends that")
-    if sys.platform != "win32" and status.st_mode & 0o077:
-        path.chmod(PRIVATE_FOLDER)
 
 
 def delete_old_folders(current: Path) -> None:

@@ -1,4 +1,4 @@
-"""Object code: it refers to nothing outside of itself, so that no compiler is needed to load and run it."""
+"""Object code: it refers to nothing outside of itself, and has no code for what its scene lacks."""
 
 from __future__ import annotations
 
@@ -6,22 +6,33 @@ import json
 import platform
 import struct
 import sys
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from llvmlite import binding
+from numba import njit
 
-from minirt.kernel.compiler import object_code as object_code_module
+from minirt.kernel.compiler.object_code import type_of
 from minirt.kernel.compiler.pipeline import FLAGS
+from minirt.kernel.frame import frame
 from minirt.kernel.machine_code.arguments import signature_of
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.kernel.machine_code.library import LIBRARY, load
+from minirt.lanes.mathematics import ATAN_HALF, PERIOD
+from minirt.materials import Checker, Clouds
 from minirt.rendering import Renderer
+from minirt.rendering.frame import frame_arguments
 from minirt.rendering.needed_kernels import calls_for, ray_query
 from minirt.rendering.sampling.contrast import classify_call
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
 from tests.kernel.machine_code.small_kernels import call, object_code_of
-from tests.kernel.pictures import ALL
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 
 SYMBOL = struct.Struct("<IBBHQQ")  # of ELF for 64 bits: name, kind, visibility, section, value, size
 ELF = pytest.mark.skipif(
@@ -86,6 +97,38 @@ def test_a_kernel_divides_as_ieee_754_says_and_keeps_nan() -> None:
     assert np.array_equal(y, [np.inf, -np.inf, np.nan, np.nan, -2.0], equal_nan=True)
 
 
-def test_the_entry_point_is_compiled_with_the_flags_of_the_kernel() -> None:
-    """All of them but `nogil`: code for C never holds the lock of the interpreter."""
-    assert {"nogil": True, **object_code_module.C_FLAGS} == FLAGS
+ROOT = "call <16 x double> @llvm.sqrt.v16f64"
+
+
+def scene_of(*kinds: type[Any]) -> Scene:
+    """Return a scene with all test shapes of some kinds."""
+    return Scene((AMBIENT, EYE, LAMP, *(shape for shape in SHAPES if isinstance(shape, kinds))))
+
+
+@cache
+def code(scene: Scene) -> str:
+    """Return the LLVM code of the kernel of a scene, compiled anew: a kernel from the cache shows none."""
+    arguments = frame_arguments(Packing().pack(scene, 8, 8), np.zeros((8, 8, 4), np.uint8))
+    kernel = njit(**FLAGS)(frame)
+    signature = tuple(type_of(signature_of(each)) for each in arguments)
+    kernel.compile(signature)
+    return str(kernel.inspect_llvm(signature))
+
+
+def test_only_shapes_that_take_square_roots_add_them() -> None:
+    planes, spheres, cylinders = (
+        code(scene_of(*kinds)).count(ROOT) for kinds in ((Plane,), (Sphere,), (Sphere, Cylinder))
+    )
+    assert planes < spheres < cylinders
+
+
+@pytest.mark.parametrize(
+    ("material", "number"), [({"checker": Checker(0.5)}, ATAN_HALF), ({"clouds": Clouds(1.0)}, 1.0 / PERIOD)]
+)
+def test_texture_coordinates_and_noise_are_computed_where_a_scene_needs_them(
+    material: dict[str, Any], number: float
+) -> None:
+    plain = scene_of(Sphere, Cylinder)
+    other = Scene((*plain.elements[:-1], plain.elements[-1].replace(**material)))
+    constant = f"0x{np.float64(number).view(np.uint64):X}"
+    assert [constant in code(each) for each in (plain, other)] == [False, True]
