@@ -43,19 +43,15 @@ class ReferenceModel(models.PrimitiveModel):
         super().__init__(manager, kind, ADDRESS)
 
 
-def can_be_referenced(kind: Any) -> bool:
-    """Whether a type is a tuple, or an array whose rows lie one after the other."""
-    return isinstance(kind, types.BaseTuple) or (isinstance(kind, types.Array) and kind.layout == "C")
-
-
 def is_array(kind: Any) -> bool:
     """Whether a type is a reference to an array."""
     return isinstance(kind, Reference) and isinstance(kind.content, types.Array)
 
 
 def reference_to(kind: Any) -> Reference | None:
-    """Return the type of a reference to a tuple or an array; None for other types."""
-    return Reference(kind) if can_be_referenced(kind) else None
+    """Return the type of a reference to a tuple, or to an array whose rows lie one after the other; None for others."""
+    is_referable = isinstance(kind, types.BaseTuple) or (isinstance(kind, types.Array) and kind.layout == "C")
+    return Reference(kind) if is_referable else None
 
 
 @register(scene_arrays.by_reference, reference_to, [(types.Any,)])

@@ -19,12 +19,13 @@ from numba.core.typing import signature
 from numba.extending import intrinsic, overload
 
 from minirt import kernel, lanes, shapes
-from minirt.kernel import scene_arrays, shading, shadow_rays, trace
+from minirt.kernel import scene_arrays, shading, trace
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import Reference
 from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of, machine_code
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
 from minirt.kernel.machine_code.cache import ObjectCode
+from minirt.kernel.shadow_rays import unoccluded_batched, unoccluded_by_kind, unoccluded_one_by_one
 from minirt.lanes.compiled.types import REGISTERED
 
 C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
@@ -51,10 +52,7 @@ for _name in ("intersect", "surface", "shading", "smooth_point", "may_meet", "ma
     by_kind(getattr(scene_arrays, _name), attrgetter(_name))
 by_kind(scene_arrays.occludes, lambda kind: kind.occludes or kind.intersect)
 by_kind(trace.closest_of_kind, lambda kind: (trace.closest_one_by_one, trace.closest_batched)[kind.batched])
-by_kind(
-    shadow_rays.unoccluded_by_kind,
-    lambda kind: (shadow_rays.unoccluded_one_by_one, shadow_rays.unoccluded_batched)[kind.batched],
-)
+by_kind(unoccluded_by_kind, lambda kind: (unoccluded_one_by_one, unoccluded_batched)[kind.batched])
 
 for _package in (lanes, shapes, kernel, shading):
     inline_functions_of(_package)

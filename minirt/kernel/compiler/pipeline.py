@@ -29,9 +29,6 @@ from minirt.lanes.compiled.types import REGISTERED
 TESTED = "numba>=0.61,<0.69"
 
 
-# Optional parts of a scene.
-
-
 @register_pass(mutates_CFG=False, analysis_only=False)
 class NoneChecks(FunctionPass):
     """Replace `x is None` and `x.y is None`, for an argument x, by True or False.
@@ -60,9 +57,8 @@ class NoneChecks(FunctionPass):
 
 def known_answer(state: Any, expression: Any) -> bool | None:
     """Return the value of a check for None that types decide, or None for any other expression."""
-    if not (isinstance(expression, ir.Expr) and expression.op == "binop"):
-        return None
-    if expression.fn not in (operator.is_, operator.is_not):
+    is_binary = isinstance(expression, ir.Expr) and expression.op == "binop"
+    if not is_binary or expression.fn not in (operator.is_, operator.is_not):
         return None
     left, right = (guard(get_definition, state.func_ir, side) for side in (expression.lhs, expression.rhs))
     kind = type_of(state, left)
@@ -79,9 +75,6 @@ def type_of(state: Any, definition: Any) -> Any:
         return None
     owner = type_of(state, guard(get_definition, state.func_ir, definition.value))
     return owner and state.typingctx.resolve_getattr(owner, definition.attr)
-
-
-# The compiler of inlined functions, and the code of kernels.
 
 
 class InlinedCompiler(CompilerBase):
@@ -114,11 +107,8 @@ try:
 except (ImportError, AttributeError, KeyError, TypeError) as error:
     FAILED = str(error)
     logging.getLogger(__name__).warning(
-        "notice: kernels take twice as long to compile, as numba %s differs from what was tested (%s); "
-        "pip install '%s' mends that",
-        numba.__version__,
-        FAILED,
-        TESTED,
+        f"notice: kernels take twice as long to compile, as numba {numba.__version__} differs from what was tested "
+        f"({FAILED}); pip install '{TESTED}' mends that"
     )
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else.

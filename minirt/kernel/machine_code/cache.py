@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from minirt.helpers import file_io
 from minirt.helpers.file_io import PRIVATE_FOLDER, is_private, user_folder
-from minirt.kernel.machine_code.fingerprint import PACKAGE, fingerprint
+from minirt.kernel.machine_code.fingerprint import PACKAGE, fingerprint_of, processor
 
 if sys.platform != "win32":
     import fcntl
@@ -78,8 +78,7 @@ class CodeCache:
     def delete_others(self, identities: Iterable[str]) -> None:
         """Delete the kernels that are none of these: those of older sources."""
         for path in set(self.folder.glob("*.kernel")) - set(map(self.file_of, identities)):
-            with suppress(OSError):
-                path.unlink()
+            path.unlink(missing_ok=True)
 
     @contextmanager
     def compiling_once(self, identity: str) -> Iterator[None]:
@@ -124,7 +123,7 @@ def folder() -> Path | None:
 
     None, with a notice, if it cannot be used, or if others could have written to it."""
     try:
-        path = user_folder() / "minirt" / f"kernels-{fingerprint()}"
+        path = user_folder() / "minirt" / f"kernels-{fingerprint_of(processor())}"
         path.parents[1].mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
         for each in (path.parent, path):
             make_private_folder(each)

@@ -8,7 +8,6 @@ import subprocess
 import sys
 from contextlib import suppress
 from threading import Thread
-from typing import TypeAlias
 
 from minirt.errors import RenderError
 from minirt.kernel.machine_code.cache import ObjectCode, notice, unpack
@@ -17,8 +16,6 @@ from minirt.kernel.machine_code.fingerprint import NATIVE, V3, V4, processor
 # With -P nothing is imported from the current folder.
 COMMAND = (sys.executable, "-P", "-c", "from minirt.kernel.compiler import main; main()")
 FEATURES = {V4: "+avx512f", V3: ""}  # what NUMBA_CPU_FEATURES adds to those that a level has
-
-Request: TypeAlias = str  # the identity of a kernel: JSON of the function, its signature and the fingerprint
 
 
 class CompileProcess:
@@ -30,8 +27,8 @@ class CompileProcess:
         self.process: subprocess.Popen[bytes] | None = None
         self.stopped = False  # whether `stop` has been called since compiling began
 
-    def compile(self, requests: list[Request], target: str | None = None) -> list[ObjectCode]:
-        """Return the object code of kernels for a processor, by default the one that is compiled for.
+    def compile(self, requests: list[str], target: str | None = None) -> list[ObjectCode]:
+        """Return the object code of kernels, by their identities, for a processor, by default this one.
 
         A process that something else than `stop` kills, such as a lack of memory, is started once more. RenderError
         with the reason where compiling fails, or where `stop` ended it."""
@@ -51,7 +48,7 @@ class CompileProcess:
         except ValueError as error:
             raise RenderError(f"the kernel cannot be compiled: what the compiler wrote is damaged, {error}") from error
 
-    def run(self, requests: list[Request], target: str | None) -> tuple[int, bytes, list[str]]:
+    def run(self, requests: list[str], target: str | None) -> tuple[int, bytes, list[str]]:
         """Run the process; return its exit status, its output and the lines of its standard error. RenderError where it
         cannot be started."""
         try:
@@ -65,10 +62,10 @@ class CompileProcess:
             )
         except OSError as error:
             raise RenderError(f"the compiler cannot be started: {error}") from error
-        assert process.stdin is not None
-        assert process.stdout is not None
         errors = process.stderr
-        assert errors is not None
+        assert process.stdin
+        assert process.stdout
+        assert errors
         with process:
             with suppress(BrokenPipeError):
                 process.stdin.write(json.dumps(requests).encode() + b"\n")

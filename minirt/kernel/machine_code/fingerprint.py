@@ -26,11 +26,6 @@ PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
 
 
-def fingerprint() -> str:
-    """Return the hash of the sources and of the processor that is compiled for."""
-    return fingerprint_of(processor())
-
-
 @cache
 def fingerprint_of(name: str) -> str:
     """Return a hash of the sources and of the processor of a name, as `processor` returns it."""

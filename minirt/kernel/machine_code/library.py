@@ -21,7 +21,7 @@ from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code.arguments import key_of, signature_of, words_of
 from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.fingerprint import fingerprint, processor
+from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
 
 Call: TypeAlias = tuple[str, tuple[Any, ...]]  # the name of a function, "module:name", and arguments
 
@@ -90,7 +90,7 @@ class Library:
         if found is None:
             if len(self.identities) >= REMEMBERED:
                 self.identities.clear()
-            found = self.identities[key] = identity_of(*call, fingerprint())
+            found = self.identities[key] = identity_of(*call, fingerprint_of(processor()))
         return found
 
     def find(self, identity: str) -> Entry | None:
