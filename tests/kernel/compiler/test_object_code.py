@@ -132,3 +132,10 @@ def test_texture_coordinates_and_noise_are_computed_where_a_scene_needs_them(
     other = Scene((*plain.elements[:-1], plain.elements[-1].replace(**material)))
     constant = f"0x{np.float64(number).view(np.uint64):X}"
     assert [constant in code(each) for each in (plain, other)] == [False, True]
+
+
+def test_contraction_is_the_only_fast_math_of_instructions() -> None:
+    compiled = code(scene_of(Sphere, Cylinder))
+    assert " contract " in compiled
+    for forbidden in (" fast ", " nnan ", " ninf ", " nsz ", " arcp ", " reassoc ", " afn "):
+        assert forbidden not in compiled

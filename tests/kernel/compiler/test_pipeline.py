@@ -17,8 +17,6 @@ from minirt.rendering import Renderer
 from minirt.scene import parse
 from tests.paths import ROOT
 from tests.processes import run
-from tests.shapes.execution_modes import compiled, kernel
-from tests.shapes.test_sphere import BENIGN
 
 BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
 CHANGE = "from numba.core.codegen import CodeLibrary; del CodeLibrary._get_compiled_object"
@@ -40,14 +38,6 @@ def test_the_flags_let_kernels_divide_as_ieee_754_says_and_keep_nan() -> None:
     assert pipeline.FLAGS["fastmath"] == {"contract"}
     # Inlined functions are compiled with the flags of their caller.
     assert not {"error_model", "fastmath"} & set(pipeline.INLINED)
-
-
-def test_contraction_is_the_only_fast_math_of_instructions() -> None:
-    compiled(*BENIGN[0])
-    code = "\n".join(kernel().inspect_llvm().values())
-    assert " contract " in code
-    for forbidden in (" fast ", " nnan ", " ninf ", " nsz ", " arcp ", " reassoc ", " afn "):
-        assert forbidden not in code
 
 
 def test_the_lean_pipeline_is_used_with_all_versions_that_the_project_allows() -> None:
