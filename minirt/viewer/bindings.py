@@ -20,6 +20,17 @@ from typing import Final, NamedTuple
 
 from minirt.mlx import Button, Key, Modifier
 
+KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
+PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
+MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
+PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
+LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
+AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
+KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
+SELECT, MOVE, CHANGE, EDIT, FILE, WINDOW = "Select", "Move", "Change", "Edit", "File", "Window"
+FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a note below each list of keys
+SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
+
 
 class Drag(IntEnum):
     """Drag with a mouse button."""
@@ -38,10 +49,6 @@ MOUSE: dict[str, Button | Drag] = {
     "wheel up": Button.WHEEL_UP,
     "wheel down": Button.WHEEL_DOWN,
 }
-KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
-PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
-MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
-PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 
 
 class Chord(NamedTuple):
@@ -71,18 +78,11 @@ def platform_spelling(spelling: str) -> str:
     return "+".join(PLATFORM_NAMES.get(word, word) for word in spelling.split("+")) if len(spelling) > 1 else spelling
 
 
-LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
-AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
-
-
 def resolve_layout(layout: str) -> str:
     """Replace `auto` by the layout of the user's locale; other layouts stay."""
     if layout != "auto":
         return layout
     return "azerty" if locale.getlocale()[0] in AZERTY_LOCALES else "qwerty"
-
-
-KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
 
 
 @dataclass(frozen=True)
@@ -116,8 +116,6 @@ def in_steps(group: str, action: str, help: str, *keys: str) -> Binding:
     """Binding of a change by one step for each press, or by a tenth of a step with Shift."""
     return Binding(action, group, help, keys, fine=True)
 
-
-SELECT, MOVE, CHANGE, EDIT, FILE, WINDOW = "Select", "Move", "Change", "Edit", "File", "Window"
 
 BINDINGS = (
     on_press(SELECT, "select next", "select the next element", "Tab"),
@@ -177,8 +175,6 @@ BINDINGS = (
     on_press(WINDOW, "quit", "quit", "Escape", "Ctrl+Q"),
 )
 
-FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a note below each list of keys
-
 
 def key_groups(layout: str) -> Iterator[KeyGroup]:
     """Yield the rows of the table by group, with the keys of a layout."""
@@ -205,9 +201,6 @@ def keys_markdown() -> str:
         lines.append(f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} | {azerty} |")
     lines.append(f"| {FINE_NOTE[1]} | `{FINE_NOTE[0]}` | |")
     return "\n".join(lines) + "\n"
-
-
-SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
 
 
 def chords_of(binding: Binding, layout: str) -> list[Chord]:

@@ -19,6 +19,11 @@ from minirt.meshes import load_mesh
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
 
+INTERVAL = 0.25  # seconds between two checks of the file
+Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
+PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
+MESH_SUFFIXES = {".obj"}
+
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
     """Write a new file `name-1.suffix`, or with the first number that no file has; return its path. OSError.
@@ -92,11 +97,6 @@ def error_summary(error: MiniRTError) -> str:
     return f"{first}\nand {others} more" if others else first
 
 
-INTERVAL = 0.25  # seconds between two checks of the file
-
-Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
-
-
 class WatchedFile:
     """A file whose last state read or written here is known, so that changes by other programs can be reported."""
 
@@ -150,10 +150,6 @@ def signature(path: Path) -> Signature:
     except (OSError, ValueError):
         return None
     return status.st_mtime_ns, status.st_size, status.st_ino
-
-
-PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
-MESH_SUFFIXES = {".obj"}
 
 
 def asset_names(scene: Scene, suffixes: Set[str] = PICTURE_SUFFIXES) -> list[str]:

@@ -15,6 +15,7 @@ from tests.viewer.fake import TEXT, colour_of, played, scene
 from tests.waiting import until
 
 SELECT_SPHERE = ("press Tab", "press Tab")
+OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
 
 
 def test_save_changes_one_line(path):
@@ -91,9 +92,6 @@ class TestRecovery:
 
 
 # File watching: changes by other programs are reported once, as soon as the file is stable.
-
-
-OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
 
 
 def write(path, text: str) -> None:

@@ -16,6 +16,8 @@ from tests.viewer.session_harness import SessionHarness
 
 KEY = 97
 TICKS = 144  # a second
+ODD_VIEW = TEXT.replace("C 0,0,10 0,0,-1", "C 0.1,0.2,10 0.3,-0.2,-0.9")  # whose steps are no round numbers
+PARTS = [0.0, 0.5, 0.6180339, 0.75, 0.9]
 
 
 def taken(seconds: float, ticks: int) -> list[float]:
@@ -77,10 +79,6 @@ def test_keys_are_independent():
 
 
 # A held key moves at once and leaves whole steps, whatever the parts in which it took them.
-
-
-ODD_VIEW = TEXT.replace("C 0,0,10 0,0,-1", "C 0.1,0.2,10 0.3,-0.2,-0.9")  # whose steps are no round numbers
-PARTS = [0.0, 0.5, 0.6180339, 0.75, 0.9]
 
 
 def state_of(text: str = ODD_VIEW) -> State:

@@ -23,6 +23,8 @@ from minirt.viewer.editing.state import State
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 TYPE = "type value"  # the action that begins with =
 MAX_LENGTH = 40  # characters
+ADDING = ("add", "add previous")  # actions that open the list of elements
+LISTS = (*ADDING, "add attribute")  # actions that open a list
 
 
 class Typing:
@@ -71,10 +73,6 @@ class Typing:
         name = active.name if active else "no value"
         session.screen.panel = Panel(f"{name}: {text}_    Enter: set it    Esc: leave it") if text else None
         session.refresh()
-
-
-ADDING = ("add", "add previous")  # actions that open the list of elements
-LISTS = (*ADDING, "add attribute")  # actions that open a list
 
 
 class Choice(NamedTuple):

@@ -33,6 +33,10 @@ from minirt.viewer.recovery import FoundChanges, Recovery, Version
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
 
+Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
+FINE_STEP = 0.1  # of a step, while Shift is held
+WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
+
 
 class PressedButton(NamedTuple):
     """A mouse button that is down on the picture."""
@@ -43,12 +47,6 @@ class PressedButton(NamedTuple):
     drag: Binding  # its row in the table
     grip: DragStart
     dragging: bool = False  # whether the pointer has moved far enough since
-
-
-Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
-
-FINE_STEP = 0.1  # of a step, while Shift is held
-WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
 
 
 class Session:

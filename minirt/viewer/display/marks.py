@@ -23,6 +23,11 @@ from minirt.viewer.editing.state import Frame, State, can_edit, position_of
 GOLD, BLACK, WHITE = 0xFFD75F, 0x000000, 0xFFFFFF
 AXIS_COLOURS = {Frame.X: 0xFF5050, Frame.Y: 0x60E060, Frame.Z: 0x6090FF}
 MOVING_RAYS, STILL_RAYS = 20_000, 60_000  # rays for an outline, while something moves and when nothing does
+SIZE = 20  # pixels of a side, times the screen's scale
+MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
+KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
+LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
+FILL, RIM = (0x5F, 0xD7, 0xFF, 255), (0, 0, 0, 255)  # BGRA: golden, with a black rim
 
 
 class Marks:
@@ -149,11 +154,6 @@ def bgra(colour: int) -> tuple[int, int, int, int]:
     return colour & 0xFF, colour >> 8 & 0xFF, colour >> 16 & 0xFF, 255
 
 
-SIZE = 20  # pixels of a side, times the screen's scale
-MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
-KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
-
-
 class Icon(NamedTuple):
     """A square that stands for an element."""
 
@@ -195,10 +195,6 @@ def colour_of(element: Element) -> int:
     colours = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
     red, green, blue = map(int, next((each for each in colours if not isinstance(each, str)), (255, 255, 255)))
     return red << 16 | green << 8 | blue
-
-
-LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
-FILL, RIM = (0x5F, 0xD7, 0xFF, 255), (0, 0, 0, 255)  # BGRA: golden, with a black rim
 
 
 def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tuple[float, float] | None:

@@ -20,6 +20,12 @@ MARGIN, PADDING = 10, 4  # pixels
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
 USUAL_WINDOW = 1920, 1080  # pixels: in larger windows text is larger, too
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
+LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
+GAP = "    "  # between groups of words
+ROW_COLOUR = 0xC0C0C0  # of the rows that are not chosen
+PANEL_BACKGROUND = 0xC0000000  # with its opacity
+TOP, BOTTOM = 2, 2  # lines above and below the panel, which belong to the information and to messages
+MARK = "> "  # before the chosen row
 
 
 class HudLevel(IntEnum):
@@ -135,10 +141,6 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
     draw_text(pixels, MARGIN, top, text, colour, size=size, background=BACKGROUND, padding=PADDING)
 
 
-LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
-GAP = "    "  # between groups of words
-
-
 def hints(state: State, every: bool) -> str:
     """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
     active = state.active
@@ -164,12 +166,6 @@ def value_text(state: State, active: Value) -> str:
 def short_numbers(text: str) -> str:
     """Shorten numbers in a text to six digits."""
     return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", text)
-
-
-ROW_COLOUR = 0xC0C0C0  # of the rows that are not chosen
-PANEL_BACKGROUND = 0xC0000000  # with its opacity
-TOP, BOTTOM = 2, 2  # lines above and below the panel, which belong to the information and to messages
-MARK = "> "  # before the chosen row
 
 
 class Panel(NamedTuple):

@@ -36,6 +36,7 @@ from minirt.viewer.editing.state import State
 
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
+M_ARENA_MAX = -8  # the parameter of `mallopt` for the number of heaps
 
 
 class Row(NamedTuple):
@@ -220,9 +221,6 @@ class Screen:
             return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
         same_size = picture.pixels.shape[:2] == (height, width)
         return picture.pixels.copy() if same_size else stretch(picture.pixels, width, height)
-
-
-M_ARENA_MAX = -8  # the parameter of `mallopt` for the number of heaps
 
 
 def use_one_heap() -> None:

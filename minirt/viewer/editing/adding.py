@@ -41,6 +41,10 @@ POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a stand
 SAME = 1 / 50  # of a step: positions closer than this differ by rounding
 FLAT_LIFT = 0.01  # of its radius: how far above a surface a flat shape lies
 DOWN = (0.0, -1.0, 0.0)
+SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
+LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs
+LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
+RecordType = TypeVar("RecordType", bound=Record)
 
 
 def stand(shape: Shape, point: Triple, normal: Triple) -> Shape:
@@ -156,13 +160,6 @@ def drop(state: State, _amount: float, now: float) -> State:
     if there is None:
         return state.with_message(f"there is nothing beneath the {shape.title}")
     return state.edit_element(there, "", now).with_message(f"on what lies beneath, on a grid of {state.stride:g}")
-
-
-SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
-LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs
-LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
-
-RecordType = TypeVar("RecordType", bound=Record)
 
 
 def addable_kinds(scene: Scene) -> list[type[Element]]:

@@ -49,6 +49,9 @@ from minirt.viewer.files import next_file
 
 OPERATIONS: dict[str, Callable[[float, float], float]] = {"*": mul, "/": truediv, "+": add, "-": sub}
 CHARACTERS = "0123456789.,+-*/="  # of which typed values are made
+Edit = Callable[[State, float, float], State]  # (state, amount, now)
+TURN_STEP = 5.0  # degrees
+RIGHT, UP, FORWARD = range(3)  # axes of `camera_frame`
 
 
 def set_typed(state: State, text: str, now: float) -> State:
@@ -89,13 +92,6 @@ def typed(field: Field, old: Any, text: str) -> Any:
 def parts_of(value: Any) -> tuple[Any, ...]:
     """The components of a value."""
     return value if isinstance(value, tuple) else (value,)
-
-
-Edit = Callable[[State, float, float], State]  # (state, amount, now)
-
-TURN_STEP = 5.0  # degrees
-
-RIGHT, UP, FORWARD = range(3)  # axes of `camera_frame`
 
 
 def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> State:

@@ -18,6 +18,13 @@ Moved = TypeVar("Moved", bound=Element)
 
 STEEPEST = pi / 2 - 1e-8  # radians: nobody sees the difference to straight up, which would have no heading
 WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
+LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
+LENS = 1 / 40  # diameter of a new lens by the distance in focus
+MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border
+ASPECT = 9 / 16  # height / width of a usual window
+APPROACH = 1 / 10  # of the distance to the scene's centre: a step of the wheel
+NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
+POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
 
 
 def translate(element: Moved, axis: Triple, distance: float) -> tuple[Moved, bool]:
@@ -105,9 +112,6 @@ def handedness(camera: Camera) -> float:
     return -1.0 if camera.left_handed else 1.0
 
 
-LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
-
-
 def can_turn(element: Element) -> bool:
     """Whether some rotation of an element can be seen."""
     if isinstance(element, Oriented):
@@ -154,14 +158,6 @@ def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
     cross = b * z - d * y, d * x - a * z, a * y - b * x
     along = (x * a + y * b + z * d) * (1 - c)
     return linear_combination(1.0, linear_combination(c, vector, s, cross), along, axis)
-
-
-LENS = 1 / 40  # diameter of a new lens by the distance in focus
-MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border
-ASPECT = 9 / 16  # height / width of a usual window
-APPROACH = 1 / 10  # of the distance to the scene's centre: a step of the wheel
-NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
-POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
 
 
 def look_at(state: State, _amount: float, now: float) -> State:

@@ -21,6 +21,15 @@ MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in fron
 NEAR = 1e-3  # of the distance to the eye: depth at which a line is clipped
 FAR = 1e3  # times that distance: length to which a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
+Extent = tuple[Triple, float]  # centre and radius
+Item = TypeVar("Item")
+UP: Triple = (0.0, 1.0, 0.0)
+FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
+UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
+SAMPLE_SIZE = 4096  # items; their median is within some per cent of that of a million
+BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
+SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
+PICTURE = 640, 360  # pixels of a usual window, where none is known
 
 
 class Projection(NamedTuple):
@@ -104,15 +113,6 @@ def subtract(a: Triple, b: Triple) -> Triple:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-Extent = tuple[Triple, float]  # centre and radius
-Item = TypeVar("Item")
-
-UP: Triple = (0.0, 1.0, 0.0)
-FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
-UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
-SAMPLE_SIZE = 4096  # items; their median is within some per cent of that of a million
-
-
 def extent(element: Element) -> Extent | None:
     """Centre and radius of an element: half the longest side of its bounding box, or 0 at its point, or None."""
     box = element.bounds() if isinstance(element, Shape) else None
@@ -167,11 +167,6 @@ def scene_centre(scene: Scene) -> Triple:
         return 0.0, 0.0, 0.0
     x, y, z = (median(each) for each in zip(*centres, strict=True))
     return x, y, z
-
-
-BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
-SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
-PICTURE = 640, 360  # pixels of a usual window, where none is known
 
 
 class Aim(NamedTuple):

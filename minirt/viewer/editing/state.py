@@ -17,6 +17,7 @@ from minirt.viewer.editing.values import Value, is_editable, nice_number, round_
 STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
 MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
 MAX_UNDO = 1000  # length of the undo stack
+MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
 
 
 class Frame(Enum):
@@ -171,9 +172,6 @@ def select_shape(state: State, shape: Shape | None) -> State:
     """Select the shape that a pixel shows, or keep the selection if it shows none."""
     state = state.with_message("" if shape else "there is nothing")
     return state.select(index_of(state.scene, shape)) if shape else state
-
-
-MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
 
 
 def undo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:

@@ -32,6 +32,14 @@ from minirt.shapes.shape import Oriented
 CHANNELS = "red", "green", "blue"
 
 NextFile = Callable[[Any, float], Any]  # (file, steps) -> the picture or mesh file that many steps further
+POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of a step of movement
+LENGTH_DIGITS = 5  # significant digits of a length that are kept
+REAL_DECIMALS = 3  # decimals of any other number that are kept, counted likewise from its own step
+ANGLE_DECIMALS = 6  # decimals of degrees that are kept of a turn
+ANGLE_NOISE = 5e-6  # degrees: a turn this close to thousandths of a degree is rounded to them
+NOISE = 1e-7  # component of a direction that is what rounding has left of 0: no picture shows it
+SLACK = 1 + 1e-9  # allows for the rounding of a power of ten
+RecordType = TypeVar("RecordType", bound=Record)
 
 
 class Value(NamedTuple):
@@ -115,17 +123,6 @@ def is_editable(field: Field) -> bool:
 def shows_roll(element: Element) -> bool:
     """Whether a turn of an element about its own axis is worth a word in the file."""
     return isinstance(element, Oriented) and (element.shows_roll or element.roll != 0.0)
-
-
-POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of a step of movement
-LENGTH_DIGITS = 5  # significant digits of a length that are kept
-REAL_DECIMALS = 3  # decimals of any other number that are kept, counted likewise from its own step
-ANGLE_DECIMALS = 6  # decimals of degrees that are kept of a turn
-ANGLE_NOISE = 5e-6  # degrees: a turn this close to thousandths of a degree is rounded to them
-NOISE = 1e-7  # component of a direction that is what rounding has left of 0: no picture shows it
-SLACK = 1 + 1e-9  # allows for the rounding of a power of ten
-
-RecordType = TypeVar("RecordType", bound=Record)
 
 
 def leading_decimal(number: float) -> int:

@@ -17,6 +17,28 @@ from tests.paths import ROOT
 from tests.viewer.fake import TEXT, FakeRenderer, scene
 from tests.waiting import HANG_LIMIT
 
+STUCK = """
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+from minirt.mlx import Key, Mlx
+from minirt.mlx.memory import Memory
+from minirt.viewer import run
+from tests.viewer.fake import FakeRenderer, scene
+from tests.waiting import HANG_LIMIT
+
+class Stuck(FakeRenderer):
+    def is_ready(self, scene):
+        return False
+    def prepare(self, scene):
+        self.started.set()
+        ThreadPoolExecutor().submit(Event().wait).result()  # the interpreter would wait for this thread for ever
+
+memory, renderer = Memory(patience=HANG_LIMIT), Stuck()
+memory.do(renderer.started.wait)
+memory.tap(Key.ESCAPE)
+raise SystemExit(run(scene(), path="scene.rt", renderer=renderer, mlx=Mlx(memory)))
+"""
+
 
 @pytest.fixture(autouse=True)
 def without_time_limit(monkeypatch) -> None:
@@ -73,29 +95,6 @@ def test_the_window_has_the_requested_size_or_that_of_the_scene(tmp_path, reques
     memory.tap(Key.ESCAPE)
     run(scene(text), path=tmp_path / "a b.rt", size=requested, renderer=FakeRenderer(), mlx=Mlx(memory))
     assert seen == [(*expected, "miniRT - a b.rt")]
-
-
-STUCK = """
-from concurrent.futures import ThreadPoolExecutor
-from threading import Event
-from minirt.mlx import Key, Mlx
-from minirt.mlx.memory import Memory
-from minirt.viewer import run
-from tests.viewer.fake import FakeRenderer, scene
-from tests.waiting import HANG_LIMIT
-
-class Stuck(FakeRenderer):
-    def is_ready(self, scene):
-        return False
-    def prepare(self, scene):
-        self.started.set()
-        ThreadPoolExecutor().submit(Event().wait).result()  # the interpreter would wait for this thread for ever
-
-memory, renderer = Memory(patience=HANG_LIMIT), Stuck()
-memory.do(renderer.started.wait)
-memory.tap(Key.ESCAPE)
-raise SystemExit(run(scene(), path="scene.rt", renderer=renderer, mlx=Mlx(memory)))
-"""
 
 
 def test_escape_ends_the_program_inside_the_compiler():

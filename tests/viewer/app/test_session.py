@@ -16,6 +16,8 @@ from tests.viewer.fake import FakeRenderer, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
 from tests.waiting import HANG_LIMIT, until
 
+AWAY = "A 0.2 255,255,255\nC 0,0,0 0,0,-1 60\nsp 0,0,9 1 255,0,0\n"
+
 
 def test_the_loop_sleeps_unless_a_key_is_held_or_words_wait():
     harness = SessionHarness()
@@ -136,9 +138,6 @@ def test_a_screenshot_waits_for_the_final_picture(tmp_path):
         assert list(tmp_path.iterdir()) == []
     harness.finish(FRAME_TIME)
     assert [file.name for file in tmp_path.iterdir()] == ["scene-1.png"]
-
-
-AWAY = "A 0.2 255,255,255\nC 0,0,0 0,0,-1 60\nsp 0,0,9 1 255,0,0\n"
 
 
 def test_a_first_picture_with_nothing_in_view_is_remarked_on_once():

@@ -27,6 +27,17 @@ CYLINDER = (*SPHERE, "press Tab", "press Tab")
 AT_SPHERE, AT_CYLINDER = "32,24", "40,24"  # pixels of a window of 64x48
 
 Check = Callable[[Session, Session], bool]  # compares the sessions without and with the key
+MOUSE = {
+    "left click": (f"click {AT_SPHERE}",),
+    "right click": (f"click {AT_SPHERE} right",),
+    "left drag": (f"drag {AT_SPHERE} 45,30",),
+    "Shift+left drag": ("down Shift", f"drag {AT_CYLINDER} 48,36", "up Shift"),
+    "Ctrl+left drag": ("down Ctrl", f"drag {AT_SPHERE} 45,40", "up Ctrl"),
+    "right drag": ("drag 5,5 20,10 right",),
+    "middle drag": (f"drag {AT_SPHERE} 45,30 middle",),
+    "wheel up": ("wheel up",),
+    "wheel down": ("wheel down",),
+}
 
 
 def moved(direction: tuple[float, float, float]) -> Check:
@@ -181,17 +192,6 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "usual text": (("press Ctrl++",), lambda before, after: before.screen.text_scale > after.screen.text_scale == 1.0),
     "toggle full screen": ((), lambda _, after: (after.window.width, after.window.height) == memory(after).screen),
     "quit": ((), lambda _, after: after.state.selected == 1),
-}
-MOUSE = {
-    "left click": (f"click {AT_SPHERE}",),
-    "right click": (f"click {AT_SPHERE} right",),
-    "left drag": (f"drag {AT_SPHERE} 45,30",),
-    "Shift+left drag": ("down Shift", f"drag {AT_CYLINDER} 48,36", "up Shift"),
-    "Ctrl+left drag": ("down Ctrl", f"drag {AT_SPHERE} 45,40", "up Ctrl"),
-    "right drag": ("drag 5,5 20,10 right",),
-    "middle drag": (f"drag {AT_SPHERE} 45,30 middle",),
-    "wheel up": ("wheel up",),
-    "wheel down": ("wheel down",),
 }
 
 

@@ -41,6 +41,7 @@ from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 160, 90
 GOLDEN = np.array(bgra(GOLD), np.uint8)
+VIEW = projection_of(scene().camera, 320, 180)  # from 0,0,10 along -z, field of view 90 degrees
 
 
 def edges(shape: Shape, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
@@ -234,9 +235,6 @@ def test_letters_are_black_on_bright_icons(colour: int, letters: int) -> None:
 
 
 # Arrows at the edge of the picture point to selected elements outside of it.
-
-
-VIEW = projection_of(scene().camera, 320, 180)  # from 0,0,10 along -z, field of view 90 degrees
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,9 @@ from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import TEXT, scene
 from tests.viewer.session_harness import SessionHarness
 
+SIZES = [(320, 240), (640, 480), (1280, 720), (1900, 300), (3840, 2160)]
+DARK = 255 // 4
+
 
 def blank(width: int = 640, height: int = 480):
     """Return a white picture."""
@@ -164,10 +167,6 @@ def test_text_grows_with_the_window_the_screen_and_the_wish(size, screen, wanted
 
 
 # Pages of the help: every row is shown, readable and within the window, whatever its size.
-
-
-SIZES = [(320, 240), (640, 480), (1280, 720), (1900, 300), (3840, 2160)]
-DARK = 255 // 4
 
 
 def table(width: int, height: int) -> screen.Help:

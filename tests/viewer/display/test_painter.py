@@ -16,6 +16,7 @@ from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 
 JOB = Job(scene(), 64, 48)
+REFINED = replace(JOB, samples=16, goal=16, base=np.full((48, 64, 4), colour_of(JOB.scene), np.uint8))
 
 
 class PainterHarness:
@@ -211,9 +212,6 @@ def test_close_cancels_a_picture():
     harness.start(JOB)
     assert harness.painter.close(HANG_LIMIT)
     assert PainterHarness().painter.close(0)
-
-
-REFINED = replace(JOB, samples=16, goal=16, base=np.full((48, 64, 4), colour_of(JOB.scene), np.uint8))
 
 
 def test_a_picture_is_refined_in_a_copy(harness):

@@ -19,6 +19,8 @@ from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
 from tests.waiting import HANG_LIMIT, until
 
+SCENE = scene()
+
 
 def test_the_first_picture_has_full_resolution_and_is_rendered_once():
     harness = SessionHarness()
@@ -186,9 +188,6 @@ def test_a_picture_cancelled_without_a_newer_request_is_requested_again():
 
 
 # Adaptive resolution: the divisor follows the measured times, without flicker.
-
-
-SCENE = scene()
 
 
 def outcome(seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False) -> Outcome:

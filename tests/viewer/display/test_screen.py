@@ -20,6 +20,28 @@ from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 640, 480
 TEXT = "saved scene.rt"
+PROGRAM = """
+from threading import Thread
+import numpy as np
+from minirt.viewer.app import session
+from minirt.viewer.display import screen
+from tests.usage import Usage
+
+def work():
+    np.ones(2 * 2**20)  # glibc takes blocks up to this size from the heap afterwards
+    blocks = [np.ones(2**17) for _ in range(100)]  # a mebibyte each
+    kept.extend(blocks[::10])
+
+kept = []
+screen.use_one_heap()
+thread = Thread(target=work)
+thread.start()
+thread.join()
+usages = [Usage.of().memory]
+screen.give_back_memory()
+usages.append(Usage.of().memory)
+print(usages[0] - usages[1], sum(block.nbytes for block in kept), all((block == 1).all() for block in kept))
+"""
 
 
 def shown(level: HudLevel, message: str = "", banner: str = "", help: bool = False) -> Pixels:
@@ -60,30 +82,6 @@ def test_help_leaves_a_message_visible() -> None:
 
 
 # Memory that is given back to the system: once after each resize or reload, and really.
-
-
-PROGRAM = """
-from threading import Thread
-import numpy as np
-from minirt.viewer.app import session
-from minirt.viewer.display import screen
-from tests.usage import Usage
-
-def work():
-    np.ones(2 * 2**20)  # glibc takes blocks up to this size from the heap afterwards
-    blocks = [np.ones(2**17) for _ in range(100)]  # a mebibyte each
-    kept.extend(blocks[::10])
-
-kept = []
-screen.use_one_heap()
-thread = Thread(target=work)
-thread.start()
-thread.join()
-usages = [Usage.of().memory]
-screen.give_back_memory()
-usages.append(Usage.of().memory)
-print(usages[0] - usages[1], sum(block.nbytes for block in kept), all((block == 1).all() for block in kept))
-"""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only glibc can give memory back")

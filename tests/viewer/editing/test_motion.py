@@ -49,6 +49,7 @@ SHAPES = (
     Torus(ORIGIN, (0.6, 0, 0.8), 3, 1, GREY, checker=BOARD),
 )
 NUMBER = re.compile(r"-?[0-9.]+(?:e[-+]?[0-9]+)?")
+HEAD = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\n"
 
 
 def selecting(shape: Element, camera: Camera = LEVEL) -> State:
@@ -210,9 +211,6 @@ def test_a_third_of_a_turn_about_the_diagonal_exchanges_the_axes() -> None:
 
 
 # Sizes of scenes, and positions of the camera that frame an element.
-
-
-HEAD = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\n"
 
 
 @pytest.mark.parametrize(

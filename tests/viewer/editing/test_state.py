@@ -17,6 +17,10 @@ from minirt.viewer.editing.projection import SAMPLE_SIZE, scene_size
 from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state, stack_after_reading
 from tests.viewer.fake import scene
 
+HEAD = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 0,0,0 1\n"
+EDITS = ("right", "turn left", "grow", "undo", "redo", "duplicate", "delete", "look at", "reset camera", "undo", "undo")
+CHOICES = ("select next", "select previous", "select camera", "select light", "next value", "next frame")
+
 
 def fov(state: State) -> float:
     """Field of view of the camera, in degrees."""
@@ -113,11 +117,6 @@ def test_edits_share_items_and_are_all_kept(monkeypatch):
 
 
 # Scenes with many elements: no action visits all of them, and undo keeps no copies of them.
-
-
-HEAD = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 0,0,0 1\n"
-EDITS = ("right", "turn left", "grow", "undo", "redo", "duplicate", "delete", "look at", "reset camera", "undo", "undo")
-CHOICES = ("select next", "select previous", "select camera", "select light", "next value", "next frame")
 
 
 @pytest.fixture(scope="module")
