@@ -72,14 +72,6 @@ def test_copies_of_many_writers_at_once_are_all_there(tmp_path: Path) -> None:
     assert len({each.read_bytes() for each in tmp_path.iterdir()}) == 60
 
 
-def test_copies_by_looking_first_would_be_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two programs that look for a free name before either writes, as `create` does not."""
-    monkeypatch.setattr(file_io, "create", file_io.write)
-    for data in (b"first", b"second"):
-        create_numbered(tmp_path / "scene.rt", ".rt", data)
-    assert names(tmp_path) == ["scene-1.rt"]
-
-
 def test_a_private_file_is_private_at_every_moment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "private"
     path.write_bytes(b"old")

@@ -5,16 +5,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from minirt.errors import RenderError
-from minirt.helpers import file_io
 from minirt.image import Image
 from minirt.movie import encode_film
 from tests.faulty_files import CODES, faulty_files, short
@@ -64,39 +60,3 @@ def test_short_writes_are_gone_on_with(writer: Writer, tmp_path: Path) -> None:
     whole = faults.written(writer, tmp_path / "whole")
     with faulty_files(short):
         assert faults.written(writer, tmp_path / "short") == whole
-
-
-def in_place(folder: Path) -> None:
-    """Write a file itself, as no writer here does."""
-    try:
-        with os.fdopen(os.open(folder / "file", os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666), "wb") as file:
-            file.write(b"new" * 1000)
-    except OSError as error:
-        raise RenderError(str(error)) from None
-
-
-def deaf(folder: Path) -> None:
-    """Write a file as a whole, and take no notice of errors."""
-    with suppress(OSError):
-        file_io.write(folder / "file", b"new" * 1000)
-
-
-@needs_forks
-def test_a_writer_in_place_would_be_found(tmp_path: Path) -> None:
-    for number, tried in enumerate((faults.tried_kills, lambda *given: faults.tried_errors(*given, CODES))):
-        (tmp_path / str(number)).mkdir()
-        with pytest.raises(AssertionError, match="file is half written"):
-            tried(in_place, tmp_path / str(number), SOME)
-
-
-@needs_forks
-def test_a_writer_that_hides_errors_would_be_found(tmp_path: Path) -> None:
-    with pytest.raises(AssertionError, match="the error was lost"):
-        faults.tried_errors(deaf, tmp_path, SOME, CODES)
-
-
-@needs_forks
-def test_without_locks_the_next_run_would_not_clear_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(file_io, "is_free", lambda _: None)
-    with pytest.raises(AssertionError, match="the next run does not clear up"):
-        faults.tried_kills(WRITERS["scene"], tmp_path, SOME)

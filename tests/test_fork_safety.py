@@ -25,7 +25,7 @@ from minirt.materials import pictures
 from minirt.rendering import Renderer
 from minirt.rendering.queries.rays import Tracer
 from tests.cli.program import SCENE, environment
-from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library, object_code_of
+from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library
 from tests.kernel.pictures import ALL
 from tests.processes import in_child, run
 from tests.waiting import HANG_LIMIT
@@ -196,11 +196,3 @@ def test_a_fork_waits_for_a_thread_that_loads_a_kernel(
     work = partial(kernels.compile, [kernels.identity(call(double))], compiler)
     assert forked_while_loading(kernels, work, monkeypatch)
     assert bool(compiler.compiled) != kept
-
-
-def test_a_library_that_loads_without_its_lock_would_be_found_here(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    kernels = library(tmp_path)
-    code = object_code_of(call(double)[0], '[{"array": "<f8", "ndim": 1}]')
-    assert not forked_while_loading(kernels, lambda: library_module.load(code), monkeypatch)

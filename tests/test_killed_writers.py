@@ -42,20 +42,6 @@ def test_a_new_file_is_written_as_a_whole(tmp_path: Path) -> None:
     assert contents_after_kills(file_io.create, path, None) == {None, NEW}
 
 
-def in_place(path: Path, data: bytes) -> None:
-    """A writer that writes to the file itself."""
-    with path.open("wb") as file:
-        for start in range(0, len(data), 4096):
-            file.write(data[start : start + 4096])
-            file.flush()
-
-
-def test_a_file_that_is_written_in_place_would_be_found_half_written(tmp_path: Path) -> None:
-    path = tmp_path / "scene.rt"
-    path.write_bytes(OLD)
-    assert contents_after_kills(in_place, path, OLD) - {OLD, NEW}
-
-
 def test_the_next_writer_deletes_temporary_files_of_killed_ones(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,13 +30,6 @@ def test_pillow_reads_back_what_is_written(tmp_path: Path, suffix: str) -> None:
     assert error <= (8 if FORMATS[name].is_lossy or name == "GIF" else 0)
 
 
-def test_pillow_would_write_others_wrongly(tmp_path: Path) -> None:
-    """The reason why the table of formats is closed."""
-    pillow.fromarray(ARRAY).save(tmp_path / "a.ico")
-    with pillow.open(tmp_path / "a.ico") as image:
-        assert image.size != (300, 200)
-
-
 @pytest.mark.parametrize("suffix", [".pgm", ".pbm", ".ico", ".icns", ".xbm", ".eps", ".spider", ".txt", ".rt", "", "."])
 def test_other_extensions_are_refused(suffix: str) -> None:
     with pytest.raises(RenderError, match="cannot write pictures with the extension"):

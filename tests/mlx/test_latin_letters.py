@@ -56,9 +56,3 @@ def test_the_letters_of_another_layout_of_the_user_come_first(monkeypatch):
     found = letters(monkeypatch, 1, "fr", "ru")
     assert {key: found[key] for key in FR_ON_KEYS} == FR_ON_KEYS
     assert set(letters(monkeypatch, 0, "fr", "ru").values()) == {None}
-
-
-def test_letters_beside_the_usual_keys_count_as_printed(monkeypatch):
-    """A search among the American places alone takes é of bépo for the missing w: the test notices it."""
-    monkeypatch.setattr(x11, "PRINTING_KEYS", list(x11.POSITIONS))
-    assert letters(monkeypatch, 0, "bepo")[25] == "w"
