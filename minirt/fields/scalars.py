@@ -1,4 +1,4 @@
-"""Numbers in a scene file, read and written: decimal, in ASCII, and exact to the last bit of a float64."""
+"""Numbers in a scene file, in decimal and exact to the last bit of a float64; and the fields of one number or flag."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from minirt.records import record
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 WHOLE = re.compile(r"[+-]?[0-9]+")
 LONGEST = 300  # characters: many more than `repr` writes, few enough for a whole number to fit into a float64
+FARTHEST = 1e15  # scene units; beyond it neighbouring float64 numbers are an eighth of a unit apart
+LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
 PLAIN = rf"[-+.0-9eE]{{1,{LONGEST}}}"  # among these `float` and `int` accept exactly those that match NUMBER and WHOLE
 
 
@@ -64,13 +66,6 @@ def spelled(value: float) -> str:
     return repr(float(value) + 0.0).removesuffix(".0")
 
 
-# Fields of one number: ratios, angles, lengths, sizes in pixels; and flags, which are one word.
-
-
-FARTHEST = 1e15  # scene units; beyond it neighbouring float64 numbers are an eighth of a unit apart
-LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
-
-
 def clamp(value: float, low: float, high: float) -> float:
     """`value`, or the nearest end of [low, high] if it lies outside."""
     return min(max(value, low), high)
@@ -81,6 +76,12 @@ class Scalar(Field):
     """One number in an interval."""
 
     plain = PLAIN
+
+    def parse(self, text: str) -> float:
+        return number(text)
+
+    def format(self, value: float) -> str:
+        return spelled(value)
 
     def parse_all(self, texts: Sequence[str]) -> Sequence[float]:
         return numbers(texts)
@@ -97,12 +98,6 @@ class Real(Scalar):
     low: float = -FARTHEST
     high: float = FARTHEST
     ends: str = ""  # notice about the values `low` and `high` themselves, if there is one
-
-    def parse(self, text: str) -> float:
-        return number(text)
-
-    def format(self, value: float) -> str:
-        return spelled(value)
 
     def check(self, value: float) -> float:
         if not self.low <= value <= self.high:
@@ -135,12 +130,6 @@ class Length(Scalar):
 
     unit: str = "scene unit"
     step: float = 1.05
-
-    def parse(self, text: str) -> float:
-        return number(text)
-
-    def format(self, value: float) -> str:
-        return spelled(value)
 
     def check(self, value: float) -> float:
         if not value > 0:
@@ -179,6 +168,9 @@ class Whole(Scalar):
 
     def parse(self, text: str) -> int:
         return whole(text)
+
+    def format(self, value: float) -> str:
+        return str(value)
 
     def parse_all(self, texts: Sequence[str]) -> Sequence[int]:
         return wholes(texts)

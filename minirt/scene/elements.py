@@ -63,14 +63,7 @@ class Camera(Element):
         Choice, "how light becomes colour: plain, srgb or filmic", words=TONES, keyed=True, default=TONES[0]
     )
     exposure: float = declare(
-        Real,
-        "light times two to this power",
-        unit="EV",
-        low=-20.0,
-        high=20.0,
-        step=0.25,
-        keyed=True,
-        default=0.0,
+        Real, "light times two to this power", unit="EV", low=-20.0, high=20.0, step=0.25, keyed=True, default=0.0
     )
     lens: float | None = declare(
         Length, "diameter of the lens; depth of field", keyed=True, default=None, placeholder="diameter", initial=0.2

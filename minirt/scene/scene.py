@@ -213,7 +213,7 @@ class Scene(Plurals):
 
     def edit(self, index: int, *new: Element) -> Scene:
         """Return the scene with `elements[index]` replaced by any number of elements."""
-        return self._edited(range(len(self.elements))[index], Element, *new)
+        return self._edited(range(sum(len(page.of(Element)) for page in self.pages))[index], Element, *new)
 
     def _edited(self, index: int, sort: type[Any], *new: Element) -> Scene:
         """Return the scene with entry `index` of a sort, as of all items, replaced by any number of elements."""
