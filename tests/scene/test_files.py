@@ -16,7 +16,7 @@ import pytest
 
 from minirt.element import pattern
 from minirt.errors import Problem, SceneError
-from minirt.scene import files, load, parse
+from minirt.scene import files, load, loads, parse
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from tests.guards import must_end, must_not_open
@@ -62,6 +62,17 @@ def test_a_scene_knows_its_file(tmp_path: Path) -> None:
     assert load(path).scene == parse(WHOLE, path).scene
     assert load(str(path)).scene.file == path
     assert parse(WHOLE).scene.file is None
+
+
+def test_readers_are_strict_and_right_handed_by_default(tmp_path: Path) -> None:
+    path, text = tmp_path / "scene.rt", scene_with("sp 0, 0,20 5 1,2,3")
+    path.write_text(text)
+    for read in (lambda: load(path), lambda: parse(text), lambda: loads(text)):
+        with pytest.raises(SceneError, match="comma"):
+            read()
+    assert loads(text, lenient=True).spheres == load(path, lenient=True).scene.spheres
+    assert not load(path, lenient=True).scene.camera.left_handed
+    assert load(path, lenient=True, left_handed=True).scene.camera.left_handed
 
 
 @pytest.mark.parametrize(
