@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from minirt.errors import RenderError as RenderError
 
 if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
-    from minirt.cluster.frames import render_all as render_all
-    from minirt.cluster.to_file import render_to as render_to
+    from minirt.cluster.pictures import render_all as render_all
+    from minirt.cluster.pictures import render_to as render_to
     from minirt.element import Element as Element
     from minirt.errors import FileError as FileError
     from minirt.errors import MiniRTError as MiniRTError
@@ -39,6 +39,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.queries.rays import Hits as Hits
     from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace
+    from minirt.rendering.settings import RenderSettings
     from minirt.saved_movie import save_movie as save_movie
     from minirt.scene import Ambient as Ambient
     from minirt.scene import Background as Background
@@ -62,8 +63,7 @@ DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 
 # Names that are imported on first use, so that `miniRT --help` need not wait for them.
 MODULES = {
-    "minirt.cluster.frames": ("render_all",),
-    "minirt.cluster.to_file": ("render_to",),
+    "minirt.cluster.pictures": ("render_all", "render_to"),
     "minirt.element": ("Element",),
     "minirt.errors": ("FileError", "MiniRTError", "MlxError", "ReplayError", "SceneError"),
     "minirt.example_scenes": ("example", "examples"),
@@ -205,57 +205,61 @@ def render(
 
     RenderError for a picture, textures or lists of shapes that need more memory than `minirt.limit_memory` allows.
     """
+    from minirt.rendering.packing.camera import Region
+    from minirt.rendering.settings import RenderSettings
+    from minirt.scene.scene import check_scene
+
+    check_scene(scene, "render")
+    size = size_for(scene, width, height)
+    if rows is not None:
+        if region is not None:
+            raise RenderError("a picture has a region or rows, not both")
+        region = (0, rows[0], size[0], rows[1] - rows[0])
+    part = region and Region(*region)
+    return rendered(scene, size, RenderSettings(samples, error, time, threads, precision, depth, linear, dither, part))
+
+
+def size_for(scene: Scene, width: int | None, height: int | None) -> tuple[int, int]:
+    """The size of a picture of a scene, whose own is used where none is asked for; RenderError for an empty one."""
+    own_width, own_height = size_of(scene)
+    size = own_width if width is None else width, own_height if height is None else height
+    if min(size) < 1:
+        raise RenderError(f"a picture has at least 1x1 pixels, got {size[0]}x{size[1]}")
+    return size
+
+
+def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:
+    """A picture of a scene: what `render` returns. RenderError."""
     import numpy as np
 
     from minirt.helpers import system
     from minirt.helpers.progress import State, in_notebooks
     from minirt.image import Image, LinearImage
     from minirt.rendering.packing.camera import cut_for
-    from minirt.scene.scene import check_scene
 
-    check_scene(scene, "render")
-    own_width, own_height = size_of(scene)
-    width, height = own_width if width is None else width, own_height if height is None else height
-    if width < 1 or height < 1:
-        raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
-    if rows is not None:
-        if region is not None:
-            raise RenderError("a picture has a region or rows, not both")
-        region = (0, rows[0], width, rows[1] - rows[0])
-    crop, shape, kept = cut_for(region, width, height)
-    system.check_picture(*shape, PIXEL + LIGHT * (linear or dither))
+    crop, shape, kept, _ = cut_for(settings.region, *size)
+    system.check_picture(*shape, PIXEL + LIGHT * (settings.linear or settings.dither))
     pixels = np.empty((*shape, 4), np.uint8)
-    light = np.zeros((*shape, 3)) if linear else None
-    chosen = renderer(threads, precision, depth, dither)
-    if samples == "auto":
-        if time is not None:
+    light = np.zeros((*shape, 3)) if settings.linear else None
+    chosen = settings.renderer
+    reached = None
+    if settings.samples == "auto":
+        default = DEFAULT_ERROR if settings.time is None else 0.0
+        goal = settings.error or default, inf if settings.time is None else settings.time
+        if settings.time is not None:
             chosen.prepare(scene)
         with in_notebooks(lambda: State("sampling")):
-            reached = chosen.reach(scene, pixels, *goal(error, time), light, crop)
-        if reached is None:
-            raise RenderError(CANCELLED)
-    elif error is not None or time is not None:
-        raise RenderError(f"an error or a time needs samples='auto', got {samples}")
+            reached = chosen.reach(scene, pixels, *goal, light, crop)
+        is_done = reached is not None
     else:
-        reached = None
         with in_notebooks(lambda: State("picture", chosen.rows_done(len(pixels)))):
-            is_done = chosen.render(scene, pixels, samples, light, crop=crop)
-        if not is_done:
-            raise RenderError(CANCELLED)
+            is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
+    if not is_done:
+        raise RenderError(CANCELLED)
     if light is None:
         return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone)
     light = np.ascontiguousarray(light[kept])
     return LinearImage.from_bgra(pixels[kept], light, reached, scene.camera.tone)
-
-
-def goal(error: float | None, time: float | None) -> tuple[float, float]:
-    """The error and the time that end a picture, if one of them or neither is given; RenderError unless > 0."""
-    for name, value in (("error", error), ("time", time)):
-        if value is not None and not value > 0:
-            raise RenderError(f"{name} must be > 0, got {value}")
-    if error is None:
-        error = DEFAULT_ERROR if time is None else 0.0
-    return error, inf if time is None else time
 
 
 def renderer(

@@ -64,13 +64,13 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     if text := asked_text(parser, options):
         say(text)
         return OK
-    from minirt.cli import scenes
+    from minirt.cli import files
     from minirt.cli.options import with_configuration
     from minirt.helpers import system
 
     options = with_configuration(parser, options, argv)
     options.command = sys.argv[1:] if argv is None else list(argv)
-    scenes.choose_example(parser, options, options.command)
+    files.choose_example(parser, options, options.command)
     check_options(parser, options)
     system.limit_memory(options.memory)
     if len(options.scene) == 1:
@@ -108,9 +108,8 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
         from minirt.cli.commands import command_for, show
+        from minirt.cli.files import output_for, read_scene, with_camera_options
         from minirt.cli.options import with_settings
-        from minirt.cli.scenes import read_scene, with_camera_options
-        from minirt.cli.target import output_for
 
         output = output_for(scene, options.output) if options.output else options.output
         options = argparse.Namespace(**vars(options) | {"scene": [scene], "output": output})
@@ -130,7 +129,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     """Exit with a message when the options do not go together; RenderError for an unknown or unfit picture format."""
     check_scenes(parser, options)
     if options.output or options.fallback:
-        from minirt.cli.target import check_format
+        from minirt.cli.files import check_format
 
         check_format(options)  # before the work, not after it
     if options.turntable and options.output in (None, "-"):
@@ -159,8 +158,6 @@ def check_cluster(parser: Arguments, options: argparse.Namespace) -> None:
 
     if options.cluster and (not options.output or options.replay or options.time):
         parser.error("--cluster needs -o, and no --replay or --time")
-    if options.cluster and options.resume and not options.turntable:
-        parser.error("--resume with --cluster needs --turntable; .tif pictures go on without it")
     if options.size and not options.cluster and (side := max(options.size)) > MAX_SIDE:
         parser.error(f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster")
 
@@ -178,7 +175,7 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
     found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}"
     if not output or options.bench or options.report or options.replay:
         parser.error(found)
-    from minirt.cli.target import PLACE, output_for
+    from minirt.cli.files import PLACE, output_for
 
     if PLACE not in output:
         parser.error(f"{found}; several need -o with {PLACE}, such as -o out/{PLACE}.png")

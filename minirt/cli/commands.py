@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES
 from minirt.cli.output import say
-from minirt.cli.picture import render, render_to_file, write
-from minirt.cli.target import check_target, is_film
-from minirt.cli.turntable import render_turntable
 from minirt.errors import FileError, MlxError, ReplayError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
@@ -23,6 +20,7 @@ from minirt.helpers.progress import State, progress
 if TYPE_CHECKING:
     from minirt.scene import Scene
 
+MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
 
 Command = Callable[["Scene", argparse.Namespace], int]
 
@@ -34,9 +32,7 @@ def command_for(options: argparse.Namespace) -> Command:
         (options.bench, bench),
         (options.report, report),
         (options.replay, replay),
-        (options.cluster, render_by_workers),
-        (options.turntable, render_turntable),
-        (options.output, render_picture),
+        (options.output, render),
     )
     return next((command for selected, command in commands if selected), show)
 
@@ -47,22 +43,11 @@ def check(scene: Scene, options: argparse.Namespace) -> int:
     return OK
 
 
-def render_picture(scene: Scene, options: argparse.Namespace) -> int:
-    """Render a picture to a file, in bands where it does not fit into memory and the format allows it."""
-    from minirt.cli.target import is_rendered_in_bands
+def render(scene: Scene, options: argparse.Namespace) -> int:
+    """Render a picture or a turntable to the output."""
+    from minirt.cli.render import render_output
 
-    return (render_by_workers if is_rendered_in_bands(scene, options) else render_to_file)(scene, options)
-
-
-def render_by_workers(scene: Scene, options: argparse.Namespace) -> int:
-    """Render a picture or a turntable in parts, by other processes or machines if the options name some."""
-    if options.turntable:
-        from minirt.cli.cluster_frames import render_frames
-
-        return render_frames(scene, options)
-    from minirt.cli.cluster import render_bands
-
-    return render_bands(scene, options)
+    return render_output(scene, options)
 
 
 def bench(scene: Scene, options: argparse.Namespace) -> int:
@@ -84,12 +69,6 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     how = options.threads, options.quick, options.ablation
     say(write_report(scene, options.scene[0], options.report, size, *how))
     return OK
-
-
-# Showing a scene in a window, and replaying recorded keys without one.
-
-
-MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
 
 
 def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) -> int:
@@ -116,8 +95,10 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     except MlxError as error:
         if not options.fallback:
             raise
+        from minirt.cli.render import render_picture
+
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
-        write(render(scene, options, options.fallback), options.fallback, scene, options)
+        render_picture(scene, argparse.Namespace(**vars(options) | {"output": None}), options.fallback)
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 
@@ -125,13 +106,15 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
 def replay(scene: Scene, options: argparse.Namespace) -> int:
     """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
     import minirt
+    from minirt.cli.files import check_output, is_film
+    from minirt.cli.render import write
     from minirt.movie import record_movie
     from minirt.viewer.app.replay import FPS, record
     from minirt.viewer.app.replay import replay as play
 
     width, height = options.size or minirt.size_of(scene)
     if options.output:
-        check_target(options, options.output, width, height)
+        check_output(options.output, width, height)
     lines = read_lines(options.replay)
     settings: dict[str, Any] = {
         "file": options.replay,

@@ -1,110 +1,139 @@
-"""Work of a worker: find the scene of a task, render, and return levels, light, or parts of a TIFF file."""
+"""Scenes on their way to workers, which are other processes or other machines, and the work that is done there.
+
+Values travel as they are, not as text, since a direction that is normalised again may differ in its last bit. Workers
+on other machines get textures, too, under the hashes of their contents.
+"""
 
 from __future__ import annotations
 
+import atexit
+import copyreg
+import hashlib
+import io
+import pickle
+import shutil
 import sys
+import tempfile
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from copy import copy
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
 
 import minirt
-from minirt.cluster import files, parcel
-from minirt.cluster.task import Answer, Made, Missing, Task, version
+from minirt.cluster.job import Band, Made, render_band
+from minirt.element import Element, Record, fields_of
 from minirt.errors import RenderError
-from minirt.formats import tiff
+from minirt.helpers import file_io
 from minirt.helpers.system import ForkSafeLock
-from minirt.scene import Scene
-
-if TYPE_CHECKING:
-    from minirt.image import Image
+from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
+from minirt.meshes.triangles import Triangles
+from minirt.scene import Camera, Scene
 
 SCENES = 4  # kept in memory
+ARRAYS = ("points", "corners", "normals", "uvs")  # of a mesh
 
-scenes: dict[str, Scene] = {}  # by digest, the one that was used last at the end
+Kind = TypeVar("Kind", bound=Record)
+
+scenes: dict[str, Scene] = {}  # by their digests, the one that was used last at the end
 lock = ForkSafeLock()
 
 
-def levels(image: Image) -> Made:
-    """Return a picture of 8 bits as it is."""
-    return Made((image.array,), (), image.reached)
+@cache
+def version() -> str:
+    """Return the version of the program and of the sources of its kernels."""
+    return f"{minirt.__version__} {fingerprint_of(V3)}"
 
 
-def levels_and_light(image: Image) -> Made:
-    """Return a picture with its light."""
-    return Made((image.array, image.light("light")), (), image.reached)
+def packed(scene: Scene, with_files: bool) -> bytes:
+    """Return a scene as bytes, `with_files` with the contents of its textures; FileError where one cannot be read."""
+    files: dict[str, bytes] = {}
+
+    def keep(name: str) -> str:
+        data = file_io.read(scene.beside(name), file_io.LARGEST_ASSET)
+        digest = hashlib.sha256(data).hexdigest()
+        files[digest] = data
+        return digest
+
+    place = (scene.file or Path("scene.rt")).absolute()
+    elements = tuple(renamed(each, keep) if with_files else each for each in scene.elements)
+    buffer = io.BytesIO()
+    pickler = pickle.Pickler(buffer, protocol=5)
+    pickler.dispatch_table = copyreg.dispatch_table | {Triangles: arrays_of}
+    pickler.dump((elements, files if with_files else place))
+    return buffer.getvalue()
 
 
-def strips_of_8_bits(image: Image) -> Made:
-    """Return a picture as strips of a TIFF file."""
-    return Made((), tiff.strips(image.array), image.reached)
+def arrays_of(mesh: Triangles) -> tuple[type[Triangles], tuple[Any, ...]]:
+    """Reduce a mesh to its arrays, without what was computed of them; `pickle` calls this."""
+    return Triangles, tuple(getattr(mesh, name) for name in ARRAYS)
 
 
-def strips_of_16_bits(image: Image) -> Made:
-    """Return a picture as strips of a TIFF file, made of its light."""
-    return Made((), tiff.strips(image.deep), image.reached)
+def renamed(record: Kind, name: Callable[[str], str]) -> Kind:
+    """Return an element, or a material of it, with other names of its picture files; itself where it has none."""
+    changed = record
+    for field in fields_of(type(record)):
+        value = getattr(record, field.name)
+        if value is None or not any(True for _ in field.pictures(value)):
+            continue
+        if changed is record:
+            changed = copy(record)
+            if isinstance(record, Element):
+                object.__setattr__(changed, "source", "")
+        new = name(value) if isinstance(value, str) else renamed(value, name)
+        object.__setattr__(changed, field.name, new)  # unchecked: checking normalises the other values again
+    return changed
 
 
-FORMS: dict[str, tuple[bool, Callable[[Image], Made]]] = {  # whether light is needed, and what makes the result
-    "levels": (False, levels),
-    "light": (True, levels_and_light),
-    "strips-8": (False, strips_of_8_bits),
-    "strips-16": (True, strips_of_16_bits),
-}
+def unpacked(data: bytes) -> Scene:
+    """Return a scene; its textures are written into this worker's folder."""
+    elements, place = pickle.loads(data)
+    if isinstance(place, Path):
+        return Scene(elements, place)
+    for digest, content in place.items():
+        if not (folder() / digest).exists():
+            file_io.write(folder() / digest, content)
+    return Scene(elements, folder() / "scene.rt")
 
 
-def carry_out(task: Task) -> Answer:
-    """Carry out a task, or say which contents are missing. RenderError where this is another version of the program."""
-    if task.version != version():
-        raise RenderError(f"a worker has another miniRT: {version()} in place of {task.version}")
-    scene = scene_of(task)
-    if isinstance(scene, Missing):
-        return scene
-    if task.camera is not None:
-        scene = scene.replace(scene.camera, task.camera)
-    needs_light, finish = FORMS[task.form]
-    width, height, samples, *_ = task.settings
-    image = minirt.render(
-        scene,
-        width,
-        height,
-        samples=samples,
-        error=task.settings.error,
-        time=task.settings.time,
-        threads=task.threads or share_of_cores(),
-        precision=task.settings.precision,
-        depth=task.settings.depth,
-        linear=needs_light,
-        dither=task.settings.dither,
-        region=task.region,
-    )
-    return finish(image)
+@cache
+def folder() -> Path:
+    """Return a folder for textures, which is deleted at the end of this process or, if it was killed, by dask."""
+    worker = dask_worker()
+    path = tempfile.mkdtemp(prefix="minirt-", dir=worker and worker.local_directory)
+    atexit.register(shutil.rmtree, path, ignore_errors=True)
+    return Path(path)
 
 
-def scene_of(task: Task) -> Scene | Missing:
-    """Return the scene of a task, from memory if it is there; or what must be sent first."""
+def work(asked: str, digest: str, camera: Camera, band: Band, data: bytes) -> Made:
+    """Render a band of a packed scene, with another camera. RenderError where this version is not the one `asked` for,
+    which might draw other bits."""
+    if asked != version():
+        raise RenderError(f"a worker has another miniRT: {version()} in place of {asked}")
     with lock:
-        scene = scenes.pop(task.scene, None)
-        if scene is None:
-            for digest in set(task.files) & set(task.sent):
-                files.keep(task.sent[digest])
-            missing = [each for each in task.files if not files.has(each)]
-            if task.scene not in task.sent:
-                missing.append(task.scene)
-            if missing:
-                return Missing(tuple(missing))
-            scene = parcel.unpack(task.sent[task.scene])
-        scenes[task.scene] = scene
+        scene = scenes.pop(digest, None) or unpacked(data)
+        scenes[digest] = scene
         for each in list(scenes)[:-SCENES]:
             del scenes[each]
-        return scene
+    settings = band.settings
+    if settings.threads is None:
+        settings = settings.replace(threads=share_of_cores())
+    return render_band(band._replace(scene=scene.replace(scene.camera, camera), settings=settings))
 
 
 def share_of_cores() -> int | None:
     """Return the number of threads that a dask worker has; None elsewhere: all processors."""
+    worker = dask_worker()
+    return worker and int(worker.state.nthreads)
+
+
+def dask_worker() -> Any:
+    """Return the dask worker that calls this, None elsewhere."""
     if "distributed" not in sys.modules:
         return None
     from distributed import get_worker
 
     try:
-        return int(get_worker().state.nthreads)
+        return get_worker()
     except ValueError:  # not called by a worker
         return None

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from minirt.cli import argument_parser, scenes
+from minirt.cli import argument_parser, files
 from tests.cli.program import Result, program
 from tests.paths import SCENES
 
@@ -19,8 +19,8 @@ Run = Callable[..., Result]
 def test_the_program_without_arguments_renders_the_demo_where_no_window_is(folder: Path) -> None:
     ended = program(folder)
     assert (ended.status, ended.err) == (0, "")
-    assert str(folder / scenes.DEMO_PICTURE) in ended.out.decode()
-    with pillow.open(folder / scenes.DEMO_PICTURE) as picture:
+    assert str(folder / files.DEMO_PICTURE) in ended.out.decode()
+    with pillow.open(folder / files.DEMO_PICTURE) as picture:
         shown = np.asarray(picture)
     expected = minirt.render(minirt.load(SCENES / "demo.rt")).array
     assert np.array_equal(shown, expected)
@@ -50,6 +50,6 @@ def test_the_window_saves_an_example_to_a_new_file(folder: Path) -> None:
     parser = argument_parser()
     for name in ("demo.rt", "demo-1.rt", "demo-2.rt"):
         options = parser.parse_args(["--example"])
-        scenes.choose_example(parser, options, ["--example"])
+        files.choose_example(parser, options, ["--example"])
         assert options.scene == [name]
         (folder / name).write_text("kept")

@@ -59,8 +59,8 @@ def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
         assert interrupt(process, screen) == (130, b"")
     assert b"Traceback" not in screen.text
     assert b"--threads 1 --resume goes on" in screen.text
-    assert (folder / f".{name}.part").exists()
-    written = [file for file in folder.iterdir() if file.name not in ("ball.rt", f".{name}.part")]
+    assert (folder / f".{name}.journal").exists()
+    written = [file for file in folder.iterdir() if file.name not in ("ball.rt", f".{name}.journal")]
     assert {file.name for file in written} >= ({"spin-0001.png", "spin-0002.png"} if name == "spin.png" else set())
     assert all(file.name.startswith("spin-") for file in written)
     assert bool(written) == (name == "spin.png")

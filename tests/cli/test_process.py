@@ -175,8 +175,8 @@ def fail(thread):
 threading.Thread.start = fail
 from minirt import cli
 if {is_needed}:
-    from minirt.cli import picture
-    picture.progress = lambda read: threading.Thread().start()
+    from minirt.cli import render
+    render.progress = lambda read: threading.Thread().start()
 raise SystemExit(cli.main())
 """
 

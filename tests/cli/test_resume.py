@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import signal
 import sys
-import zlib
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import minirt
-from minirt.cli import part_file, strips, work
+from minirt.cli import render
+from minirt.cluster import job, journal
+from minirt.cluster.job import Made
+from minirt.cluster.journal import Journal
 from tests import processes
 from tests.cli.program import SCENE, Result, environment
 
@@ -25,17 +29,17 @@ EVERY = pytest.mark.parametrize("arguments", [STILL, FILM, NUMBERED], ids=["stil
 
 @pytest.fixture(autouse=True)
 def _small_work_is_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(work, "LONG", 0)
-    monkeypatch.setattr(strips, "STRIP", 32 * 40 * 4)
-    monkeypatch.setattr(part_file, "SHARE", 1e9)
+    monkeypatch.setattr(render, "LONG", 0)
+    monkeypatch.setattr(job, "RAYS", 32 * 40 * 4)
+    monkeypatch.setattr(journal, "SHARE", 1e9)
 
 
 class Renders:
     """Counts the pictures and strips that are rendered, and interrupts one."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.count, self.last, self.render = 0, 0, minirt.render
-        monkeypatch.setattr(minirt, "render", self)
+        self.count, self.last, self.render = 0, 0, minirt.rendered
+        monkeypatch.setattr(minirt, "rendered", self)
 
     def __call__(self, *arguments: Any, **settings: Any) -> Any:
         self.count += 1
@@ -76,7 +80,7 @@ def test_an_interrupted_program_goes_on(run: Run, folder: Path, renders: Renders
     renders.until(4)
     status, out, err = run(*arguments)
     assert (status, out) == (130, b"")
-    what = "strips of the picture" if arguments is STILL else "pictures of the film"
+    what = "bands of the picture" if arguments is STILL else "pictures of the film"
     assert err == f"3 of 5 {what} are kept; miniRT {' '.join(arguments)} --resume goes on\n"
     renders.until(2)  # is interrupted again
     again = run(*arguments, "--resume")
@@ -94,7 +98,7 @@ def test_without_resume_the_work_begins_anew(
     wanted = undisturbed(run, folder, arguments)
     renders.until(3)
     assert run(*arguments).status == 130
-    assert any(name.endswith(".part") for name in contents(folder))
+    assert any(name.endswith(".journal") for name in contents(folder))
     renders.until(0)
     assert run(*arguments) == (0, b"", "")
     assert renders.count == 5
@@ -119,7 +123,7 @@ def test_what_was_left_by_other_work_is_refused(
     minirt.Image(minirt.render(minirt.loads(SCENE), 8, 6).array).save(folder / "dots.png")
     renders.until(3)
     assert run(*STILL).status == 130
-    left = (folder / ".x.png.part").read_bytes()
+    left = (folder / ".x.png.journal").read_bytes()
     if change == "scene":
         (folder / "ball.rt").write_text((folder / "ball.rt").read_text().replace("-4,3,-3", "-4,3,-2"))
     elif change == "texture":
@@ -129,8 +133,8 @@ def test_what_was_left_by_other_work_is_refused(
     renders.until(0)
     ended = run(*STILL, *CHANGES.get(change, ()), "--resume")
     assert ended.status == 1
-    assert ".x.png.part: was left by another scene, other settings or another version" in ended.err
-    assert (folder / ".x.png.part").read_bytes() == left
+    assert ".x.png.journal: was left by another scene, other settings or another version" in ended.err
+    assert (folder / ".x.png.journal").read_bytes() == left
     assert renders.count == 0
 
 
@@ -147,7 +151,7 @@ def test_a_damaged_part_is_rendered_again(run: Run, folder: Path, renders: Rende
     wanted = undisturbed(run, folder, STILL)
     renders.until(4)
     run(*STILL)
-    file = folder / ".x.png.part"
+    file = folder / ".x.png.journal"
     whole = file.read_bytes()
     for damaged, missing in ((whole[:-7], 3), (whole[:200] + b"\0\0\0" + whole[203:], 3), (whole[:20], 5), (b"", 5)):
         file.write_bytes(damaged)
@@ -157,20 +161,18 @@ def test_a_damaged_part_is_rendered_again(run: Run, folder: Path, renders: Rende
         assert contents(folder) == wanted
 
 
-def test_a_part_that_cannot_be_unpacked_is_missing(tmp_path: Path) -> None:
-    part = part_file.PartFile(tmp_path / "x.png", "work", resume=False)
-    part.append(0, b"abc")
-    part.close()
-    packed = zlib.compress(b"abc", part_file.LEVEL)
-    other = bytes(len(packed))
-    head, other_head = (part_file.HEAD.pack(0, len(each), zlib.crc32(each)) for each in (packed, other))
-    whole = part.path.read_bytes()
-    for data, wanted in ((whole, b"abc"), (whole.replace(head + packed, other_head + other), None)):
-        part.path.write_bytes(data)
-        again = part_file.PartFile(tmp_path / "x.png", "work", resume=True)
-        assert list(again.places) == [0]
-        assert again.read(0, 3) == wanted
-        again.close()
+def test_a_band_that_cannot_be_unpacked_is_missing(tmp_path: Path) -> None:
+    made = Made((np.arange(24, dtype=np.uint8).reshape(2, 4, 3),), None, 3)
+    good = journal.packed(made)
+    with closing(Journal(tmp_path / "x.png", "work", resume=False)) as kept:
+        for number, data in enumerate((good, good[:-9], b"nonsense", b"[1, 2]\n", good.replace(b"null", b"7777"))):
+            kept.append(number, data)
+        found = kept.restore(0, (2, 4, 3))
+        assert found
+        assert (found.parts[0] == made.parts[0]).all()
+        assert found.not_finite == 3
+        assert [kept.restore(number, (2, 4, 3)) for number in range(1, 6)] == [None] * 5
+        assert kept.restore(0, (2, 5, 3)) is None
 
 
 def test_a_numbered_picture_that_was_deleted_is_written_again(run: Run, folder: Path, renders: Renders) -> None:
@@ -199,15 +201,16 @@ def test_linear_light_is_kept_to_the_bit(run: Run, folder: Path, renders: Render
 KILLED = """
 import os, signal, sys
 import minirt
-from minirt.cli import main, part_file, strips, work
-work.LONG, strips.STRIP, part_file.SHARE = 0, 32 * 40 * 4, 1e9
-render, calls = minirt.render, []
+from minirt.cli import main, render
+from minirt.cluster import job, journal
+render.LONG, job.RAYS, journal.SHARE = 0, 32 * 40 * 4, 1e9
+rendered, calls = minirt.rendered, []
 def killed(*arguments, **settings):
     calls.append(1)
     if len(calls) == 4:
         os.kill(os.getpid(), signal.SIGKILL)
-    return render(*arguments, **settings)
-minirt.render = killed
+    return rendered(*arguments, **settings)
+minirt.rendered = killed
 main(sys.argv[1:])
 """
 
@@ -218,7 +221,7 @@ def test_a_killed_program_goes_on(run: Run, folder: Path, renders: Renders, argu
     wanted = undisturbed(run, folder, arguments)
     ended = processes.run([sys.executable, "-c", KILLED, *arguments], cwd=folder, env=environment())
     assert ended.returncode == -signal.SIGKILL
-    assert (folder / f".{arguments[-1]}.part").exists()
+    assert (folder / f".{arguments[-1]}.journal").exists()
     renders.until(0)
     assert run(*arguments, "--resume").status == 0
     assert renders.count == 2
@@ -228,10 +231,10 @@ def test_a_killed_program_goes_on(run: Run, folder: Path, renders: Renders, argu
 def test_parts_are_not_kept_where_that_takes_longer_than_they_are_worth(
     run: Run, folder: Path, renders: Renders, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(part_file, "SHARE", 0.0)
+    monkeypatch.setattr(journal, "SHARE", 0.0)
     renders.until(4)
     ended = run(*STILL)
-    assert ended.err.startswith("1 of 5 strips of the picture are kept")  # the first, whose cost nobody knew
+    assert ended.err.startswith("1 of 5 bands of the picture are kept")  # the first, whose cost nobody knew
     renders.until(0)
     assert run(*STILL, "--resume").status == 0
     assert renders.count == 4
@@ -241,15 +244,15 @@ def test_a_full_disk_keeps_nothing_and_spoils_nothing(
     run: Run, folder: Path, renders: Renders, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = undisturbed(run, folder, FILM)
-    append, parts = part_file.PartFile.append, []
+    append, parts = Journal.append, []
 
-    def until_full(self: part_file.PartFile, number: int, data: bytes) -> None:
+    def until_full(self: Journal, number: int, data: bytes) -> bytes:
         if len(parts) == 2:
             raise OSError(28, "No space left on device")
         parts.append(number)
-        append(self, number, data)
+        return append(self, number, data)
 
-    monkeypatch.setattr(part_file.PartFile, "append", until_full)
+    monkeypatch.setattr(Journal, "append", until_full)
     assert run(*FILM) == (0, b"", "")
     assert (contents(folder), parts) == (wanted, [1, 2])
 
@@ -259,7 +262,7 @@ def test_short_work_leaves_nothing_and_removes_what_was_left(
 ) -> None:
     renders.until(3)
     run(*STILL)
-    monkeypatch.setattr(work, "LONG", 2**24)
+    monkeypatch.setattr(render, "LONG", 2**24)
     renders.until(1)
     assert run(*STILL) == (130, b"", "")
     assert not contents(folder)

@@ -15,10 +15,11 @@ import pytest
 
 import minirt
 from minirt import Scene
-from minirt.cluster import frames, workers
-from minirt.cluster.task import Answer, Task
-from minirt.cluster.worker import carry_out
+from minirt.cluster import executor
+from minirt.cluster.job import Band, Made
+from minirt.cluster.worker import work
 from minirt.errors import RenderError
+from minirt.rendering.settings import RenderSettings
 from minirt.viewer.app.replay import turntable
 from tests.cluster.scenes import BALL, with_files
 from tests.waiting import HANG_LIMIT
@@ -63,17 +64,17 @@ def test_results_that_come_in_another_order_are_put_in_order(monkeypatch: pytest
     """The first picture is ready after the second."""
     second = Event()
 
-    def late(task: Task) -> Answer:
-        is_first = task.camera is BALL.camera
-        assert not is_first or second.wait(HANG_LIMIT)
-        answer = carry_out(task)
-        if not is_first:
+    def late(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
+        assert band.number or second.wait(HANG_LIMIT)
+        made = work(version, digest, camera, band, data)
+        if band.number:
             second.set()
-        return answer
+        return made
 
-    monkeypatch.setattr(workers, "carry_out", late)
+    monkeypatch.setattr(executor, "work", late)
     views = list(turntable(BALL, 4))
-    assert_same(minirt.render_all(views, *SIZE), views)
+    with ThreadPoolExecutor(2) as pool:
+        assert_same(minirt.render_all(views, *SIZE, executor=pool), views)
 
 
 def test_few_scenes_are_taken_ahead() -> None:
@@ -84,15 +85,18 @@ def test_few_scenes_are_taken_ahead() -> None:
             taken.append(each)
             yield each
 
-    film = minirt.render_all(scenes(), *SIZE)
-    next(film)
-    assert len(taken) <= 2 * workers.OF_EACH
-    film.close()
+    with ThreadPoolExecutor(2) as pool:
+        film = minirt.render_all(scenes(), *SIZE, executor=pool)
+        next(film)
+        assert len(taken) <= 2 * executor.OF_EACH
+        film.close()
 
 
-def test_scenes_that_differ_in_the_camera_alone_share_a_parcel(tmp_path: Path) -> None:
-    packer = frames.Packer()
-    first, second, third = (packer.pack(each) for each in [*turntable(BALL, 2), *sweep(1)])
+def test_scenes_that_differ_in_the_camera_alone_are_packed_once() -> None:
+    dispatcher = executor.Dispatcher(ThreadPoolExecutor(1))
+    first, second, third = (
+        dispatcher.arguments(Band(0, scene, SIZE, RenderSettings()))[-1] for scene in [*turntable(BALL, 2), *sweep(1)]
+    )
     assert first is second
     assert third is not first
 

@@ -107,14 +107,3 @@ def test_the_error_of_a_region_is_that_of_its_own_pixels() -> None:
 def test_a_region_beyond_the_picture_is_an_error(region: tuple[int, int, int, int], problem: str) -> None:
     with pytest.raises(minirt.RenderError, match=problem):
         minirt.render(EVERY, *SIZE, region=region)
-
-
-@pytest.mark.parametrize("region", [(0, 0, 640, 480), (37, 5, 300, 7), (15, 0, 1, 1)])
-@pytest.mark.parametrize("samples", [1, 64, 65536])
-def test_strips_cover_a_region_once_and_begin_with_tiles(region: camera.Region, samples: int) -> None:
-    found = camera.strips_of(region, samples, 2**23)
-    columns = [column for x, _, width, _ in found for column in range(x, x + width)]
-    assert columns == list(range(region[0], region[0] + region[2]))
-    assert all(x % 16 == 0 for x, *_ in found[1:])
-    assert {strip[1::2] for strip in found} == {region[1::2]}
-    assert all(width <= 16 or width * height * samples <= 2**23 for _, _, width, height in found)

@@ -11,9 +11,8 @@ neighbouring pixels, and the dimensions of one pixel, have nothing in common.
 from __future__ import annotations
 
 from functools import cache, lru_cache
-from itertools import pairwise
 from math import pi, radians, tan
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +23,17 @@ from minirt.lanes import width
 from minirt.scene import Camera
 from minirt.scene.elements import camera_frame
 
-Region: TypeAlias = tuple[int, int, int, int]  # x, y, width and height, in pixels
+
+class Region(NamedTuple):
+    """A rectangle of a picture, in pixels from its upper left corner; written as on the command line."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    def __str__(self) -> str:
+        return ",".join(map(str, self))
 
 
 class Crop(NamedTuple):
@@ -42,29 +51,23 @@ class Cut(NamedTuple):
     crop: Crop
     shape: tuple[int, int]  # rows and columns of the rectangle
     kept: tuple[slice, slice]  # those of the region
+    region: Region
 
 
-def cut_for(region: Region | None, width: int, height: int) -> Cut:
+def cut_for(region: tuple[int, int, int, int] | None, width: int, height: int) -> Cut:
     """Return what to render for a region (x, y, width, height) of a picture, or for all of it; RenderError for a region
     that does not lie in the picture."""
     if region is None:
-        return Cut(Crop(width, height), (height, width), (slice(None), slice(None)))
+        region = Region(0, 0, width, height)
+        return Cut(Crop(width, height), (height, width), (slice(None), slice(None)), region)
     x, y, across, down = region
     if across < 1 or down < 1:
         raise RenderError(f"a region has at least 1x1 pixels, got {across}x{down}")
     if x < 0 or y < 0 or x + across > width or y + down > height:
-        raise RenderError(f"region {x},{y},{across},{down} does not lie in the picture of {width}x{height} pixels")
+        raise RenderError(f"region {Region(*region)} does not lie in the picture of {width}x{height} pixels")
     beside, above = x % TILE, y % TILE
     crop = Crop(width, height, x - beside, y - above)
-    return Cut(crop, (above + down, beside + across), (slice(above, None), slice(beside, None)))
-
-
-def strips_of(region: Region, samples: int, rays: int) -> list[Region]:
-    """Divide a region of a picture into strips of about so many rays, one beside the other, that begin with tiles."""
-    x, y, width, height = region
-    step = max(rays // (height * samples) // TILE, 1) * TILE
-    edges = [x, *range(x // TILE * TILE + step, x + width, step), x + width]
-    return [(left, y, right - left, height) for left, right in pairwise(edges)]
+    return Cut(crop, (above + down, beside + across), (slice(above, None), slice(beside, None)), Region(*region))
 
 
 NARROWEST, WIDEST = 1e-6, 179.9999  # degrees; fields of view of 0 and 180 are drawn as these

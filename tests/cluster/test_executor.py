@@ -13,9 +13,9 @@ import pytest
 import tifffile
 
 import minirt
-from minirt.cluster import workers
-from minirt.cluster.task import Answer, Task
-from minirt.cluster.worker import carry_out
+from minirt.cluster import executor
+from minirt.cluster.job import Band, Made
+from minirt.cluster.worker import work
 from minirt.errors import RenderError
 from tests.cluster.scenes import BALL
 
@@ -47,18 +47,18 @@ def test_bands_of_a_killed_worker_are_made_again(is_function: bool, tmp_path: Pa
         each.shutdown()
 
 
-def dies(task: Task) -> Answer:
+def dies(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
     """Die of one band."""
-    if task.region and task.region[1] == 128:
+    if band.region.y == 128:
         os.kill(os.getpid(), signal.SIGKILL)
-    return carry_out(task)
+    return work(version, digest, camera, band, data)
 
 
 def test_a_band_of_which_workers_die_is_an_error_and_the_others_are_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as patch:
-        patch.setattr(workers, "carry_out", dies)
+        patch.setattr(executor, "work", dies)
         with pytest.raises(RenderError, match=r"4 workers died"):
             minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=lambda: ProcessPoolExecutor(1))
     assert not (tmp_path / "a.tif").exists()
@@ -68,15 +68,15 @@ def test_a_band_of_which_workers_die_is_an_error_and_the_others_are_kept(
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE).array)
 
 
-def fails(task: Task) -> Answer:
-    """Fail as no task should."""
-    raise KeyError(task.what)
+def fails(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
+    """Fail as no band should."""
+    raise KeyError(band.what)
 
 
 def test_an_error_of_a_worker_is_told_with_its_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "carry_out", fails)
-    with pytest.raises(RenderError, match=r"rows \d+ to \d+ failed: KeyError: 'rows \d+ to \d+'"):
-        minirt.render_to(tmp_path / "a.tif", BALL, *SIZE)
+    monkeypatch.setattr(executor, "work", fails)
+    with ThreadPoolExecutor(1) as pool, pytest.raises(RenderError, match=r"(rows \d+ to \d+) failed: KeyError: '\1'"):
+        minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=pool)
 
 
 def test_an_executor_that_is_shut_down_takes_no_tasks(tmp_path: Path) -> None:

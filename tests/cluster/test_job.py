@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import minirt
-from minirt.cluster.bands import LEAST_PIXELS, MOST_PIXELS, ROWS, bands_of, runs, whole
+from minirt.cluster.job import LEAST_PIXELS, MOST_COLUMNS, MOST_PIXELS, ROWS, columns_of, rows_of, whole
 from minirt.errors import RenderError
 from minirt.kernel.frame import TILE
 from minirt.rendering.outcome import Outcome
+from minirt.rendering.packing.camera import Region
 from tests.cluster.scenes import BALL
 
 SIZE = 70, 61
@@ -40,18 +41,31 @@ def test_rows_that_are_not_there_are_refused(rows: tuple[int, int]) -> None:
 
 @given(st.integers(1, 300_000), st.integers(1, 300_000))
 def test_bands_are_all_rows_once_by_whole_tiles_and_of_bounded_size(width: int, height: int) -> None:
-    bands = runs(width, height)
-    assert [row for first, end in bands for row in (first, end)][1:-1:2] == [first for first, _ in bands[1:]]
-    assert (bands[0][0], bands[-1][1]) == (0, height)
-    assert all(first % TILE == 0 for first, _ in bands)
-    rows = [end - first for first, end in bands]
-    assert min(rows) > 0
+    bands = rows_of(Region(0, 0, width, height))
+    ends = [band.y + band.height for band in bands]
+    assert [0, *ends] == [*(band.y for band in bands), height]
+    assert all(band[::2] == (0, width) and band.y % TILE == 0 and band.height > 0 for band in bands)
     limit = max(TILE, min(MOST_PIXELS // width, max(ROWS, LEAST_PIXELS // width)))
-    assert max(rows) <= 1.5 * limit + TILE
+    assert max(band.height for band in bands) <= 1.5 * limit + TILE
 
 
 def test_bands_of_a_region_lie_in_it() -> None:
-    assert bands_of((5, 7, 600, 100)) == [(5, 7, 600, 48), (5, 55, 600, 52)]
+    assert rows_of(Region(5, 7, 600, 100)) == [(5, 7, 600, 48), (5, 55, 600, 52)]
+
+
+@pytest.mark.parametrize("region", [Region(0, 0, 640, 480), Region(37, 5, 300, 7), Region(15, 0, 1, 1)])
+@pytest.mark.parametrize("samples", [1, 64, 65536])
+def test_columns_cover_a_region_once_and_begin_with_tiles(region: Region, samples: int) -> None:
+    found = columns_of(region, samples)
+    columns = [column for x, _, width, _ in found for column in range(x, x + width)]
+    assert columns == list(range(region.x, region.x + region.width))
+    assert all(x % TILE == 0 for x, *_ in found[1:])
+    assert {band[1::2] for band in found} == {region[1::2]}
+    assert len(found) <= MOST_COLUMNS + 1
+
+
+def rows(count: int) -> Region:
+    return Region(0, 0, 40, count)
 
 
 def outcome(error: float, samples: float = 2.0, goal: float = 0.01) -> Outcome:
@@ -61,9 +75,9 @@ def outcome(error: float, samples: float = 2.0, goal: float = 0.01) -> Outcome:
 def test_the_error_of_the_whole_is_that_of_all_pixels_together() -> None:
     """Noise of a known size in each band, against the root of the mean square over the whole picture."""
     random = np.random.Generator(np.random.PCG64(1))
-    noises = [random.normal(0, error, (rows, 40)) for rows, error in ((64, 0.02), (64, 0.001), (17, 0.1))]
+    noises = [random.normal(0, error, (count, 40)) for count, error in ((64, 0.02), (64, 0.001), (17, 0.1))]
     errors = [float(np.sqrt((noise**2).mean())) for noise in noises]
-    together = whole([(len(noise), outcome(error)) for noise, error in zip(noises, errors, strict=True)])
+    together = whole([(rows(len(noise)), outcome(error)) for noise, error in zip(noises, errors, strict=True)])
     assert together
     assert isclose(together.error, np.sqrt((np.concatenate(noises) ** 2).mean()), rel_tol=1e-12)
     assert not isclose(together.error, sum(errors) / 3, rel_tol=0.05)  # a planted wrong mean
@@ -71,13 +85,13 @@ def test_the_error_of_the_whole_is_that_of_all_pixels_together() -> None:
 
 @given(st.lists(st.tuples(st.integers(1, 64), st.floats(0, 0.01)), min_size=1, max_size=9))
 def test_where_each_band_reaches_the_goal_the_whole_does(bands: list[tuple[int, float]]) -> None:
-    together = whole([(rows, outcome(error)) for rows, error in bands])
+    together = whole([(rows(count), outcome(error)) for count, error in bands])
     assert together
     assert together.error <= 0.01 * (1 + 1e-12)
 
 
 def test_samples_of_the_whole_are_a_mean_over_rows_and_a_band_without_outcome_leaves_none() -> None:
-    together = whole([(30, outcome(0.01, 2.0)), (10, outcome(0.01, 6.0))])
+    together = whole([(rows(30), outcome(0.01, 2.0)), (rows(10), outcome(0.01, 6.0))])
     assert together
     assert (together.samples, together.most, together.seconds) == (3.0, 24, 2.0)
-    assert whole([(30, outcome(0.01)), (10, None)]) is None
+    assert whole([(rows(30), outcome(0.01)), (rows(10), None)]) is None

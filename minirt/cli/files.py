@@ -1,14 +1,19 @@
-"""Scenes that the command line names: files, pictures that carry one, standard input and examples."""
+"""Files that the command line names: scenes, also in pictures, standard input and examples; and outputs."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from minirt.cli.arguments import DEMO, Arguments
 from minirt.cli.output import tell
+from minirt.errors import RenderError
+from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
+from minirt.helpers import file_io
 from minirt.helpers.progress import progress
 
 if TYPE_CHECKING:
@@ -16,6 +21,7 @@ if TYPE_CHECKING:
 
 DEMO_PICTURE = "miniRT-demo.png"  # of a program without arguments, where no window can be opened
 STANDARD_INPUT = "standard input"
+PLACE = "{name}"  # in an output, stands for the name of the scene's file without its extension
 
 
 def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
@@ -73,8 +79,6 @@ def choose_example(parser: Arguments, options: argparse.Namespace, arguments: Se
         options.example, options.fallback = DEMO, DEMO_PICTURE
     if not options.example:
         return
-    from pathlib import Path
-
     if options.scene:
         parser.error(f"--example shows a scene of its own, got {options.scene[0]}, too")
     names = (f"{options.example}{suffix}.rt" for suffix in ("", *(f"-{number}" for number in range(1, 1000))))
@@ -87,3 +91,48 @@ def read_example(options: argparse.Namespace) -> Scene:
 
     scene = example(options.example)
     return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene
+
+
+def output_for(scene: str, output: str) -> str:
+    """Return the output of a scene: `out/{name}.png` is `out/demo.png` for `scenes/demo.rt`."""
+    return output.replace(PLACE, "stdin" if scene == "-" else Path(scene).stem)
+
+
+def format_name(output: str) -> str:
+    """Return the name of the format of an output; RenderError for an unknown extension."""
+    return "PNG" if output == "-" else format_of(output)
+
+
+def is_film(options: argparse.Namespace) -> bool:
+    """Whether the output is one file of several pictures."""
+    return bool(
+        (options.turntable or options.replay) and options.output and FORMATS[format_name(options.output)].is_film
+    )
+
+
+def needs_light(options: argparse.Namespace, output: str) -> bool:
+    """Whether the file is made of linear light, and not of levels of 8 bits."""
+    return (options.bits or FORMATS[format_name(output)].bits[0]) != 8
+
+
+def check_format(options: argparse.Namespace) -> None:
+    """Check that the format of the output fits the other options; RenderError otherwise."""
+    for output in filter(None, (options.output, options.fallback)):
+        name = format_name(output)
+        if not (options.turntable or options.replay or FORMATS[name].is_still):
+            raise RenderError(f"{output}: a film needs --turntable or --replay, a picture is .png or .jpg")
+        check_bits(name, options.bits)
+        check_quality(name, options.quality)
+        if options.replay and needs_light(options, output):
+            raise RenderError(f"{output}: the frames of a replay have 8 bits a channel, try .png without --bits")
+
+
+def check_output(output: str, width: int, height: int) -> None:
+    """Check that a picture of this size can be written to a file; RenderError otherwise."""
+    if output == "-":
+        return
+    check_size(output, format_of(output), width, height)
+    try:
+        file_io.probe(output)
+    except OSError as error:
+        raise RenderError(f"{os.fspath(output)}: cannot write: {error.strerror or error}") from None

@@ -1,0 +1,123 @@
+"""Jobs: pictures, cut into bands that anyone may render with the same result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+import minirt
+from minirt.formats import tiff
+from minirt.image import Image, LinearImage
+from minirt.kernel.pixels import TILE
+from minirt.rendering.outcome import Outcome
+from minirt.rendering.packing.camera import Region
+from minirt.rendering.settings import RenderSettings
+from minirt.scene import Scene
+
+ROWS = 64  # of a band, where the next two leave the choice
+MOST_PIXELS = 2**21  # of a band, whose light takes 48 MiB; but at least one row of tiles
+LEAST_PIXELS = 2**15  # of a band: twice those from which on the estimated error of a picture is promised
+RAYS, MOST_COLUMNS = 2**21, 64  # rays of a band of columns, and bands; they are wider where there would be more of them
+
+
+class Band(NamedTuple):
+    """A picture, or a region of it, to be rendered by anyone."""
+
+    number: int  # in its job
+    scene: Scene
+    size: tuple[int, int]  # of the whole picture, in pixels
+    settings: RenderSettings  # their region is that of the band
+    bits: int | None = None  # of the strips of a TIFF file that are made of it, None for arrays
+
+    @property
+    def what(self) -> str:
+        """The name of the band in messages."""
+        region = self.settings.region
+        return f"rows {region.y} to {region.y + region.height - 1}" if region else "a picture"
+
+    @property
+    def region(self) -> Region:
+        """The rectangle of the picture that is rendered."""
+        return self.settings.region or Region(0, 0, *self.size)
+
+
+class Made(NamedTuple):
+    """What was made of a band."""
+
+    parts: tuple[np.ndarray | bytes, ...]  # levels, and light if asked for; or compressed strips of a TIFF file
+    reached: Outcome | None
+    not_finite: int = 0  # rays
+
+
+def render_band(band: Band) -> Made:
+    """Render a band in this process."""
+    image = minirt.rendered(band.scene, band.size, band.settings)
+    if band.bits:
+        return Made(tiff.strips(image.array if band.bits == 8 else image.deep), image.reached)
+    parts = (image.array,) if image.linear is None else (image.array, image.linear)
+    return Made(parts, image.reached, band.settings.renderer.not_finite)
+
+
+def image_of(made: Made, tone: str) -> Image:
+    """Return the picture of arrays."""
+    levels, *light = made.parts
+    assert isinstance(levels, np.ndarray)
+    if not light:
+        return Image(levels, None, made.reached, tone)
+    assert isinstance(light[0], np.ndarray)
+    return LinearImage(levels, light[0], made.reached, tone)
+
+
+def rows_of(region: Region) -> list[Region]:
+    """Divide a region of a picture into bands of whole rows of tiles, which depend on its size alone.
+
+    So does the estimated error of a picture that is made of bands, whoever renders them.
+    """
+    x, y, width, height = region
+    rows = min(max(ROWS, LEAST_PIXELS // width), max(TILE, MOST_PIXELS // width))
+    tiles = -(-height // TILE)
+    count = max(1, round(height / rows))
+    ends = [min(height, TILE * (tiles * number // count)) for number in range(count + 1)]
+    return [Region(x, y + first, width, end - first) for first, end in pairwise(ends) if end > first]
+
+
+def columns_of(region: Region, samples: int) -> list[Region]:
+    """Divide a region of a picture into bands of columns of tiles, one beside the other, of about `RAYS` rays.
+
+    They are as high as the region, so that the threads of a process share as many rows of tiles.
+    """
+    x, y, width, height = region
+    rays = max(RAYS, width * height * samples // MOST_COLUMNS)
+    step = max(rays // (height * samples) // TILE, 1) * TILE
+    edges = [x, *range(x // TILE * TILE + step, x + width, step), x + width]
+    return [Region(left, y, right - left, height) for left, right in pairwise(edges)]
+
+
+def whole(parts: Sequence[tuple[Region, Outcome | None]]) -> Outcome | None:
+    """Return the outcome of a picture that consists of bands, None where one of them has none.
+
+    The square of an error is a mean over pixels: that of the whole is the mean of the squares of its bands. Where each
+    of them is at most the goal the whole is, too. Seconds are those of all workers together.
+    """
+    known = [(region.width * region.height, each) for region, each in parts if each is not None]
+    if not known or len(known) < len(parts):
+        return None
+    pixels = sum(count for count, _ in known)
+    outcomes = [each for _, each in known]
+
+    def mean(values: list[float]) -> float:
+        return sum(count * value for (count, _), value in zip(known, values, strict=True)) / pixels
+
+    return Outcome(
+        samples=mean([each.samples for each in outcomes]),
+        most=max(each.most for each in outcomes),
+        error=sqrt(mean([each.error**2 for each in outcomes])),
+        seconds=sum(each.seconds for each in outcomes),
+        goal=outcomes[0].goal,
+        rounded=any(each.rounded for each in outcomes) and not all(each.is_reached for each in outcomes),
+        rounding=sqrt(mean([each.rounding**2 for each in outcomes])),
+    )
