@@ -65,7 +65,7 @@ SLOW = (
     "tests/test_environment.py",
     "tests/test_example_scenes.py",
     "tests/test_faulty_writes.py",
-    "tests/test_fork_safety.py",
+    "tests/helpers/test_fork_safety.py",
     "tests/test_goldens.py",
     "tests/test_imports.py",
     "tests/test_killed_writers.py",

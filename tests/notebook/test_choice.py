@@ -11,7 +11,6 @@ import minirt
 from minirt.mlx import Mlx
 from minirt.mlx.backend import Backend
 from minirt.mlx.memory import Memory
-from minirt.notebook import choice
 from tests.notebook.requirements import require
 
 
@@ -77,7 +76,7 @@ def test_a_failure_of_the_session_ends_the_viewer_and_is_told(
 
 def test_a_notebook_without_a_screen_gets_the_widget(scene: minirt.Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     require("anywidget")
-    monkeypatch.setattr(choice, "in_notebook", lambda: True)
+    monkeypatch.setattr("minirt.notebook.in_notebook", lambda: True)
     viewer = minirt.view(scene, (64, 48), mlx=Mlx(NoScreen()))
     try:
         assert (viewer.width, viewer.height, viewer.scene) == (64, 48, scene)
