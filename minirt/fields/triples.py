@@ -69,11 +69,24 @@ class Three(Field):
         part = next(part for part, component in enumerate(value) if not low <= component <= high)
         raise FieldError(f"{self.names[2 * part]} must be in {self.range}, got {spelled(value[part])}", part)
 
+    def check(self, value: Triple) -> Triple:
+        self.within(value, -FARTHEST, FARTHEST)
+        x, y, z = value
+        return float(x), float(y), float(z)
+
     def repair(self, text: str) -> Repair | None:
         head, _, tail = text.rpartition(",")
         if text.count(",") != 3 or not reads(number, tail):
             return None
         return Repair(head, "drops the fourth component")
+
+    @property
+    def notation(self) -> str:
+        return self.names
+
+    @property
+    def range(self) -> str:
+        return f"[-{FARTHEST:g}, {FARTHEST:g}]"
 
 
 @record(kw_only=True)
@@ -81,19 +94,6 @@ class Point(Three):
     """A point in the scene."""
 
     unit: str = "scene unit"
-
-    def check(self, value: Triple) -> Triple:
-        self.within(value, -FARTHEST, FARTHEST)
-        x, y, z = value
-        return float(x), float(y), float(z)
-
-    @property
-    def notation(self) -> str:
-        return "x,y,z"
-
-    @property
-    def range(self) -> str:
-        return f"[-{FARTHEST:g}, {FARTHEST:g}]"
 
 
 @record(kw_only=True)
@@ -104,12 +104,11 @@ class Lengths(Three):
     step: float = 1.05
 
     def check(self, value: Triple) -> Triple:
-        self.within(value, -FARTHEST, FARTHEST)
+        checked = super().check(value)
         part = next((part for part, size in enumerate(value) if not size > 0), None)
         if part is not None:
             raise FieldError(f"{self.names[2 * part]} must be > 0, got {spelled(value[part])}", part)
-        x, y, z = value
-        return float(x), float(y), float(z)
+        return checked
 
     def nudge(self, value: Triple, steps: float) -> Triple:
         factor = self.step ** clamp(steps, -10_000, 10_000)
@@ -117,10 +116,6 @@ class Lengths(Three):
         factor = clamp(factor, min(1.0, LEAST_LENGTH / least), max(1.0, FARTHEST / greatest))
         x, y, z = (min(size * factor, FARTHEST) for size in value)
         return x, y, z
-
-    @property
-    def notation(self) -> str:
-        return self.names
 
     @property
     def range(self) -> str:
@@ -162,10 +157,6 @@ class Colour(Three):
     def nudge(self, value: Triple, steps: float) -> tuple[int, int, int]:
         red, green, blue = (int(clamp(round(component + steps * self.step), 0, 255)) for component in value)
         return red, green, blue
-
-    @property
-    def notation(self) -> str:
-        return self.names
 
     @property
     def range(self) -> str:
