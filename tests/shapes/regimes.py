@@ -82,27 +82,6 @@ def aimed(
     return Rays(shapes, origins, unit(targets - origins))
 
 
-def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count: int = 25) -> Rays:
-    """Rays from inside the shape, in all directions."""
-    random = np.random.default_rng(seed)
-    shapes = [make(random, size, offset) for _ in range(count)]
-    centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    origins = centres + size * random.uniform(-0.14, 0.14, (count, RAYS, 3))
-    return Rays(shapes, origins, random_directions(random, count, RAYS))
-
-
-def tangent(seed: int, count: int = 25) -> Rays:
-    """Rays past the edge of a sphere, 1e-16 to 1e-4 of its radius inside or outside."""
-    random = np.random.default_rng(seed)
-    shapes = [sphere(random, 1.0, 0.0) for _ in range(count)]
-    aside, sign = random_directions(random, count, RAYS), random.choice([-1.0, 1.0], (count, RAYS, 1))
-    centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    radii = np.array([shape.diameter / 2 for shape in shapes])[:, None, None]
-    touch = centres + radii * (1 + sign * log_uniform(random, 1e-16, 1e-4, count, RAYS, 1)) * aside
-    directions = random_perpendiculars(random, aside, count, RAYS)
-    return Rays(shapes, touch - random.uniform(3, 20, (count, RAYS, 1)) * directions, directions)
-
-
 def just_above(seed: int, height: float, count: int = 25) -> Rays:
     """Rays from a height above a sphere of diameter 1e9, downwards at a slope of a tenth or more."""
     random = np.random.default_rng(seed)
