@@ -32,6 +32,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.image import Image as Image
     from minirt.image import LinearImage as LinearImage
     from minirt.materials import *  # noqa: F403
+    from minirt.movie import save_movie as save_movie
     from minirt.notebook import view as view
     from minirt.rendering import Renderer as Renderer
     from minirt.rendering.buffers import Buffers as Buffers
@@ -40,7 +41,6 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace
     from minirt.rendering.settings import RenderSettings
-    from minirt.saved_movie import save_movie as save_movie
     from minirt.scene import Ambient as Ambient
     from minirt.scene import Background as Background
     from minirt.scene import Camera as Camera
@@ -74,7 +74,7 @@ MODULES = {
     "minirt.rendering": ("Renderer",),
     "minirt.rendering.buffers": ("Buffers", "buffers"),
     "minirt.rendering.queries.rays": ("Hits", "camera_rays", "trace"),
-    "minirt.saved_movie": ("save_movie",),
+    "minirt.movie": ("save_movie",),
     "minirt.scene": (*("Ambient", "Background", "Camera", "Lamp", "Resolution", "Scene", "dumps", "loads"),),
     "minirt.shapes": ("Shape",),
 }

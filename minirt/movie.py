@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable, Iterable
+from base64 import b64encode
+from collections.abc import Callable, Iterable, Iterator, Sized
 from functools import partial
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, check_quality, format_of
 from minirt.helpers import file_io
+from minirt.helpers.progress import State, in_notebooks
 
 if TYPE_CHECKING:
     from minirt.formats.films import Film
@@ -20,22 +23,53 @@ if TYPE_CHECKING:
 Recording: TypeAlias = Callable[[Callable[["Image"], None]], object]  # gives pictures to a function
 
 FPS = 25.0  # frames per second
+INLINE = 32 * 2**20  # bytes of the largest film that a notebook shows: it becomes a part of the notebook
+PICTURES = {".gif": "gif", ".webp": "webp", ".apng": "png"}  # films that browsers take for pictures
+VIDEOS = (".mp4", ".webm")
+
+
+class SavedMovie(list[Path]):
+    """The files of a film. A notebook plays a film of one file, of at most 32 MiB, below the cell."""
+
+    def _repr_html_(self) -> str | None:
+        """Return the film as HTML; None, for its names alone, where a notebook cannot play it."""
+        (path, *others) = self
+        suffix = path.suffix.lower()
+        if others or suffix not in (*PICTURES, *VIDEOS) or path.stat().st_size > INLINE:
+            return None
+        data = b64encode(path.read_bytes()).decode()
+        if suffix in PICTURES:
+            return f'<img alt="{escape(path.name)}" src="data:image/{PICTURES[suffix]};base64,{data}">'
+        return f'<video controls autoplay loop muted src="data:video/{suffix[1:]};base64,{data}"></video>'
 
 
 def save_movie(
     pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS, *, quality: int | None = None
-) -> list[Path]:
-    """Write a film of `fps` pictures per second; return its files.
+) -> SavedMovie:
+    """Write a film of `fps` pictures per second; return its files, as a list that notebooks play.
 
     A path that ends in .gif, .webp, .apng, .mp4 or .webm gives one file, written as a whole or not at all; the first
     three loop for ever, the last two need PyAV. Any other path, such as spin.png, gives a file for each picture:
     spin-0001.png, spin-0002.png, ... `quality`, from 1 to 100, is for lossy formats. RenderError without pictures, with
     pictures of different sizes in one file, or when a file cannot be written.
     """
-    if not FORMATS[format_of(path)].is_film:
+    total = len(pictures) if isinstance(pictures, Sized) else None
+    number = 0  # of pictures that are in the film
+
+    def counted() -> Iterator[Image]:
+        nonlocal number
+        for picture in pictures:
+            yield picture
+            number += 1
+
+    def state() -> State:
+        return State(f"picture {number + 1}" + (f" of {total}" if total else ""), number / total if total else None)
+
+    with in_notebooks(state):
+        if FORMATS[format_of(path)].is_film:
+            return SavedMovie([record_movie(partial(each_of, counted()), path, fps, quality=quality)])
         check_quality(format_of(path), quality)
-        return save_numbered(pictures, Path(path), quality)
-    return [record_movie(partial(each_of, pictures), path, fps, quality=quality)]
+        return SavedMovie(save_numbered(counted(), Path(path), quality))
 
 
 def record_movie(

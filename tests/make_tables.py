@@ -19,7 +19,7 @@ from tests.paths import ROOT, SCENES
 from tests.test_imports import MAY
 
 # Left out of the diagram, as small.
-HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "saved_movie", "example_scenes", "__main__"}
+HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "example_scenes", "__main__"}
 PLACE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 INDEX_TEXT = re.compile(r"^(text = '''\n).*?^(''')$", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"^\| !\[.*?\]\((.*?)\) \| .*?<br>`miniRT (\S+)(.*)$", re.MULTILINE)

@@ -44,7 +44,6 @@ MAY: dict[str, set[str]] = {
         "scene",
     },
     "movie": {"errors", "helpers", "image", "formats"},
-    "saved_movie": {"image", "movie", "helpers"},
     "mlx": {"errors", "formats"},
     "viewer": {
         "errors",
