@@ -135,7 +135,8 @@ def check_size(path: Path, width: int, height: int) -> None:
         raise FileError(path, f"has {width}x{height} pixels, more than {SIDE}x{SIDE}")
     if not width or not height:
         raise FileError(path, f"has {width}x{height} pixels")
-    system.check_picture(height, width, DECODING)
+    need = DECODING * width * height
+    system.check_memory(need, f"a picture of {width}x{height} pixels needs", "smaller pictures need less")
 
 
 def decode(path: Path) -> np.ndarray:

@@ -51,10 +51,8 @@ def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray) -> n
             normal = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
             axes, turned = seen_along(normal[None])
             x, y = seen(polygon, np.repeat(axes, len(polygon)), np.repeat(turned, len(polygon)))
-            try:
-                ears = cut_polygon(x, y, effort)
-            except TooComplexError:
-                raise FaceError(face) from None
+            effort.face = face
+            ears = cut_polygon(x, y, effort)
             if ears is not None:
                 start = first[face] - 2 * face
                 triangles[start : start + len(ears)] = first[face] + ears
@@ -124,28 +122,24 @@ def is_left(x: np.ndarray, y: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.nd
     return certain
 
 
-class TooComplexError(Exception):
-    """A polygon that takes too long to cut."""
-
-
 class Effort:
-    """Looks at corners that are left for the faces of a file."""
+    """Looks at corners that are left for the faces of a file, and the face that is cut."""
 
     def __init__(self) -> None:
-        self.left = MOST_LOOKS
+        self.left, self.face = MOST_LOOKS, 0
 
     def spend(self, looks: int) -> None:
-        """Count looks at corners; TooComplexError when none are left."""
+        """Count looks at corners; FaceError when none are left."""
         self.left -= looks
         if self.left < 0:
-            raise TooComplexError
+            raise FaceError(self.face)
 
 
 def cut_polygon(x: np.ndarray, y: np.ndarray, effort: Effort) -> np.ndarray | None:
     """Cut a polygon that goes round counter-clockwise into triangles: indices of their corners, (n - 2, 3).
 
     None where a fan around the first corner covers the polygon, and where a polygon that crosses itself leaves no ear.
-    TooComplexError.
+    FaceError.
     """
     return None if is_covered_by_fan(list(zip(x.tolist(), y.tolist(), strict=True))) else Polygon(x, y, effort).cut()
 
