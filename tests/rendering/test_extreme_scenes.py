@@ -22,8 +22,6 @@ from minirt.report.stiffness import lost_in_single
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import ALL_KINDS, Shape
 from minirt.shapes.mesh import Mesh
-from minirt.shapes.paraboloid import Paraboloid
-from minirt.shapes.shape import Bounds, bounds_of_disc, disc_extents, point_along, union_of_bounds
 from tests.kernel.pictures import LAMP
 from tests.scene.strategies import SCENES, values
 from tests.shapes.examples import example
@@ -121,11 +119,3 @@ def test_lengths_may_be_as_small_and_as_large_as_the_reader_allows(kind: type[Sh
                 **aslant, **{field.name: length for field, length in zip(fields, lengths, strict=True)}
             )
             pack(Scene((camera, LAMP, shape)))
-
-
-def dividing_bounds(self: Paraboloid) -> Bounds:
-    """A formula for `Paraboloid.bounds` that divides by a height that may be 0."""
-    rim = bounds_of_disc(point_along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
-    for w, s in zip(self.axis, disc_extents(self.axis), strict=True):
-        assert not w or self.diameter / 2 * s / (2 * self.height * abs(w)) >= 0
-    return union_of_bounds((self.vertex, self.vertex), rim)
