@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, fabs, maximum, unit_roundoff
+from minirt.lanes import Mask, Number, Vec, fabs, unit_roundoff
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -50,7 +50,7 @@ def intersect(gate: PackedGate, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     t = -f.z / direction.z
     p = f + t * direction
     crosses = fabs(direction.z) > 4 * unit_roundoff(t)
-    return crosses & (t > 0.0) & (maximum(fabs(p.x), fabs(p.y)) <= gate.half), t
+    return crosses & (t > 0.0) & (fabs(p.x) <= gate.half) & (fabs(p.y) <= gate.half), t
 
 
 def surface(gate: PackedGate, point: Vec) -> tuple[Vec, Vec]:
