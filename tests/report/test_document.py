@@ -23,6 +23,12 @@ BLACK = np.zeros((2, 2, 3))
 README = (PACKAGE / "report" / "README.md").read_text(encoding="utf-8")
 
 
+@pytest.fixture(autouse=True)
+def no_diagram(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave the diagram, which takes a second, to the tests that look at it."""
+    monkeypatch.setattr("minirt.report.document.draw", lambda found, size: "<svg/>")
+
+
 def lines(found: Findings) -> list[str]:
     return document(found, []).as_markdown().splitlines()
 

@@ -113,7 +113,7 @@ def test_knobs_do_what_they_say(clock: Clock) -> None:
     stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
     stage.renderer(Setting(knob, 16))
     before = clock.packets
-    stage.light(Setting(knob, 16))
+    stage.draw(Setting(knob, 16))
     once = packets(WIDTH, HEIGHT)
     assert 2 * once < clock.packets - before < 8 * once  # of 17, if all of the picture were done again
     assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET_SECONDS * 1e3 * PROCESSOR_SHARE)
