@@ -42,6 +42,8 @@ SLOW = (
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",
     "tests/newcomer/",
+    "tests/rendering/packing/test_planes.py",
+    "tests/rendering/packing/test_visibility.py",
     "tests/rendering/test_tone_mapping.py",
     "tests/rendering/packing/test_generic_kernels.py",
     "tests/rendering/queries/",
