@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Sized
@@ -109,16 +108,6 @@ def save_numbered(pictures: Iterable[Image], target: Path, quality: int | None =
 def numbered(target: Path, number: int) -> Path:
     """Return the path of a picture of a film."""
     return target.with_name(f"{target.stem}-{number:04}{target.suffix}")
-
-
-def encode_film(pictures: Iterable[Image], name: str, fps: float, quality: int | None = None) -> bytes:
-    """Return the bytes of a film; RenderError without pictures, or when the format cannot hold them."""
-    buffer = io.BytesIO()
-    try:
-        write_film(partial(each_of, pictures), buffer, name, fps, quality)
-    except OSError as error:
-        raise RenderError(f"cannot write this film as {name}: {error}") from None
-    return buffer.getvalue()
 
 
 def write_film(record: Recording, out: BinaryIO, name: str, fps: float, quality: int | None = None) -> None:

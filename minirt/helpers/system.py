@@ -9,7 +9,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
@@ -200,11 +200,6 @@ def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
         work()
         times.append(Run(perf_counter() - wall, process_time() - cpu))
     return times
-
-
-def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
-    """Time so many runs of each work. The works take turns, so that other load on the machine slows them all alike."""
-    return [*zip(*([runs(work, 1, 0.0)[0] for work in works] for _ in range(times)), strict=True)]
 
 
 def is_disturbed(run: Run, threads: int) -> bool:

@@ -15,7 +15,7 @@ import minirt
 from minirt.cli import main
 from minirt.cli.arguments import memory_size
 from minirt.helpers import system
-from minirt.helpers.system import Run, in_turn, is_disturbed, runs
+from minirt.helpers.system import Run, is_disturbed, runs
 from minirt.rendering.packing.materials import Reader
 from tests.cli.program import SCENE
 
@@ -164,13 +164,6 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 def test_the_least_number_of_runs_is_made() -> None:
     done: list[int] = []
     assert len(runs(lambda: done.append(0), 7, 0.0)) == len(done) == 7
-
-
-def test_works_take_turns() -> None:
-    done: list[int] = []
-    times = in_turn([partial(done.append, 0), partial(done.append, 1)], 3)
-    assert [len(each) for each in times] == [3, 3]
-    assert done == [0, 1] * 3
 
 
 def test_further_runs_fill_the_time(machine: Machine) -> None:
