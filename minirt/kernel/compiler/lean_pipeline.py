@@ -93,8 +93,7 @@ def passes(none_checks: type) -> PassManager:
 
 def machine_code(entry: Any) -> bytes:
     """Return the object code of a C function that `numba.cfunc` has compiled."""
-    code: bytes = entry._library._get_compiled_object()
-    return code
+    return entry._library._get_compiled_object()
 
 
 # What is used above and was not imported; nothing is compiled.

@@ -69,8 +69,7 @@ def signature_of(value: Any) -> Signature:
 def tuple_class(signature: Signature) -> type[tuple[Any, ...]]:
     """Return the class of a tuple, by its signature."""
     module, name = signature["tuple"].split(":")
-    found: type[tuple[Any, ...]] = getattr(import_module(module), name)
-    return found
+    return getattr(import_module(module), name)
 
 
 def dtype_of(signature: Signature) -> np.dtype[Any]:
