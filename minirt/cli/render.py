@@ -50,10 +50,13 @@ def render_output(scene: Scene, options: argparse.Namespace) -> int:
 @contextmanager
 def workers(options: argparse.Namespace) -> Iterator[Any]:
     """Connect to the workers that the options name, None for this process; RenderError when that fails."""
-    if options.cluster in (None, "local"):
+    if not options.cluster:
+        yield None
+        return
+    if options.cluster == "local":
         from minirt.cluster.executor import local_pool
 
-        yield local_pool if options.cluster else None
+        yield local_pool
         return
     import logging
 
@@ -358,17 +361,9 @@ class Film:
 
 def settings_for(options: argparse.Namespace, output: str) -> RenderSettings:
     """Return the settings of a picture that goes to an output."""
-    return RenderSettings(
-        samples=options.samples or SAMPLES,
-        error=options.error,
-        time=options.time,
-        threads=options.threads,
-        precision=options.precision,
-        depth=options.depth,
-        linear=needs_light(options, output),
-        dither=options.dither,
-        region=options.region,
-    )
+    names = "error", "time", "threads", "precision", "depth", "dither", "region"
+    given = {name: getattr(options, name) for name in names}
+    return RenderSettings(options.samples or SAMPLES, linear=needs_light(options, output), **given)
 
 
 def is_streamed(scene: Scene, options: argparse.Namespace) -> bool:
