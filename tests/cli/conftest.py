@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from minirt import cli
-from tests.cli.program import SCENE, Result
+from tests.cli.program import SCENE, Result, Run
 
 
 @pytest.fixture
@@ -20,7 +19,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def run(folder: Path, capsysbinary: pytest.CaptureFixture[bytes]) -> Callable[..., Result]:
+def run(folder: Path, capsysbinary: pytest.CaptureFixture[bytes]) -> Run:
     """A function that calls the program with arguments."""
 
     def call(*arguments: str) -> Result:

@@ -6,10 +6,10 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from tests.paths import ROOT
 from tests.processes import run, started
@@ -32,6 +32,9 @@ class Result(NamedTuple):
     status: int
     out: bytes
     err: str
+
+
+Run: TypeAlias = Callable[..., Result]  # calls the program in this process with arguments
 
 
 def environment() -> dict[str, str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +13,9 @@ import minirt
 from minirt.cli import arguments
 from minirt.kernel.shading import whitted
 from minirt.rendering.packing import features
-from tests.cli.program import SCENE, Result
+from tests.cli.program import SCENE, Result, Run
 from tests.paths import ROOT
 from tests.simulated_clock import PACKET_SECONDS, packets, simulate_clock
-
-Run = Callable[..., Result]
 
 BAD_ARGUMENTS = [
     ["--nonsense"],

@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +14,12 @@ import pytest
 import tifffile
 
 import minirt
-from tests.cli.program import Result, environment, program, start
+from tests.cli.program import Run, environment, program, start
 from tests.lines import next_line
 from tests.processes import is_running, started
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT, until
 
-Run = Callable[..., Result]
 LOCAL = ("--cluster", "local")
 
 

@@ -1,8 +1,8 @@
-"""The program writes light, 16 bits and films, and refuses what a format cannot hold before the work."""
+"""The program writes light, 16 bits, films and regions, and refuses what a format cannot hold before the work."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +11,11 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.rendering import Renderer
-from tests.cli.program import SCENE, Result
+from tests.cli.announcing import RENDERING
+from tests.cli.program import ANNOUNCING, SCENE, Run, interrupt, start
+from tests.terminals import terminal
+from tests.waiting import until
 
-Run = Callable[..., Result]
 SIZE = ("--size", "40x30")
 
 
@@ -94,7 +96,7 @@ def test_a_planted_render_is_found(run: Run, no_work: None) -> None:
         run("ball.rt", "-o", "x.png")
 
 
-@pytest.mark.parametrize(("name", "frames"), [("x.webp", 3), ("x.apng", 3), ("x.mp4", 3)])
+@pytest.mark.parametrize(("name", "frames"), [("x.GIF", 3), ("x.webp", 3), ("x.apng", 3), ("x.mp4", 3)])
 def test_a_turntable_is_a_film(run: Run, folder: Path, name: str, frames: int) -> None:
     if name.endswith(".mp4"):
         av = pytest.importorskip("av")
@@ -149,3 +151,105 @@ def test_several_scenes_are_rendered_by_one_process(run: Run, folder: Path) -> N
     assert (ended.status, ended.out) == (1, b"ball.rt: no errors, 2 shapes, 1 lights\n")
     ended = run("ball.rt", "sub/../ball.rt", "-o", "out/{name}.png")
     assert (ended.status, ended.err) == (2, "Error\ntwo scenes would be written to out/ball.png\n")
+
+
+def test_a_turntable_begins_with_the_view_of_the_scene(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "--turntable", "3", "-o", "spin.png", "--size", "32x18") == (0, b"", "")
+    names = ["spin-0001.png", "spin-0002.png", "spin-0003.png"]
+    assert sorted(file.name for file in folder.glob("spin*")) == names
+    first, second, _ = (np.asarray(pillow.open(folder / name)) for name in names)
+    assert np.array_equal(first, minirt.render(minirt.load(folder / "ball.rt"), 32, 18).array)
+    assert not np.array_equal(first, second)
+
+
+@pytest.mark.parametrize("wrong", [("--turntable", "3"), ("--turntable", "3", "-o", "-"), ("--turntable", "0")])
+def test_a_turntable_needs_a_number_and_a_file(run: Run, wrong: tuple[str, ...]) -> None:
+    ended = run("ball.rt", *wrong)
+    assert (ended.status, ended.out) == (2, b"")
+    assert "--turntable" in ended.err
+
+
+@pytest.mark.parametrize("name", ["spin.gif", "spin.png"])
+def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
+    """The interrupt comes in the third of many pictures."""
+    arguments = "ball.rt", "-o", name, "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
+    with terminal() as screen, start(folder, *arguments, command=ANNOUNCING, stderr=screen.end) as process:
+        screen.leave()
+        until(lambda: re.search(rb"picture ([3-9]|\d\d+) of 3600", screen.read()), "the third picture")
+        screen.wait_for(RENDERING)
+        assert interrupt(process, screen) == (130, b"")
+    assert b"Traceback" not in screen.text
+    assert b"--threads 1 --resume goes on" in screen.text
+    assert (folder / f".{name}.journal").exists()
+    written = [file for file in folder.iterdir() if file.name not in ("ball.rt", f".{name}.journal")]
+    assert {file.name for file in written} >= ({"spin-0001.png", "spin-0002.png"} if name == "spin.png" else set())
+    assert all(file.name.startswith("spin-") for file in written)
+    assert bool(written) == (name == "spin.png")
+    for file in written:
+        with pillow.open(file) as movie:
+            movie.load()
+
+
+REGION = ("--region", "21,8,30,17")
+INSIDE = slice(8, 25), slice(21, 51)
+
+
+def pixels(folder: Path, name: str) -> np.ndarray:
+    """The pixels of a picture in a folder."""
+    with pillow.open(folder / name) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [(), ("--samples", "3", "--tone", "filmic"), ("--dither",), ("--bits", "16")],
+    ids=" ".join,
+)
+def test_a_region_has_the_pixels_of_the_whole_picture(run: Run, folder: Path, options: tuple[str, ...]) -> None:
+    for name, more in (("whole.png", ()), ("part.png", REGION)):
+        assert run("ball.rt", "--size", "64x48", "-o", name, *options, *more) == (0, b"", "")
+    assert np.array_equal(pixels(folder, "part.png"), pixels(folder, "whole.png")[INSIDE])
+    assert not np.array_equal(pixels(folder, "part.png"), pixels(folder, "whole.png")[:17, :30])
+
+
+def test_a_film_has_a_region_of_each_frame(run: Run, folder: Path) -> None:
+    for name, more in (("whole.png", ()), ("part.png", REGION)):
+        assert run("ball.rt", "--size", "64x48", "--turntable", "2", "-o", name, *more).status == 0
+    for number in ("0001", "0002"):
+        assert np.array_equal(pixels(folder, f"part-{number}.png"), pixels(folder, f"whole-{number}.png")[INSIDE])
+
+
+def test_a_picture_of_a_region_carries_it(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "--size", "64x48", "-o", "part.png", *REGION).status == 0
+    assert run("part.png", "-o", "again.png").status == 0
+    assert (folder / "again.png").read_bytes() == (folder / "part.png").read_bytes()
+    assert run("part.png", "--size", "32x24", "-o", "small.png").status == 0  # in which the region does not lie
+    assert pixels(folder, "small.png").shape == (24, 32, 3)
+    assert run("part.png", "--region", "0,0,5,6", "-o", "other.png").status == 0
+    assert pixels(folder, "other.png").shape == (6, 5, 3)
+
+
+def test_a_region_is_what_a_format_must_hold(run: Run, folder: Path) -> None:
+    huge = "--size", "16384x16384"
+    assert run("ball.rt", *huge, "--region", "16000,16000,40,30", "-o", "part.webp").status == 0
+    assert pixels(folder, "part.webp").shape == (30, 40, 3)
+    assert "16,383 pixels a side" in run("ball.rt", *huge, "--region", "0,0,16384,1", "-o", "part.webp").err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "message"),
+    [
+        (("--region", "60,0,5,1", "-o", "x.png"), 1, "region 60,0,5,1 does not lie in the picture of 64x48 pixels"),
+        (("--region", "1,2,3", "-o", "x.png"), 2, "argument --region: must be X,Y,WIDTH,HEIGHT, like 320,0,640,480"),
+        (("--region", "0,0,0,5", "-o", "x.png"), 2, "argument --region: must be a whole number from 1 to 16384"),
+        (("--region", "0,0,5,5"), 2, "--region needs -o"),
+        (("--region", "0,0,5,5", "--replay", "x", "-o", "x.gif"), 2, "--region needs -o, and no --replay"),
+    ],
+)
+def test_wrong_regions_are_refused(
+    run: Run, folder: Path, arguments: tuple[str, ...], status: int, message: str
+) -> None:
+    ended = run("ball.rt", "--size", "64x48", *arguments)
+    assert (ended.status, ended.out) == (status, b"")
+    assert message in ended.err
+    assert not (folder / "x.png").exists()

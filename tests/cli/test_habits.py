@@ -11,11 +11,8 @@ import pytest
 from minirt.cli.arguments import argument_parser
 from minirt.cli.options import completion
 from tests import processes
-from tests.cli.program import Result
+from tests.cli.program import Run
 from tests.cli.test_output import pixels
-
-Run = Callable[..., Result]
-
 
 NAMING = (  # options that name a file, and as they are told
     ("-o", "-o/--output"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import os
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +14,7 @@ from PIL import Image
 import minirt
 from minirt.cli import main
 from minirt.helpers import file_io
-from tests.cli.program import SCENE, Result
-
-Run = Callable[..., Result]
+from tests.cli.program import SCENE, Run
 
 
 def pixels(data: bytes | Path) -> np.ndarray:
@@ -65,12 +62,6 @@ def test_an_output_that_is_a_folder_is_an_error(run: Run, folder: Path) -> None:
     assert (ended.status, ended.err.split("\n")[0]) == (1, "Error")
 
 
-def test_an_existing_file_is_replaced_as_a_whole(run: Run, folder: Path) -> None:
-    (folder / "x.png").write_bytes(b"old")
-    assert run("ball.rt", "-o", "x.png", "--size", "8x6").status == 0
-    assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6))
-
-
 def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "x.png").write_bytes(b"old")
 
@@ -82,13 +73,6 @@ def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monke
     assert ended == (1, b"", "Error\nx.png: cannot write: No space left on device\n")
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
-
-
-def test_an_existing_file_stays_when_the_scene_is_wrong(run: Run, folder: Path) -> None:
-    (folder / "x.png").write_bytes(b"old")
-    (folder / "bad.rt").write_text("nonsense")
-    assert run("bad.rt", "-o", "x.png").status == 1
-    assert (folder / "x.png").read_bytes() == b"old"
 
 
 def test_standard_output_gets_a_png(run: Run) -> None:
@@ -217,11 +201,6 @@ def test_a_notice_names_shapes_that_single_precision_cannot_show(run: Run, folde
         notices = [line for line in ended.err.splitlines() if line.startswith("notice: single precision cannot show ")]
         assert len(notices) == count
         assert all("show sphere 1: the eye is close to it for its size (size 1e+09, " in line for line in notices)
-
-
-def test_threads_do_not_change_the_picture(run: Run) -> None:
-    one, three = (run("ball.rt", "-o", "-", "--size", "50x40", "--threads", n).out for n in "13")
-    assert one == three
 
 
 def test_without_a_display_the_fallback_file_is_rendered(

@@ -21,7 +21,7 @@ HEAVY = {"numba", "llvmlite", "pyglet", "PIL", "minirt.mlx", "minirt.viewer"}
 OTHER_WORK = {"PIL", "minirt.movie", "minirt.report", "minirt.meshes.obj"}  # other formats, reports, meshes
 OTHER_WORK |= {"minirt.materials.radiance", "minirt.formats.xpm"}  # textures
 OTHER_WORK |= {"minirt.rendering.culling.hidden_planes"}  # thousands of planes
-OTHER_WORK |= {"minirt.rendering.queries.pick", "minirt.rendering.queries.preview"}  # clicks, coarse pictures
+OTHER_WORK |= {"minirt.rendering.queries.pick"}  # clicks
 FOR_MISTAKES = {"difflib", "logging", "subprocess"}  # needed to report a mistake, or to compile
 CRYPTOGRAPHY = {"secrets", "hashlib"}
 RENDER = "from minirt.cli import main\nassert main(['ball.rt', '-o', '{}', '--size', '8x8']) == 0"
@@ -134,7 +134,7 @@ def test_an_interrupt_ends_a_long_render_without_a_trace(folder: Path) -> None:
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 
 
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGKILL"])
 def test_a_signal_ends_a_long_render_with_its_status_and_without_a_trace(folder: Path, name: str) -> None:
     number = getattr(signal, name, None) or pytest.skip(f"{name} is of Unix")
     (folder / "x.png").write_bytes(b"old")
@@ -143,7 +143,8 @@ def test_a_signal_ends_a_long_render_with_its_status_and_without_a_trace(folder:
         assert next_line(process, errors=True) == RENDERING.decode()
         process.send_signal(number)
         out, err = process.communicate(timeout=HANG_LIMIT)
-    assert (process.returncode, out, err) == (128 + number, b"", b"")
+    status = 128 + number if name != "SIGKILL" else -number
+    assert (process.returncode, out, err) == (status, b"", b"")
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -18,9 +17,8 @@ from minirt.cluster import job, journal
 from minirt.cluster.job import Made
 from minirt.cluster.journal import Journal
 from tests import processes
-from tests.cli.program import SCENE, Result, environment
+from tests.cli.program import SCENE, Run, environment
 
-Run = Callable[..., Result]
 STILL = ("ball.rt", "--size", "150x40", "--samples", "4", "-o", "x.png")
 FILM = ("ball.rt", "--size", "40x30", "--turntable", "5", "-o", "x.gif")
 NUMBERED = (*FILM[:-1], "x.png")

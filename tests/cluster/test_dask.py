@@ -16,7 +16,6 @@ import tifffile
 import minirt
 from minirt.cli import main
 from minirt.cluster.worker import share_of_cores
-from minirt.viewer.app.replay import turntable
 from tests.cluster.scenes import BALL, with_files
 
 distributed = pytest.importorskip("distributed")
@@ -46,12 +45,6 @@ def test_bands_are_those_of_one_machine_though_a_worker_is_killed(client: Any, t
         picture = minirt.render(scene, 300, 500, samples=4)
         assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture.array)
         (tmp_path / "a.tif").unlink()
-
-
-def test_frames_are_those_of_one_machine(client: Any) -> None:
-    views = list(turntable(BALL, 6))
-    for view, image in zip(views, minirt.render_all(views, 64, 48, executor=client), strict=True):
-        assert np.array_equal(image.array, minirt.render(view, 64, 48).array)
 
 
 def test_a_worker_uses_its_share_of_the_processors(client: Any) -> None:

@@ -1,7 +1,9 @@
-"""A PNG picture carries its scene and settings, and the program opens it again; texts of strangers do no harm."""
+"""Scenes of the command line: examples, pictures that carry their scene, and standard input."""
 
 from __future__ import annotations
 
+import io
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,11 +12,54 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
+from minirt.cli import argument_parser
+from minirt.cli.files import DEMO_PICTURE, choose_example
 from minirt.formats import png
 from minirt.scene import files
-from tests.cli.program import SCENE, Result
+from tests.cli.program import SCENE, Run, program
+from tests.cli.test_output import pixels
+from tests.paths import SCENES
 
-Run = Callable[..., Result]
+
+def test_the_program_without_arguments_renders_the_demo_where_no_window_is(folder: Path) -> None:
+    ended = program(folder)
+    assert (ended.status, ended.err) == (0, "")
+    assert str(folder / DEMO_PICTURE) in ended.out.decode()
+    with pillow.open(folder / DEMO_PICTURE) as picture:
+        shown = np.asarray(picture)
+    expected = minirt.render(minirt.load(SCENES / "demo.rt")).array
+    assert np.array_equal(shown, expected)
+    assert not np.array_equal(shown, minirt.render(minirt.example("shapes")).array)
+
+
+def test_an_example_is_rendered_wherever_the_program_runs(run: Run, folder: Path) -> None:
+    assert run("--example", "meshes", "-o", "meshes.png", "--size", "64x36").status == 0
+    with pillow.open(folder / "meshes.png") as picture:
+        assert np.array_equal(np.asarray(picture), minirt.render(minirt.load(SCENES / "meshes.rt"), 64, 36).array)
+
+
+def test_an_unknown_example_is_an_error_that_names_what_is_like_it(run: Run) -> None:
+    ended = run("--example", "galery-sea", "--check")
+    assert (ended.status, ended.out) == (1, b"")
+    assert "did you mean gallery-sea" in ended.err
+    assert "the examples are camera-lens, demo, " in run("--example", "?", "--check").err
+
+
+def test_an_example_beside_a_scene_is_refused(run: Run) -> None:
+    ended = run("ball.rt", "--example")
+    assert ended.status == 2
+    assert "got ball.rt, too" in ended.err
+
+
+def test_the_window_saves_an_example_to_a_new_file(folder: Path) -> None:
+    parser = argument_parser()
+    for name in ("demo.rt", "demo-1.rt", "demo-2.rt"):
+        options = parser.parse_args(["--example"])
+        choose_example(parser, options, ["--example"])
+        assert options.scene == [name]
+        (folder / name).write_text("kept")
+
+
 PIXEL = np.zeros((1, 1, 3), np.uint8)
 
 
@@ -163,3 +208,47 @@ def test_a_strange_folder_is_left_out(folder: Path, way: str) -> None:
     texts = {files.SCENE: SCENE, files.FOLDER: way}
     (folder / "strange.png").write_bytes(png.encode(PIXEL, texts))
     assert minirt.load("strange.png").file == Path("strange.png")
+
+
+@pytest.fixture
+def give(monkeypatch: pytest.MonkeyPatch) -> Callable[[bytes], None]:
+    """A function that sets standard input."""
+    return lambda data: monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+
+
+def test_a_scene_on_standard_input_is_rendered(run: Run, folder: Path, give: Callable[[bytes], None]) -> None:
+    give(SCENE.encode())
+    ended = run("-", "-o", "-", "--size", "40x30")
+    assert (ended.status, ended.err) == (0, "")
+    assert (pixels(ended.out) == minirt.render(minirt.load("ball.rt"), 40, 30).array).all()
+    give(SCENE.encode())
+    assert run("-", "-o", "{name}.png", "--size", "40x30").status == 0
+    assert (folder / "stdin.png").exists()
+
+
+def test_errors_name_standard_input(run: Run, give: Callable[[bytes], None]) -> None:
+    give(SCENE.encode() + b"spp 0,0,0 1 1,2,3\n")
+    ended = run("-", "--check")
+    assert (ended.status, ended.out) == (1, b"")
+    assert ended.err.startswith("Error\nstandard input:6:1: unknown element 'spp', did you mean 'sp'?\n")
+    give(b"")
+    assert run("-", "--check").err == "Error\nstandard input: is empty\n"
+
+
+@pytest.mark.parametrize("arguments", [("-",), ("-", "-", "--check"), ("-", "--replay", "x", "-o", "x.png")])
+def test_a_window_and_a_second_reading_are_refused(run: Run, arguments: tuple[str, ...]) -> None:
+    ended = run(*arguments)
+    assert (ended.status, ended.err) == (
+        2,
+        "Error\na scene on standard input needs -o or --check, and is read once\n",
+    )
+
+
+def test_standard_input_that_is_closed_is_an_error(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    closed = io.TextIOWrapper(io.BytesIO())
+    closed.close()
+    monkeypatch.setattr(sys, "stdin", closed)
+    with pytest.raises(ValueError, match="closed"):
+        sys.stdin.buffer.read()
+    ended = run("-", "--check")
+    assert (ended.status, ended.err) == (1, "Error\nstandard input: cannot be read: it is closed\n")
