@@ -321,6 +321,14 @@ def test_hits(intersect: Intersect, shape: Shape, rays: list[Ray]) -> None:
     assert shoot(intersect, shape, *((origin, direction) for origin, direction, _ in rays)) == expected
 
 
+@pytest.mark.parametrize(
+    ("shape", "count"), [(BALL, 2), (TUBE, 4), (TENT, 4), (RIGHT, 3), (BOWL, 4), (EVEN, 10), (BLOCK, 4)], ids=title
+)
+def test_hits_from_the_surface_are_exact(intersect: Intersect, shape: Shape, count: int) -> None:
+    rays = next(rays for each, rays in HITS if each is shape)[-count:]
+    assert shoot(intersect, shape, *((origin, direction) for origin, direction, _ in rays)) == [t for *_, t in rays]
+
+
 @pytest.mark.parametrize("shape", [FLOOR, TUBE, PLATE, BLOCK, RING], ids=title)
 def test_a_shape_turned_upside_down_is_hit_alike(intersect: Intersect, shape: Shape) -> None:
     rays = next(rays for each, rays in HITS if each is shape)
