@@ -149,3 +149,12 @@ def test_only_changed_lines_are_rewritten(long: Scene) -> None:
 @pytest.mark.parametrize("source", ["sp 0,0,0 1 1,2,4", "pl 0,0,0 0,1,0 1,2,3", "# a", SPHERE + "\n" + SPHERE])
 def test_a_source_line_of_another_element_is_not_written(source: str) -> None:
     assert dump(Scene([CAMERA, Sphere(BALL.centre, 1, BALL.colour, source=source)])).endswith("\nsp 0,0,0 1 1,2,3")
+
+
+def test_elements_are_added_before_the_last_blank_line_and_removed() -> None:
+    scene = Scene([CAMERA, BALL, ""])
+    more = scene.add(*OTHERS)
+    assert more.items == (CAMERA, BALL, *OTHERS, "")
+    assert more.remove(BALL, OTHERS[1]) == Scene([CAMERA, BALL, OTHERS[2], ""])
+    with pytest.raises(ValueError, match="not in"):
+        scene.remove(OTHERS[1])
