@@ -20,10 +20,13 @@ from minirt.shapes.shape import Flat
 from minirt.shapes.sphere import PackedSphere
 from minirt.shapes.square import PackedSquare
 from minirt.shapes.triangle import Triangle
-from tests.shapes import mutants
 from tests.shapes.execution_modes import Intersect, kind_of, on_arrays, vec
-from tests.shapes.mutants import with_formula
 from tests.shapes.regimes import Array
+
+
+def with_formula(formula: Any) -> Intersect:
+    """`on_arrays` with another formula than the shape's own."""
+    return lambda shapes, origins, directions: on_arrays(shapes, origins, directions, formula)
 
 
 def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:
@@ -73,34 +76,6 @@ ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "from 1e-4 on": (from_1e_4_on, ("a size of 1e-12",)),
     "moved on by 1e-4": (moved_on_by_1e_4, ("a size of 1e-12", "a scene at 1e8")),
     "in single precision": (in_single_precision, ("usual", "a scene at 1e6", "a million sizes away")),
-}
-OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
-    "sphere": (
-        mutants.with_formula(mutants.meets_sphere),
-        ("a million sizes away", "a size of 1e-6, seen from 1e6", "from 0.001 above a diameter of 1e9"),
-    ),
-    "cylinder": (
-        mutants.with_formula(mutants.meets_cylinder),
-        ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim", "on the surface"),
-    ),
-    "cone": (
-        mutants.with_formula(mutants.meets_cone),
-        (
-            *("a million sizes away", "at the apex", "along a generator", "a half-angle of 89.94 degrees"),
-            *("along the axis", "on the surface"),
-        ),
-    ),
-    "paraboloid": (
-        mutants.with_formula(mutants.meets_paraboloid),
-        ("a million sizes away", "along the axis", "at the vertex", "on the surface"),
-    ),
-    "hyperboloid": (
-        mutants.with_formula(mutants.meets_hyperboloid),
-        ("a million sizes away", "along an asymptote", "on the surface"),
-    ),
-    "torus": (hits_its_start, ("on the surface", "on the surface, a scene at 1e4")),
-    "triangle": (mutants.with_formula(mutants.mean_of_corners), ("a sliver", "a sliver next to none")),
-    "plane": (mutants.with_formula(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }
 # Curved kinds, whose formula for shadow rays knows little of where a ray starts.
 CARELESS = [kind for kind in KINDS if kind.occludes and not issubclass(kind.element, Flat | Box | Triangle)]

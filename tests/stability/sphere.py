@@ -11,7 +11,6 @@ from tests.shapes.regimes import (
     GREY,
     RAYS,
     Rays,
-    just_above,
     log_uniform,
     random_directions,
     random_perpendiculars,
@@ -65,10 +64,6 @@ def in_the_centre(seed: int) -> Rays:
 
 
 REGIMES = [
-    *(
-        Regime(f"from {height} above a diameter of 1e9", partial(just_above, 11, height, COUNT), 1e-9, 0.0)
-        for height in (1e-6, 1e-3, 1.7)
-    ),
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
     # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.

@@ -24,7 +24,6 @@ from minirt.shapes.triangle import Triangle
 from tests.kernel.pictures import linear
 from tests.oracle.body import cross, dot, exact, minus
 from tests.oracle.body import unit as exact_unit
-from tests.shapes import mutants
 from tests.shapes.examples import shadow_offsets
 from tests.shapes.execution_modes import Intersect, compiled, surfaces
 from tests.shapes.regimes import GREY, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
@@ -73,10 +72,6 @@ def wrong(title: str, intersect: Intersect) -> int:
 @pytest.mark.parametrize("title", RIMS)
 def test_only_rays_within_64_roundings_of_a_rim_may_take_it_for_another_place(title: str, way: str) -> None:
     assert wrong(title, MODES[way][0]) == 0
-
-
-def test_a_crack_is_found() -> None:
-    assert wrong("cylinder", mutants.with_formula(mutants.meets_cylinder)) > 0
 
 
 def sharpness(shape: Hyperboloid) -> float:
@@ -179,12 +174,6 @@ def test_no_ray_hits_the_sliver_again_from_which_it_starts(scale: float, aspect:
     hit, again = acne(1, aspect, scale, compiled)
     assert hit > 0.95 * SHAPES * COUNT
     assert again == 0
-
-
-@pytest.mark.parametrize("scale", SCALES)
-def test_the_mean_of_the_corners_has_acne(scale: float) -> None:
-    hit, again = acne(1, 1e-5, scale, mutants.with_formula(mutants.mean_of_corners))
-    assert again > 0.05 * hit
 
 
 @ASPECT

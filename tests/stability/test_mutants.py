@@ -37,14 +37,6 @@ def test_no_remedy_without_a_scale_passes(kind: Kind, name: str) -> None:
         assert errors(regime, intersect) > 20
 
 
-@pytest.mark.parametrize("title", mutants.OWN)
-def test_no_naive_formula_passes(title: str) -> None:
-    kind = next(each for each in KINDS if each.element.title == title)
-    intersect, failing = mutants.OWN[title]
-    for regime in regimes(kind, failing):
-        assert errors(regime, intersect) > 0
-
-
 @pytest.mark.parametrize("kind", mutants.CARELESS, ids=lambda kind: kind.element.title)
 def test_a_formula_that_knows_the_start_of_a_ray_no_better_than_rounding_does_not_pass(kind: Kind) -> None:
     assert errors(*regimes(kind, ["usual"]), mutants.as_of_a_shadow_ray) == 0
