@@ -80,7 +80,7 @@ def test_a_new_shape_passes_the_questions_asked_of_every_shape(copy: Path) -> No
         copy, "-m", "pytest", "-p", "no:xdist", "-rs", "-k", "(gate or every_kind or knows) and not traced", *QUESTIONS
     )
     assert "passed" in told
-    assert "no chart of the gate: with one in" in told
+    assert "the reference renderer knows no gate: with `surface_point` in" in told
     assert "no known place of gate: add one to KNOWN in" in told
 
 

@@ -7,15 +7,15 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.ellipsoid import Ellipsoid
-from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions
-from tests.stability.common import COUNT, along, at
+from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions
+from tests.stability.common import along, at
 from tests.stability.places import Place, flat, spot
 from tests.stability.regime import Regime
 
 
-def make(random: Random, flatness: float = 1.0, size: float = 1.0) -> Ellipsoid:
-    """A random ellipsoid of about a size, its own y axis scaled by `flatness`."""
-    sizes = size * random.uniform(0.5, 2, 3) * [1.0, flatness, 1.0]
+def make(random: Random, flatness: float = 1.0) -> Ellipsoid:
+    """A random ellipsoid of about size 1, its own y axis scaled by `flatness`."""
+    sizes = random.uniform(0.5, 2, 3) * [1.0, flatness, 1.0]
     return Ellipsoid(tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), tuple(sizes), GREY)
 
 
@@ -38,20 +38,6 @@ def directions(random: Random, ellipsoid: Ellipsoid) -> Array:
     return own_axes(ellipsoid)[1][random.integers(3, size=RAYS)] * random.choice([-1.0, 1.0], (RAYS, 1))
 
 
-def beside(seed: int, size: float, height: tuple[float, float]) -> Rays:
-    """Rays in all directions from just above and just below the surface of large ellipsoids."""
-    random = np.random.default_rng(seed)
-    shapes, origins = [make(random, size=size) for _ in range(COUNT)], np.empty((COUNT, RAYS, 3))
-    for i, shape in enumerate(shapes):
-        lengths, axes = own_axes(shape)
-        on = random_directions(random, RAYS)
-        out = (on / lengths) @ axes
-        out /= np.linalg.norm(out, axis=-1, keepdims=True)
-        up = random.choice([-1.0, 1.0], (RAYS, 1)) * log_uniform(random, *height, RAYS, 1)
-        origins[i] = np.array(shape.centre) + (on * lengths) @ axes + up * out
-    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
-
-
 # At a tip of a flat or a long one a rounding across the short axis moves the hit far along the long one.
 REGIMES = [
     Regime("at the ends of its axes", partial(at, 11, make, tips)),
@@ -60,7 +46,6 @@ REGIMES = [
     Regime("along an axis, a scene at 1e8", partial(along, 14, make, directions, None, 1e8)),
     Regime("at the ends of a flat one", partial(at, 15, partial(make, flatness=1e-6), tips), blur=np.inf),
     Regime("at the ends of a long one", partial(at, 16, partial(make, flatness=1e6), tips), blur=np.inf),
-    Regime("1e-3 to 1 beside a diameter of 1e9", partial(beside, 17, 1e9, (1e-3, 1.0)), blur=np.inf),
 ]
 
 

@@ -21,16 +21,6 @@ from tests.stability.places import Place, flat, spot
 from tests.stability.regime import Regime
 
 
-def just_inside(seed: int) -> Rays:
-    """Rays from at most a millionth of the radius below the surface of a sphere of diameter 1e9."""
-    random = np.random.default_rng(seed)
-    out = random_directions(random, COUNT, RAYS)
-    shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
-    return Rays(
-        shapes, (5e8 - random.uniform(1e-6, 500, (COUNT, RAYS, 1))) * out, random_directions(random, COUNT, RAYS)
-    )
-
-
 def near_the_surface(seed: int) -> Rays:
     """Rays downwards from a billionth of the radius to a whole radius above the surface, and as far below it."""
     random = np.random.default_rng(seed)
@@ -64,7 +54,6 @@ def in_the_centre(seed: int) -> Rays:
 
 
 REGIMES = [
-    Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
     # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
     Regime(
