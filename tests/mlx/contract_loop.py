@@ -185,7 +185,7 @@ def no_hook_is_called_after_loop_exit(harness: Harness) -> None:
 
 @scenario(["ticks", 5])
 def the_loop_hook_ticks_until_it_is_removed(harness: Harness) -> None:
-    """The loop hook ticks until it is removed. test_memory and test_tick_rate test its rate in simulated time."""
+    """The loop hook ticks until it is removed. test_memory and test_window test its rate in simulated time."""
     ticks: list[int] = []
 
     def tick(_: object) -> None:

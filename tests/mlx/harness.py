@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 from minirt.mlx import Mlx, Window
 from minirt.mlx.memory import Memory
 from tests.mlx.screen_user import ScreenUser
-from tests.mlx.user import MemoryUser, User
+from tests.mlx.user import MemoryUser
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from tests.mlx.user import User
 
 
 class Harness:

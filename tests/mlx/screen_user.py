@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tests.idle import threads, until_idle
 from tests.mlx.loop_calls import call_in_loop, set_key_repeat, wait_for_events
-from tests.mlx.user import User
+from tests.mlx.user import Typist
 from tests.waiting import until
 from tests.windows import Desktop
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from minirt.mlx import Window
     from tests.mlx.harness import Harness
+    from tests.mlx.user import User
 
 X_NAMES = {
     "shift": "Shift_L",
@@ -34,7 +35,7 @@ X_NAMES = {
 IDLE_LOOKS = 10  # consecutive looks that find the main thread asleep
 
 
-class ScreenUser(User):
+class ScreenUser(Typist):
     """A user who acts on real windows."""
 
     def __init__(self, harness: Harness) -> None:
@@ -106,6 +107,7 @@ class ScreenUser(User):
         self._desktop.activate(self._ids[window])
 
     def press_to_replace_window(self, key: str) -> None:
+        """Press a key that replaces the window, and release it before the new window has the focus."""
         old = self._id
         with self._desktop.manager_paused():
             self.press(key)

@@ -71,22 +71,37 @@ calls = st.one_of(
 
 
 class Reference:
-    """A canvas pixel by pixel: single pixels wait in a layer, where the last one of each place counts."""
+    """A canvas pixel by pixel: single pixels wait in a layer, where the last one of each place counts.
+
+    touched: the pixels that were drawn on since the last look, whatever their colours.
+    """
 
     def __init__(self) -> None:
         self.pixels = {(x, y): (0, 0, 0) for x in range(WIDTH) for y in range(HEIGHT)}
         self.layer: dict[tuple[int, int], int] = {}
+        self.touched = set(self.pixels)
+
+    def look(self) -> tuple[int, int, int, int] | None:
+        """Return the bounding box of what was touched, or None, and forget it."""
+        touched, self.touched = self.touched & self.pixels.keys(), set()
+        if not touched:
+            return None
+        columns, rows = zip(*touched, strict=True)
+        return min(columns), min(rows), max(columns) + 1, max(rows) + 1
 
     def draw(self, kind: str, x: int, y: int, colour: int) -> None:
         if kind == "point":
             self.layer[x, y] = colour
+            self.touched.add((x, y))
             return
         self.merge()
         if kind == "clear":
             self.pixels = dict.fromkeys(self.pixels, (0, 0, 0))
+            self.touched.update(self.pixels)
         elif kind == "put":
             for place in ((x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)):
                 self.blend(place, colour)
+                self.touched.add(place)
 
     def merge(self) -> None:
         for place, colour in self.layer.items():
@@ -116,7 +131,8 @@ def test_any_sequence_of_calls_gives_the_picture_of_the_reference(steps: list[tu
         elif kind == "clear":
             canvas.clear()
         else:
-            canvas.take_changes()
+            assert canvas.take_changes() == reference.look()
+    assert canvas.changes == reference.look()
     reference.merge()
     expected = [[list(reference.pixels[x, y]) for x in range(WIDTH)] for y in range(HEIGHT)]
     assert canvas.pixels[..., 2::-1].tolist() == expected

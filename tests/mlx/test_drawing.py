@@ -1,55 +1,21 @@
-"""Canvases, text and images without a window."""
+"""Text and images without a window."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image as Pillow
 
-from minirt.mlx import Mlx, MlxError
-from minirt.mlx.canvas import Canvas, stretch
+from minirt.mlx import Mlx
+from minirt.mlx.canvas import stretch
 from minirt.mlx.memory import Memory
 from minirt.mlx.text import draw_text, measure
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-places = st.integers(-30, 30)
-sizes = st.integers(1, 25)
-
-
-@given(places, places, sizes, sizes)
-def test_put_copies_the_overlap(x: int, y: int, width: int, height: int) -> None:
-    canvas = Canvas(20, 10)
-    source = np.random.default_rng(0).integers(0, 256, (height, width, 4), np.uint8)
-    canvas.take_changes()
-    canvas.put(source, x, y)
-    changed = np.zeros((10, 20), bool)
-    for row in range(10):
-        for column in range(20):
-            inside = 0 <= row - y < height and 0 <= column - x < width
-            expected = source[row - y, column - x].tolist() if inside else [0, 0, 0, 255]
-            assert canvas.pixels[row, column].tolist() == expected
-            changed[row, column] = inside
-    if changed.any():
-        rows, columns = np.nonzero(changed)
-        assert canvas.changes == (columns.min(), rows.min(), columns.max() + 1, rows.max() + 1)
-    else:
-        assert canvas.changes is None
-
-
-def test_changes_are_the_bounding_box_of_all_changes() -> None:
-    canvas = Canvas(20, 10)
-    assert canvas.take_changes() == (0, 0, 20, 10)
-    assert canvas.take_changes() is None
-    canvas.point(3, 4, 0)
-    canvas.point(15, 2, 0)
-    canvas.point(20, 2, 0)
-    assert canvas.take_changes() == (3, 2, 16, 5)
 
 
 def test_stretch_takes_the_nearest_pixel() -> None:
@@ -139,20 +105,3 @@ def test_files_become_images(tmp_path: Path) -> None:
         image, width, height = load(mlx, tmp_path / name)
         assert (width, height) == (2, 1)
         assert image.pixels.tolist() == [[[3, 2, 1, 255], [6, 5, 4, 255]]]
-
-
-@pytest.mark.parametrize("content", [None, b"", b"\x89PNG\r\n\x1a\nbroken"])
-def test_a_file_that_is_no_picture_raises(tmp_path: Path, content: bytes | None) -> None:
-    m = Mlx(Memory(), strict=True)
-    path = tmp_path / "broken.png"
-    if content is not None:
-        path.write_bytes(content)
-    with pytest.raises(MlxError, match=r"broken\.png"):
-        m.mlx_png_file_to_image(m.mlx_init(), path)
-
-
-@pytest.mark.parametrize("size", [(0, 10), (10, 0), (-1, 5)])
-def test_a_window_without_pixels_raises(size: tuple[int, int]) -> None:
-    m = Mlx(Memory(), strict=True)
-    with pytest.raises(MlxError):
-        m.mlx_new_window(m.mlx_init(), *size, "none")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +15,6 @@ from minirt.mlx.memory import Headless
 from minirt.mlx.recording import COMMANDS, Line, add_recording
 from tests import processes
 from tests.lines import next_line
-from tests.mlx.test_without_display import NO_SCREEN
 from tests.paths import PACKAGE, ROOT
 from tests.waiting import HANG_LIMIT, until
 
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
     from tests.windows import Desktop
 
+NO_SCREEN = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")} | {
+    "PYTHONPATH": str(ROOT)
+}
 MAZE = Path(__file__).with_name("maze.py")
 COMMAND = [sys.executable, "-W", "error", "-m", "minirt.mlx"]
 FLOOR, RIM, DISC, RED = [0xD0] * 3, [0x8B, 0x45, 0x13], [255, 215, 0], [255, 0, 0]
@@ -38,10 +41,9 @@ def run(
     if program is not None:
         (folder / "program.py").write_text(program, encoding="utf-8")
     file = str(MAZE if program is None else folder / "program.py")
-    environment = NO_SCREEN | {"PYTHONPATH": str(ROOT)}
     options = ["--headless", "--events", "events.txt", "--picture", "end.png"]
     return processes.run(
-        [*COMMAND, *options, *arguments[:-1], file, *arguments[-1:]], cwd=folder, env=environment, text=True
+        [*COMMAND, *options, *arguments[:-1], file, *arguments[-1:]], cwd=folder, env=NO_SCREEN, text=True
     )
 
 
@@ -119,7 +121,7 @@ def test_a_picture_that_does_not_exist_is_an_error(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("arguments", [("--picture", "a.png", "x.py"), ("--headless", "none.py")])
 def test_wrong_arguments_are_errors(tmp_path: Path, arguments: tuple[str, ...]) -> None:
-    done = processes.run([*COMMAND, *arguments], cwd=tmp_path, env=NO_SCREEN | {"PYTHONPATH": str(ROOT)}, text=True)
+    done = processes.run([*COMMAND, *arguments], cwd=tmp_path, env=NO_SCREEN, text=True)
     assert done.returncode in (1, 2)
     assert "--headless" in done.stderr or done.stderr == "mlx: there is no program none.py\n"
 
@@ -161,8 +163,7 @@ def test_a_program_without_a_display_gets_none(tmp_path: Path) -> None:
     """Without --headless and without a display, `mlx_init` returns None, and the reason is printed."""
     program = "from mlx import Mlx\nprint(Mlx().mlx_init())\n"
     (tmp_path / "program.py").write_text(program)
-    environment = NO_SCREEN | {"PYTHONPATH": str(ROOT)}
-    done = processes.run([*COMMAND, "program.py"], cwd=tmp_path, env=environment, text=True)
+    done = processes.run([*COMMAND, "program.py"], cwd=tmp_path, env=NO_SCREEN, text=True)
     if sys.platform == "linux":
         assert (done.returncode, done.stdout) == (0, "None\n")
         assert "there is no display); --headless runs without one" in done.stderr
@@ -173,3 +174,34 @@ def test_the_script_in_the_readme_is_right() -> None:
     lines = readme.split("```\n# events.txt\n")[1].split("```")[0].splitlines()
     add_recording(lines, "events", Headless(None, (100, 100)), types=False)
     assert {line.split()[0] for line in lines} | {"up", "show"} == set(COMMANDS)
+
+
+# A machine without a screen: imports work, and errors say what to do.
+
+
+def run_without_screen(program: str) -> str:
+    """Run a program without a screen and return its output."""
+    command = [sys.executable, "-W", "error", "-c", program]
+    done = processes.run(command, env=NO_SCREEN, text=True)
+    assert done.stderr == ""
+    return str(done.stdout)
+
+
+def test_the_import_loads_no_window_library() -> None:
+    program = (
+        "import sys, minirt.mlx, minirt.mlx.memory; print([n for n in ('pyglet', 'PIL', 'numba') if n in sys.modules])"
+    )
+    assert run_without_screen(program) == "[]\n"
+
+
+def test_no_display_is_an_error_with_advice_each_time() -> None:
+    program = """
+from minirt.mlx import Mlx, MlxError
+for _ in range(2):
+    try:
+        Mlx(strict=True).mlx_init()
+    except MlxError as error:
+        print("-o FILE" in str(error), "no display" in str(error))
+"""
+    if sys.platform == "linux":
+        assert run_without_screen(program) == "True True\n" * 2

@@ -1,8 +1,9 @@
-"""Whole programs in real windows: start, sleep and end."""
+"""Whole programs in real windows: start, sleep, ticks and end."""
 
 from __future__ import annotations
 
 import itertools
+import json
 import os
 import signal
 import subprocess
@@ -97,19 +98,17 @@ def until_asleep(process: subprocess.Popen[str]) -> None:
     until_idle(process.pid, itertools.count().__next__, IDLE_LOOKS)
 
 
-def test_the_gradient_is_shown_and_escape_ends_it(desktop: Desktop) -> None:
+@pytest.mark.parametrize("end", ["Escape", "close button"])
+def test_the_gradient_is_shown_until_it_is_ended(desktop: Desktop, end: str) -> None:
     with desktop.program(sys.executable, "-W", "error", GRADIENT) as process:
         window = desktop.find("gradient")
         y, x = np.mgrid[:256, :512]
         expected = np.stack([x // 2, y, np.full_like(x, 64)], axis=-1)
         until(lambda: np.array_equal(desktop.screenshot(window), expected), "the gradient")
-        desktop.key(window, "Escape")
-        assert outcome(process) == (0, "", "")
-
-
-def test_the_close_button_ends_the_gradient(desktop: Desktop) -> None:
-    with desktop.program(sys.executable, "-W", "error", GRADIENT) as process:
-        desktop.close_button(desktop.find("gradient"))
+        if end == "Escape":
+            desktop.key(window, end)
+        else:
+            desktop.close_button(window)
         assert outcome(process) == (0, "", "")
 
 
@@ -120,17 +119,12 @@ def test_a_program_without_loop_hook_sleeps_while_another_ticks(desktop: Desktop
         until_idle(process.pid, lambda: switches(other.pid), 30)
 
 
-def test_ctrl_c_ends_a_loop_that_sleeps(desktop: Desktop) -> None:
-    with desktop.program(*sleeper("")) as process:
+@pytest.mark.parametrize("setup", ["", TICKS])
+def test_ctrl_c_ends_a_loop_that_sleeps_or_ticks(desktop: Desktop, setup: str) -> None:
+    with desktop.program(*sleeper(setup)) as process:
         assert next_line(process) == "loops"
-        until_asleep(process)
-        ctrl_c(process)
-        assert outcome(process) == (130, "", "")
-
-
-def test_ctrl_c_ends_a_loop_that_ticks(desktop: Desktop) -> None:
-    with desktop.program(*sleeper(TICKS)) as process:
-        assert next_line(process) == "loops"
+        if not setup:
+            until_asleep(process)
         ctrl_c(process)
         assert outcome(process) == (130, "", "")
 
@@ -166,3 +160,51 @@ def test_a_display_can_be_released_and_opened_again(desktop: Desktop) -> None:
     with desktop.program(*sleeper(AGAIN)) as process:
         desktop.key(desktop.find("again"), "a")
         assert outcome(process) == (0, "", "")
+
+
+# Time advances in the waits of the loop, and in the eleventh call of the hook, which is slow.
+PACE = """
+import json
+from minirt.mlx import Mlx
+
+m = Mlx()
+mlx = m.mlx_init()
+m.mlx_new_window(mlx, 100, 50, "pace")
+
+import pyglet.app
+import pyglet.clock
+
+loop = pyglet.app.platform_event_loop
+wait = loop.step
+now = pyglet.clock.get_default().time()
+times = []
+
+def step(timeout):
+    global now
+    now += timeout or 0.0
+    return wait(timeout and 0.0)
+
+def tick(_):
+    global now
+    times.append(now)
+    if len(times) == 11:
+        now += 0.1
+    if len(times) == 41:
+        m.mlx_loop_exit(mlx)
+
+loop.step = step
+pyglet.clock.get_default().time = lambda: now
+m.mlx_loop_hook(mlx, tick, None)
+m.mlx_loop(mlx)
+print(json.dumps(times))
+"""
+
+
+def test_the_loop_hook_ticks_sixty_times_a_second_and_late_rather_than_twice(desktop: Desktop) -> None:
+    with desktop.program(sys.executable, "-W", "error", "-c", PACE) as process:
+        status, output, errors = outcome(process)
+    assert (status, errors) == (0, "")
+    times = json.loads(output)
+    steps = [later - earlier for earlier, later in itertools.pairwise(times)]
+    assert steps.pop(10) == pytest.approx(0.1)
+    assert steps == pytest.approx([1 / 60] * 39)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import inspect
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -142,16 +143,23 @@ def test_other_values_are_no_integers(opened: Opened, place: tuple[Any, Any, Any
 
 
 FAILURES = {
-    "no window": (lambda m, mlx: m.mlx_new_window(mlx, 0, 10, "none"), None),
+    "no width": (lambda m, mlx: m.mlx_new_window(mlx, 0, 10, "none"), None),
+    "no height": (lambda m, mlx: m.mlx_new_window(mlx, 10, 0, "none"), None),
     "no image": (lambda m, mlx: m.mlx_new_image(mlx, 10, -1), None),
     "a huge image": (lambda m, mlx: m.mlx_new_image(mlx, 32768, 10), None),
+    "no file": (lambda m, mlx: m.mlx_png_file_to_image(mlx, "none.png"), (None, 0, 0)),
+    "broken PNG": (lambda m, mlx: m.mlx_png_file_to_image(mlx, "broken.png"), (None, 0, 0)),
     "no PNG": (lambda m, mlx: m.mlx_png_file_to_image(mlx, __file__), (None, 0, 0)),
     "no XPM": (lambda m, mlx: m.mlx_xpm_file_to_image(mlx, __file__), (None, 0, 0)),
 }
 
 
 @pytest.mark.parametrize("name", FAILURES)
-def test_failures_return_none_or_raise(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_failures_return_none_or_raise(
+    name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("broken.png").write_bytes(b"\x89PNG\r\n\x1a\nbroken")
     call, result = FAILURES[name]
     m = Mlx(Memory())
     mlx = m.mlx_init()

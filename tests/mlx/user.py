@@ -1,9 +1,9 @@
-"""User: a simulated user of a scenario, and MemoryUser, whose actions become the script of `Memory`."""
+"""MemoryUser: a simulated user of a scenario, whose actions become the script of `Memory`."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from minirt.mlx import Key, Window
 from tests.mlx.wake_thread import wake_thread
@@ -16,13 +16,16 @@ if TYPE_CHECKING:
 
     from minirt.mlx.memory import Memory
     from tests.mlx.harness import Harness
+    from tests.mlx.screen_user import ScreenUser
+
+    User: TypeAlias = "MemoryUser | ScreenUser"  # a scenario does not know which one
 
 SHIFTED_SYMBOLS = {"equal": "plus", "slash": "question", "digit_1": "exclamation"}  # with Shift, on the layout us
 KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
 
 
-class User(ABC):
-    """Actions of a user at the harness's window, and waits for their effects."""
+class Typist(ABC):
+    """What both users of a scenario do alike."""
 
     def keys(self, actions: str) -> None:
         """Press (+) and release (-) keys, by their names on the keyboard."""
@@ -33,85 +36,11 @@ class User(ABC):
     def press(self, key: str) -> None: ...
 
     @abstractmethod
-    def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
-        """Hold a key down, which the platform repeats, until `enough` is true. The key stays down."""
-
-    @abstractmethod
     def release(self, key: str) -> None: ...
 
-    @abstractmethod
-    def move(self, x: int, y: int) -> None: ...
 
-    @abstractmethod
-    def click(self, x: int, y: int, button: int = 1) -> None: ...
-
-    @abstractmethod
-    def drop(self, *files: str) -> None:
-        """Drag files to the window and drop them."""
-
-    @abstractmethod
-    def enter(self) -> None: ...
-
-    @abstractmethod
-    def leave(self) -> None: ...
-
-    @abstractmethod
-    def focus(self, window: Window) -> None: ...
-
-    @abstractmethod
-    def press_to_replace_window(self, key: str) -> None:
-        """Press and release a key that makes the window system replace the harness's window by a new one.
-
-        It is released when the old window is gone and the new one does not have the focus yet.
-        """
-
-    @abstractmethod
-    def resize(self, width: int, height: int) -> None: ...
-
-    @abstractmethod
-    def minimise(self) -> None: ...
-
-    @abstractmethod
-    def restore(self) -> None: ...
-
-    @abstractmethod
-    def close_button(self, window: Window | None = None) -> None: ...
-
-    @abstractmethod
-    def do(self, action: Callable[[], object]) -> None:
-        """Call a function at this point; calls of MiniLibX belong into hooks."""
-
-    @abstractmethod
-    def until(self, condition: Callable[[], bool]) -> None:
-        """Wait for the effect of an action; simulated time stands still."""
-
-    @abstractmethod
-    def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
-        """Wait for an effect that takes time: this many simulated seconds."""
-
-    @abstractmethod
-    def wait_until_handled(self) -> None:
-        """Wait until the program has handled all actions."""
-
-    @abstractmethod
-    def wait_until_asleep(self, seconds: float) -> None:
-        """Wait until the loop sleeps, or for this many simulated seconds."""
-
-    @abstractmethod
-    def wake(self) -> None:
-        """Call `mlx_wake` from another thread when the loop sleeps."""
-
-    @abstractmethod
-    def log_picture(self, name: str, read: Callable[[NDArray[np.uint8]], object]) -> None:
-        """Log the value of `read` for the picture that the window shows: (h, w, 3), red first."""
-
-    @abstractmethod
-    def log_title(self) -> None:
-        """Log the title of the window."""
-
-
-class MemoryUser(User):
-    """A user whose actions become the script of `Memory`."""
+class MemoryUser(Typist):
+    """A user whose actions at the harness's window, and waits for their effects, become the script of `Memory`."""
 
     def __init__(self, harness: Harness, memory: Memory) -> None:
         self._harness, self._memory = harness, memory
@@ -126,6 +55,7 @@ class MemoryUser(User):
         self._type(symbol)
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
+        """Hold a key down, which the platform repeats, until `enough` is true. The key stays down."""
         self.press(key)
         for _ in range(10):
             self._memory.wait(0.1)
@@ -182,15 +112,19 @@ class MemoryUser(User):
         self._memory.close_button(window or self._harness.win)
 
     def until(self, condition: Callable[[], bool]) -> None:
+        """Wait for the effect of an action; simulated time stands still."""
+
         def check() -> None:
             assert condition(), "the effect did not come"
 
         self._memory.do(check)
 
     def do(self, action: Callable[[], object]) -> None:
+        """Call a function at this point; calls of MiniLibX belong into hooks."""
         self._memory.do(action)
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
+        """Wait for an effect that takes time: this many simulated seconds."""
         self._memory.wait(seconds)
         self.until(condition)
 
@@ -198,13 +132,16 @@ class MemoryUser(User):
         """Do nothing: each step waits for the effects of the step before."""
 
     def wait_until_asleep(self, seconds: float) -> None:
+        """Wait until the loop sleeps, or for this many simulated seconds."""
         self._memory.wait(seconds)
 
     def wake(self) -> None:
+        """Call `mlx_wake` from another thread when the loop sleeps."""
         self._memory.do(wake_thread(self._harness.m, self._harness.mlx).start)
         self._memory.await_wake()
 
     def log_picture(self, name: str, read: Callable[[NDArray[np.uint8]], object]) -> None:
+        """Log the value of `read` for the picture that the window shows: (h, w, 3), red first."""
         self._memory.do(
             lambda: self._harness.record(name, read(self._memory.screenshot(self._harness.win)[..., 2::-1]))
         )

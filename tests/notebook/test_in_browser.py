@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from tests.notebook.jupyterlab import ViewerInPage, opened
-from tests.notebook.notebooks import written
-from tests.notebook.requirements import require
+from tests.notebook.requirements import require, written
 from tests.waiting import until
 
 pytestmark = pytest.mark.slow
