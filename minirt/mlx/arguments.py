@@ -48,12 +48,9 @@ def bound(callback: Hook | None, param: object) -> BoundHook | None:
     return (callback, param) if callback else None
 
 
-def set_hook(hooks: dict[int, BoundHook], event: int, callback: Hook | None, param: object) -> int:
+def set_hook(hooks: dict[int, BoundHook | None], event: int, callback: Hook | None, param: object) -> int:
     """Set the one hook of an event, or remove it; return 0 as MiniLibX does."""
-    if callback:
-        hooks[event] = (callback, param)
-    else:
-        hooks.pop(event, None)
+    hooks[event] = bound(callback, param)
     return 0
 
 

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from minirt.mlx.arguments import Hook, Integer
-    from minirt.mlx.backend import Backend
-    from minirt.mlx.display import Display
+    from minirt.mlx.backend import Backend, Display
     from minirt.mlx.window import WindowHost
 
     FileName = str | PathLike[str]

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from minirt.mlx.backend import Loop
+    from minirt.mlx.backend import Display
     from minirt.mlx.window import Window
 
 
@@ -59,7 +59,7 @@ class Memory(Backend):
         self.pointer_shown = True
         self.after_tick: Callable[[], object] = lambda: None  # called after each step of simulated time
         self._script: deque[Callable[[], object]] = deque()
-        self._display: Loop | None = None
+        self._display: Display | None = None
         self._wakeup = threading.Event()
         self._now = 0.0
         self._screens: dict[Window, NDArray[np.uint8]] = {}
@@ -185,7 +185,7 @@ class Memory(Backend):
         return self._screens[self._target(window)].copy()
 
     @property
-    def display(self) -> Loop:
+    def display(self) -> Display:
         """The display that `mlx_init` opened."""
         assert self._display is not None, "mlx_init was not called"
         return self._display
@@ -243,7 +243,7 @@ class Memory(Backend):
 
     # --- the rest of the contract of a back end ---
 
-    def open(self, display: Loop) -> None:
+    def open(self, display: Display) -> None:
         self._display = display
 
     def close(self) -> None:
@@ -268,9 +268,6 @@ class Memory(Backend):
     def screen_size(self) -> tuple[int, int]:
         return self.screen
 
-    def set_title(self, window: Window) -> None:
-        """Do nothing: there is no title bar."""
-
     def set_fullscreen(self, window: Window, on: bool) -> None:
         if on:
             self._windowed.setdefault(window, self._sizes[window])
@@ -285,12 +282,6 @@ class Memory(Backend):
 
     def show_pointer(self, window: Window, on: bool) -> None:
         self.pointer_shown = on
-
-    def set_cursor(self, window: Window) -> None:
-        """Do nothing: the pointer is not drawn."""
-
-    def set_icons(self, window: Window) -> None:
-        """Do nothing: there is no title bar."""
 
     def clipboard(self, window: Window) -> str:
         return self.clipboard_text

@@ -139,7 +139,7 @@ class Window(Handle):
     height: int
     title: str
     resizable: bool
-    hooks: dict[int, BoundHook] = field(default_factory=dict)
+    hooks: dict[int, BoundHook | None] = field(default_factory=dict)
     text_hook: BoundHook | None = None
     resize_hook: BoundHook | None = None
     drop_hook: BoundHook | None = None

@@ -16,7 +16,7 @@ from minirt.errors import MlxError
 from minirt.mlx.backend import Backend
 
 if TYPE_CHECKING:
-    from minirt.mlx.backend import Loop
+    from minirt.mlx.backend import Display
     from minirt.mlx.window import Window
 
 
@@ -64,18 +64,12 @@ class PageBackend(Backend):
 
     # --- the contract of a back end ---
 
-    def open(self, display: Loop) -> None:
+    def open(self, display: Display) -> None:
         self._display = display
-
-    def close(self) -> None:
-        """Do nothing: the page belongs to the notebook."""
 
     def open_window(self, window: Window) -> None:
         if self.window:
             raise MlxError("a page of a notebook has one window")
-
-    def close_window(self, window: Window) -> None:
-        """Do nothing: the page keeps its last frame."""
 
     def show(self, window: Window) -> None:
         window.shown.take_changes()
@@ -101,24 +95,15 @@ class PageBackend(Backend):
     def screen_size(self) -> tuple[int, int]:
         return SCREEN
 
-    def set_title(self, window: Window) -> None:
-        """Do nothing: there is no title bar."""
-
     def set_fullscreen(self, window: Window, on: bool) -> None:
         """Let the page fill the screen; the window keeps its size, and the page stretches its frames."""
         self._send({"kind": "full screen", "on": on}, b"")
-
-    def move_pointer(self, window: Window, x: int, y: int) -> None:
-        """Do nothing: pages cannot move the pointer."""
 
     def show_pointer(self, window: Window, on: bool) -> None:
         self._send({"kind": "pointer", "cursor": window.cursor.value if on else "none"}, b"")
 
     def set_cursor(self, window: Window) -> None:
         self.show_pointer(window, True)
-
-    def set_icons(self, window: Window) -> None:
-        """Do nothing: there is no title bar."""
 
     def clipboard(self, window: Window) -> str:
         return self._clipboard

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from minirt.mlx import Mlx
-    from minirt.mlx.display import Display
+    from minirt.mlx.backend import Display
 
 
 def wake_thread(m: Mlx, mlx: Display) -> threading.Thread:

@@ -19,7 +19,7 @@ from minirt.mlx.on_pyglet.native import NativeWindow
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from minirt.mlx.backend import Loop
+    from minirt.mlx.backend import Display
     from minirt.mlx.window import Window
 
 TICK = 1 / 60  # seconds between two turns of a busy loop
@@ -34,12 +34,9 @@ class PygletBackend(Backend):
         self._ticking = False
         self._before_turn: list[Callable[[], None]] = []  # actions that are not allowed inside a pyglet event handler
 
-    def open(self, display: Loop) -> None:
+    def open(self, display: Display) -> None:
         self._display = display
         self._screen = pyglet.display.get_display().get_default_screen()
-
-    def close(self) -> None:
-        """Do nothing: pyglet keeps its connection to the screen as long as the program runs."""
 
     def open_window(self, window: Window) -> None:
         try:

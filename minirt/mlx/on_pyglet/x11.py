@@ -107,7 +107,7 @@ def report_key_events(window: Any, report: Callable[[KeyEvent | None], None]) ->
 
     X11 repeats the press of a held key, without a release.
     """
-    if not hasattr(window, "_x_display"):
+    if not is_x11(window):
         return
     for handlers in (window._event_handlers, window._view_event_handlers):
         for kind in (KEY_PRESS, KEY_RELEASE):
