@@ -89,8 +89,7 @@ def read_example(options: argparse.Namespace) -> Scene:
     """Return the example; FileError for an unknown name."""
     from minirt import example
 
-    scene = example(options.example)
-    return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene
+    return with_handedness(example(options.example), options)
 
 
 def output_for(scene: str, output: str) -> str:

@@ -13,6 +13,7 @@ import minirt
 from minirt.rendering import Renderer
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, SCENE, Run, interrupt, start
+from tests.cli.test_output import pixels
 from tests.terminals import terminal
 from tests.waiting import until
 
@@ -194,12 +195,6 @@ REGION = ("--region", "21,8,30,17")
 INSIDE = slice(8, 25), slice(21, 51)
 
 
-def pixels(folder: Path, name: str) -> np.ndarray:
-    """The pixels of a picture in a folder."""
-    with pillow.open(folder / name) as image:
-        return np.asarray(image.convert("RGB"))
-
-
 @pytest.mark.parametrize(
     "options",
     [(), ("--samples", "3", "--tone", "filmic"), ("--dither",), ("--bits", "16")],
@@ -208,15 +203,15 @@ def pixels(folder: Path, name: str) -> np.ndarray:
 def test_a_region_has_the_pixels_of_the_whole_picture(run: Run, folder: Path, options: tuple[str, ...]) -> None:
     for name, more in (("whole.png", ()), ("part.png", REGION)):
         assert run("ball.rt", "--size", "64x48", "-o", name, *options, *more) == (0, b"", "")
-    assert np.array_equal(pixels(folder, "part.png"), pixels(folder, "whole.png")[INSIDE])
-    assert not np.array_equal(pixels(folder, "part.png"), pixels(folder, "whole.png")[:17, :30])
+    assert np.array_equal(pixels(folder / "part.png"), pixels(folder / "whole.png")[INSIDE])
+    assert not np.array_equal(pixels(folder / "part.png"), pixels(folder / "whole.png")[:17, :30])
 
 
 def test_a_film_has_a_region_of_each_frame(run: Run, folder: Path) -> None:
     for name, more in (("whole.png", ()), ("part.png", REGION)):
         assert run("ball.rt", "--size", "64x48", "--turntable", "2", "-o", name, *more).status == 0
     for number in ("0001", "0002"):
-        assert np.array_equal(pixels(folder, f"part-{number}.png"), pixels(folder, f"whole-{number}.png")[INSIDE])
+        assert np.array_equal(pixels(folder / f"part-{number}.png"), pixels(folder / f"whole-{number}.png")[INSIDE])
 
 
 def test_a_picture_of_a_region_carries_it(run: Run, folder: Path) -> None:
@@ -224,15 +219,15 @@ def test_a_picture_of_a_region_carries_it(run: Run, folder: Path) -> None:
     assert run("part.png", "-o", "again.png").status == 0
     assert (folder / "again.png").read_bytes() == (folder / "part.png").read_bytes()
     assert run("part.png", "--size", "32x24", "-o", "small.png").status == 0  # in which the region does not lie
-    assert pixels(folder, "small.png").shape == (24, 32, 3)
+    assert pixels(folder / "small.png").shape == (24, 32, 3)
     assert run("part.png", "--region", "0,0,5,6", "-o", "other.png").status == 0
-    assert pixels(folder, "other.png").shape == (6, 5, 3)
+    assert pixels(folder / "other.png").shape == (6, 5, 3)
 
 
 def test_a_region_is_what_a_format_must_hold(run: Run, folder: Path) -> None:
     huge = "--size", "16384x16384"
     assert run("ball.rt", *huge, "--region", "16000,16000,40,30", "-o", "part.webp").status == 0
-    assert pixels(folder, "part.webp").shape == (30, 40, 3)
+    assert pixels(folder / "part.webp").shape == (30, 40, 3)
     assert "16,383 pixels a side" in run("ball.rt", *huge, "--region", "0,0,16384,1", "-o", "part.webp").err
 
 

@@ -50,18 +50,6 @@ def test_an_unknown_extension_is_an_error(run: Run, folder: Path, name: str) -> 
     assert [path.name for path in folder.iterdir()] == ["ball.rt"]
 
 
-def test_a_missing_folder_is_an_error(run: Run, folder: Path) -> None:
-    ended = run("ball.rt", "-o", "nowhere/x.png", "--size", "4x4")
-    assert ended == (1, b"", "Error\nnowhere/x.png: cannot write: No such file or directory\n")
-    assert [path.name for path in folder.iterdir()] == ["ball.rt"]
-
-
-def test_an_output_that_is_a_folder_is_an_error(run: Run, folder: Path) -> None:
-    (folder / "x.png").mkdir()
-    ended = run("ball.rt", "-o", "x.png", "--size", "4x4")
-    assert (ended.status, ended.err.split("\n")[0]) == (1, "Error")
-
-
 def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "x.png").write_bytes(b"old")
 
@@ -75,16 +63,12 @@ def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monke
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 
 
-def test_standard_output_gets_a_png(run: Run) -> None:
-    ended = run("ball.rt", "-o", "-", "--size", "20x10")
-    assert (ended.status, ended.err) == (0, "")
-    assert ended.out.startswith(b"\x89PNG\r\n")
-    assert np.array_equal(pixels(ended.out), rendered(20, 10))
-
-
-def test_size_and_samples_are_those_of_the_options(run: Run) -> None:
-    ended = run("ball.rt", "-o", "-", "--size", "20x10", "--samples", "9")
-    assert np.array_equal(pixels(ended.out), rendered(20, 10, 9))
+def test_standard_output_gets_a_png_of_the_size_and_samples_of_the_options(run: Run) -> None:
+    for samples in (1, 9):
+        ended = run("ball.rt", "-o", "-", "--size", "20x10", "--samples", str(samples))
+        assert (ended.status, ended.err) == (0, "")
+        assert ended.out.startswith(b"\x89PNG\r\n")
+        assert np.array_equal(pixels(ended.out), rendered(20, 10, samples))
     assert not np.array_equal(pixels(ended.out), rendered(20, 10))
 
 
@@ -137,7 +121,7 @@ def test_the_scene_may_set_the_size(run: Run, folder: Path) -> None:
 
 
 def test_verbose_prints_durations_and_features(run: Run) -> None:
-    minirt.renderer(1).specialise(minirt.load("ball.rt"))  # else a wide kernel may draw
+    minirt.renderer(1).specialise(minirt.load("ball.rt"))  # else a generic kernel may draw
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
     assert (ended.status, ended.out) == (0, b"")
     ready, duration, finite, *rest = ended.err.splitlines()

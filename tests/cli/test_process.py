@@ -1,17 +1,23 @@
-"""The program as a process: its imports, the work of its start, interrupts."""
+"""The program as a process: its imports, the work of its start, interrupts, Ctrl+Z, and hostile environments."""
 
 from __future__ import annotations
 
+import os
+import shutil
 import signal
+import subprocess
 import sys
+import termios
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from PIL import Image, ImageChops
 
 from tests.cli.announcing import RENDERING
-from tests.cli.program import ANNOUNCING, Result, environment, interrupt, program, start
+from tests.cli.program import ANNOUNCING, PROGRAM, Result, environment, interrupt, program, start
 from tests.lines import next_line
-from tests.processes import run
+from tests.processes import run, started
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT
 
@@ -100,12 +106,6 @@ def test_numpy_starts_no_threads_of_its_own_unless_asked(folder: Path, asked: st
     start = f"import os\nos.environ.pop('OPENBLAS_NUM_THREADS', None)\n{asked}{VERSION}"
     program = f"{start}print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
     assert printed(program, folder)[-2:] == [found, "False"]
-
-
-def test_python_m_minirt_runs_the_program(folder: Path) -> None:
-    ended = program(folder, "--check")
-    assert (ended.status, ended.out) == (2, b"")
-    assert ended.err.startswith("Error\nexpected one scene file, got 0\n")
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
@@ -215,3 +215,94 @@ def test_a_closed_pipe_gives_no_traceback(folder: Path) -> None:
         _, err = process.communicate(timeout=HANG_LIMIT)
     assert process.returncode == 1
     assert b"Traceback" not in err
+
+
+PICTURE = ("ball.rt", "-o", "x.png", "--size", "320x240", "--samples", "2")
+TAKE_TERMINAL = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY); os.execvp('bash', sys.argv[1:])"
+SHELL = [sys.executable, "-c", TAKE_TERMINAL, "bash", "--norc", "--noprofile", "--noediting", "-i"]
+PROMPT = b"ready"
+
+
+@pytest.mark.skipif(not shutil.which("bash"), reason="needs bash, a shell with job control")
+def test_ctrl_z_stops_the_program_and_fg_goes_on(folder: Path) -> None:
+    """In a shell on a terminal, which is afterwards as it was."""
+    variables = environment() | {"PS1": f"{PROMPT.decode()} ", "TERM": "dumb"}
+    with terminal() as screen:
+        ends = {"stdin": screen.end, "stdout": screen.end, "stderr": screen.end}
+        with started(SHELL, cwd=folder, env=variables, **ends) as shell:
+            screen.leave()
+            screen.wait_for(PROMPT)
+            before = termios.tcgetattr(screen.reader)
+            os.write(screen.reader, f"{sys.executable} -m tests.cli.with_bar {' '.join(PICTURE)}\n".encode())
+            screen.wait_for(b"left  x.png")
+            os.write(screen.reader, b"\x1a")
+            screen.wait_for(b"Stopped")
+            screen.wait_for(PROMPT)
+            assert not (folder / "x.png").exists()
+            os.write(screen.reader, b"fg\n")
+            screen.wait_for(PROMPT)  # else the terminal shows the next line before it
+            os.write(screen.reader, b"echo status $?\n")
+            screen.wait_for(b"status 0")
+            screen.wait_for(PROMPT)
+            assert termios.tcgetattr(screen.reader) == before
+            os.write(screen.reader, b"exit\n")
+            shell.wait()
+    assert b"\r\x1b[K" + PROMPT in screen.text, "the bar was not erased"
+    assert program(folder, *PICTURE, "-o", "y.png").status == 0
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png", "y.png"}
+    with Image.open(folder / "x.png") as stopped, Image.open(folder / "y.png") as undisturbed:
+        assert ImageChops.difference(stopped.convert("RGB"), undisturbed.convert("RGB")).getbbox() is None
+
+
+ARGUMENTS = ("ball.rt", "--size", "16x16", "-o")
+TEXTURED = "A 0.2 255,255,255\nC 0,0,-5 0,0,1 70\nL -4,3,-3 0.7 255,255,255\nsp 0,0,0 2 10,0,255 texture:x.ppm\n"
+ENVIRONMENTS: dict[str, dict[str, str | None]] = {
+    "no home": {"HOME": None, "XDG_CACHE_HOME": None},
+    "a home that is not there": {"HOME": "/dev/null/home", "XDG_CACHE_HOME": None},
+    "an empty cache": {"XDG_CACHE_HOME": ""},
+    "a relative cache": {"XDG_CACHE_HOME": "relative"},
+    "a file as cache": {"XDG_CACHE_HOME": "/dev/null"},
+    "control characters in the cache": {"XDG_CACHE_HOME": "/dev/null/line\nbreak\x1b[31m"},
+    "no temporary folder": {"TMPDIR": "/dev/null/tmp"},
+}
+FEW_FILES = """
+import os, resource, sys
+resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16))
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+
+ON_UNIX = pytest.mark.skipif(sys.platform == "win32", reason="another environment and other limits")
+
+
+@pytest.fixture
+def wanted(folder: Path) -> bytes:
+    """Return the picture as it should be."""
+    (folder / "ball.rt").write_text(TEXTURED)
+    (folder / "x.ppm").write_bytes(b"P6 2 1 255\n\xff\x00\x00\x00\xff\x00")
+    assert program(folder, *ARGUMENTS, "wanted.png") == (0, b"", "")
+    return (folder / "wanted.png").read_bytes()
+
+
+def rendered(folder: Path, changed: dict[str, str | None], command: Sequence[str] = PROGRAM) -> Result:
+    """Render into x.png, with another environment; None removes a variable."""
+    variables = {name: value for name, value in (environment() | changed).items() if value is not None}
+    ended = run([*command, *ARGUMENTS, "x.png"], cwd=folder, env=variables, stdin=subprocess.DEVNULL)
+    return Result(ended.returncode, ended.stdout, ended.stderr.decode())
+
+
+@ON_UNIX
+@pytest.mark.parametrize("name", ENVIRONMENTS)
+def test_a_hostile_environment_does_not_change_the_picture(folder: Path, wanted: bytes, name: str) -> None:
+    ended = rendered(folder, ENVIRONMENTS[name])
+    assert (ended.status, ended.out) == (0, b"")
+    assert (folder / "x.png").read_bytes() == wanted
+    lines = ended.err.splitlines()
+    assert len(lines) <= 1
+    assert all(line.startswith("notice: ") and line.isprintable() for line in lines)
+
+
+@ON_UNIX
+def test_few_open_files_are_enough(folder: Path, wanted: bytes) -> None:
+    limited = [sys.executable, "-c", FEW_FILES, *PROGRAM]
+    assert rendered(folder, {}, limited) == (0, b"", "")
+    assert (folder / "x.png").read_bytes() == wanted

@@ -1,11 +1,14 @@
-"""Pictures streamed into a file are those of `minirt.render`, whoever renders their bands, and go on after a kill."""
+"""Streamed pictures and films are those of `minirt.render`, whoever renders their parts, and go on after a stop."""
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -13,15 +16,19 @@ import pytest
 import tifffile
 
 import minirt
-from minirt.cluster import pictures
-from minirt.cluster.job import rows_of
+from minirt import Scene
+from minirt.cluster import executor
+from minirt.cluster.job import Band, Made, rows_of
 from minirt.cluster.journal import HEAD
+from minirt.cluster.worker import work
 from minirt.errors import RenderError
 from minirt.rendering.packing.camera import Region
+from minirt.rendering.settings import RenderSettings
+from minirt.viewer.app.replay import turntable
 from tests.cli.program import environment
 from tests.cluster.scenes import BALL, with_files
-from tests.lines import next_line
-from tests.processes import run, started
+from tests.processes import run
+from tests.waiting import HANG_LIMIT
 
 SIZE = 600, 400
 BANDS = len(rows_of(Region(0, 0, *SIZE)))
@@ -151,14 +158,6 @@ def test_the_journal_of_another_picture_is_not_gone_on_with(other: dict[str, Any
     assert rendered(tmp_path / "a.tif", **other)[0] == 0
 
 
-def test_a_journal_that_any_picture_went_on_with_would_mix_two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a planted key that is always the same."""
-    monkeypatch.setattr(pictures, "work_of", lambda *_: "same")
-    interrupted(tmp_path / "a.tif", 4)
-    assert rendered(tmp_path / "a.tif", samples=3)[0] == 4
-    assert not np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture(samples=3))
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks")
 def test_two_programs_do_not_write_into_one_file(tmp_path: Path) -> None:
     def second(done: int, _: int) -> None:
@@ -168,32 +167,6 @@ def test_two_programs_do_not_write_into_one_file(tmp_path: Path) -> None:
 
     minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, on_progress=second)
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture())
-
-
-KILLED = """
-import sys, minirt
-def tell(done, bands):
-    print(done, flush=True)
-minirt.render_to("a.tif", minirt.load("ball.rt"), 600, 400, samples=64, on_progress=tell)
-"""
-
-
-def test_a_killed_program_is_gone_on_with(tmp_path: Path) -> None:
-    BALL.save(tmp_path / "ball.rt")
-    with started([sys.executable, "-c", KILLED], cwd=tmp_path, env=environment(), stdout=-1) as program:
-        while next_line(program) != "3":
-            pass
-        program.kill()
-    done: list[int] = []
-    minirt.render_to(
-        tmp_path / "a.tif",
-        minirt.load(tmp_path / "ball.rt"),
-        *SIZE,
-        samples=64,
-        on_progress=lambda number, _: done.append(number),
-    )
-    assert 3 <= done[0] < BANDS
-    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture(samples=64))
 
 
 MEMORY = """
@@ -240,3 +213,97 @@ def test_sizes_are_checked(tmp_path: Path) -> None:
         minirt.render_to(tmp_path / "a.tif", BALL, 0, 5)
     with pytest.raises(RenderError, match="at most 2,147,483,647 pixels"):
         minirt.render_to(tmp_path / "a.tif", BALL, 2**31, 5)
+
+
+# Films and sweeps: pictures of many scenes in order, the same whoever renders them.
+
+
+FRAME = 64, 48
+
+
+def sweep(count: int) -> list[Scene]:
+    return [BALL.replace(BALL.spheres[0], diameter=1 + n / 10) for n in range(count)]
+
+
+def assert_same(found: Iterator[minirt.Image], scenes: list[Scene], **how: object) -> None:
+    expected = [minirt.render(each, *FRAME, **how) for each in scenes]
+    assert not np.array_equal(expected[0].array, expected[1].array)
+    pictures = list(found)
+    assert len(pictures) == len(expected)
+    for one, other in zip(pictures, expected, strict=True):
+        assert np.array_equal(one.array, other.array)
+        assert one.tone == other.tone
+        assert one.linear is None or np.array_equal(one.linear, other.linear)
+
+
+@pytest.mark.parametrize("executor", [None, ThreadPoolExecutor(3)], ids=["here", "threads"])
+def test_a_sweep_gives_a_picture_of_each_scene_in_order(executor: Executor | None) -> None:
+    assert_same(minirt.render_all(sweep(9), *FRAME, executor=executor, samples=2), sweep(9), samples=2)
+
+
+def test_processes_draw_a_turntable_with_files_and_one_is_killed(tmp_path: Path) -> None:
+    views = list(turntable(with_files(tmp_path / "home"), 12))
+    with ProcessPoolExecutor(2) as pool:
+
+        def film() -> Iterator[minirt.Image]:
+            for number, image in enumerate(minirt.render_all(views, *FRAME, executor=pool, linear=True)):
+                if number == 3 and sys.platform != "win32":
+                    os.kill(next(iter(pool._processes)), signal.SIGKILL)
+                yield image
+
+        assert_same(film(), views)
+
+
+def test_results_that_come_in_another_order_are_put_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first picture is ready after the second."""
+    second = Event()
+
+    def late(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
+        assert band.number or second.wait(HANG_LIMIT)
+        made = work(version, digest, camera, band, data)
+        if band.number:
+            second.set()
+        return made
+
+    monkeypatch.setattr(executor, "work", late)
+    views = list(turntable(BALL, 4))
+    with ThreadPoolExecutor(2) as pool:
+        assert_same(minirt.render_all(views, *FRAME, executor=pool), views)
+
+
+def test_few_scenes_are_taken_ahead() -> None:
+    taken = []
+
+    def scenes() -> Iterator[Scene]:
+        for each in sweep(50):
+            taken.append(each)
+            yield each
+
+    with ThreadPoolExecutor(2) as pool:
+        film = minirt.render_all(scenes(), *FRAME, executor=pool)
+        next(film)
+        assert len(taken) <= 2 * executor.OF_EACH
+        film.close()
+
+
+def test_scenes_that_differ_in_the_camera_alone_are_packed_once() -> None:
+    dispatcher = executor.Dispatcher(ThreadPoolExecutor(1))
+    first, second, third = (
+        dispatcher.arguments(Band(0, scene, FRAME, RenderSettings()))[-1] for scene in [*turntable(BALL, 2), *sweep(1)]
+    )
+    assert first is second
+    assert third is not first
+
+
+def test_each_frame_reaches_an_error() -> None:
+    for image in minirt.render_all(sweep(2), 160, 90, samples="auto", error=0.01):
+        assert image.reached
+        assert image.reached.is_reached
+
+
+def test_wrong_scenes_and_sizes_of_frames_are_refused() -> None:
+    with pytest.raises(RenderError, match="at least 1x1"):
+        list(minirt.render_all(sweep(1), 0, 5))
+    with pytest.raises(TypeError, match="takes a scene"):
+        list(minirt.render_all(["demo.rt"], *FRAME))  # type: ignore[list-item]
+    assert list(minirt.render_all([])) == []
