@@ -132,13 +132,9 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
             return OK
         pixels = play(scene, lines, **settings)
     if options.output:  # which carries no scene: keys have edited it
-        write(minirt.Image.from_bgra(pixels), options.output, scene, without_metadata(options))
+        without_scene = argparse.Namespace(**vars(options) | {"metadata": False})
+        write(minirt.Image.from_bgra(pixels), options.output, scene, without_scene)
     return OK
-
-
-def without_metadata(options: argparse.Namespace) -> argparse.Namespace:
-    """Return the options for a picture that carries no scene."""
-    return argparse.Namespace(**vars(options) | {"metadata": False})
 
 
 def read_lines(path: str) -> list[str]:
