@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 import threading
+import time
 import traceback
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from minirt.mlx.window import Window
 
 
+TICK = 1 / 60  # seconds between two turns of a busy loop
 ADVICE = "-o FILE renders without one"  # the end of an error where no window can be opened
 
 
@@ -29,6 +31,8 @@ class Backend(ABC):
     after all events that came together. It draws from `Window.shown` and writes nothing there. Methods that are not
     abstract may be missing, where the platform has no title bar or cannot move the pointer.
     """
+
+    clipboard_text = ""
 
     @abstractmethod
     def open(self, display: Display) -> None:
@@ -61,9 +65,9 @@ class Backend(ABC):
     def wake(self) -> None:
         """Make `run` take a turn soon. May be called from any thread; calls that come together may share one turn."""
 
-    @abstractmethod
     def time(self) -> float:
         """Seconds of a clock that never runs backwards."""
+        return time.perf_counter()
 
     @abstractmethod
     def screen_size(self) -> tuple[int, int]:
@@ -89,13 +93,13 @@ class Backend(ABC):
     def set_icons(self, window: Window) -> None:  # noqa: B027
         """Show one of `window.icons` where the desktop shows an icon of the window."""
 
-    @abstractmethod
     def clipboard(self, window: Window) -> str:
-        """The text on the clipboard, or an empty string."""
+        """The text on the clipboard, or an empty string; that of this program alone if the platform has none."""
+        return self.clipboard_text
 
-    @abstractmethod
     def set_clipboard(self, window: Window, text: str) -> None:
         """Put text on the clipboard."""
+        self.clipboard_text = text
 
 
 class Display(Handle):

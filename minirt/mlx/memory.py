@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
-from minirt.mlx.backend import Backend
+from minirt.mlx.backend import TICK, Backend
 from minirt.mlx.canvas import stretch
 from minirt.mlx.events import Button, Event
 
@@ -37,9 +37,6 @@ if TYPE_CHECKING:
 
     from minirt.mlx.backend import Display
     from minirt.mlx.window import Window
-
-
-TICK = 1 / 60  # simulated seconds between two turns of a busy loop
 
 
 class Memory(Backend):
@@ -55,7 +52,6 @@ class Memory(Backend):
     def __init__(self, screen: tuple[int, int] = (2560, 1600), patience: float = 30.0) -> None:
         self.screen = screen
         self.patience = patience
-        self.clipboard_text = ""
         self.pointer_shown = True
         self.after_tick: Callable[[], object] = lambda: None  # called after each step of simulated time
         self._script: deque[Callable[[], object]] = deque()
@@ -282,12 +278,6 @@ class Memory(Backend):
 
     def show_pointer(self, window: Window, on: bool) -> None:
         self.pointer_shown = on
-
-    def clipboard(self, window: Window) -> str:
-        return self.clipboard_text
-
-    def set_clipboard(self, window: Window, text: str) -> None:
-        self.clipboard_text = text
 
 
 class Headless(Memory):

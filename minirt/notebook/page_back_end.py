@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -13,14 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.errors import MlxError
-from minirt.mlx.backend import Backend
+from minirt.mlx.backend import TICK, Backend
 
 if TYPE_CHECKING:
     from minirt.mlx.backend import Display
     from minirt.mlx.window import Window
 
 
-TICK = 1 / 60  # seconds between two turns of a busy loop
 SCREEN = (3840, 2160)  # pixels: the largest window
 Message = dict[str, Any]
 
@@ -37,7 +35,6 @@ class PageBackend(Backend):
         self._actions: deque[Callable[[], object]] = deque()
         self._awake = threading.Event()
         self._next_tick = 0.0
-        self._clipboard = ""
 
     def do(self, action: Callable[[], object]) -> None:
         """Have the loop perform an action before its next turn."""
@@ -89,9 +86,6 @@ class PageBackend(Backend):
     def wake(self) -> None:
         self._awake.set()
 
-    def time(self) -> float:
-        return time.perf_counter()
-
     def screen_size(self) -> tuple[int, int]:
         return SCREEN
 
@@ -105,11 +99,8 @@ class PageBackend(Backend):
     def set_cursor(self, window: Window) -> None:
         self.show_pointer(window, True)
 
-    def clipboard(self, window: Window) -> str:
-        return self._clipboard
-
     def set_clipboard(self, window: Window, text: str) -> None:
-        self._clipboard = text
+        super().set_clipboard(window, text)
         self._send({"kind": "copy", "text": text}, b"")
 
     def _patience(self) -> float | None:

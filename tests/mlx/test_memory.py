@@ -10,19 +10,27 @@ import pytest
 
 import minirt.mlx.memory as memory_module
 from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
-from minirt.mlx.memory import TICK, Memory
-from tests.mlx.wake_thread import wake_thread
+from minirt.mlx.backend import TICK
+from minirt.mlx.memory import Memory
+from tests.mlx.user import wake_thread
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
+    from minirt.mlx import Window
     from minirt.mlx.arguments import Hook
+    from minirt.mlx.backend import Display
+
+
+def opened(width: int, height: int, patience: float = 30.0) -> tuple[Memory, Mlx, Display, Window]:
+    """Open a window of this size in memory."""
+    memory = Memory(patience=patience)
+    m = Mlx(memory)
+    mlx = m.mlx_init()
+    return memory, m, mlx, m.mlx_new_window(mlx, width, height, "window")
 
 
 def test_time_is_simulated() -> None:
-    memory = Memory()
-    m = Mlx(memory)
-    mlx = m.mlx_init()
-    m.mlx_new_window(mlx, 10, 10, "clock")
+    memory, m, mlx, _ = opened(10, 10)
     times: list[float] = []
     m.mlx_loop_hook(mlx, lambda _: times.append(m.mlx_time(mlx)), None)
     memory.wait(0.5)
@@ -34,9 +42,8 @@ def test_time_is_simulated() -> None:
 
 
 def test_play_steps_without_a_loop_and_raises() -> None:
-    memory = Memory()
-    m = Mlx(memory, strict=True)
-    win = m.mlx_new_window(m.mlx_init(), 10, 10, "steps")
+    memory, m, _, win = opened(10, 10)
+    m.mlx_set_options(strict=True)
     seen: list[object] = []
     m.mlx_hook(win, Event.KEY_PRESS, 0, lambda key, _: seen.append((key, m.mlx_get_modifiers(win))), None)
     memory.tap(Key.CONTROL_L, Key.Z)
@@ -93,9 +100,7 @@ def tick(ticks: list[int]) -> None:
 
 @pytest.mark.parametrize("hook", [None, tick], ids=["asleep", "ticking"])
 def test_a_program_that_does_not_end_raises(clock: Clock, hook: Hook | None) -> None:
-    m = Mlx(Memory(patience=PATIENCE))
-    mlx = m.mlx_init()
-    m.mlx_new_window(mlx, 10, 10, "for ever")
+    _, m, mlx, _ = opened(10, 10, PATIENCE)
     m.mlx_loop_hook(mlx, hook, [])
     start = clock.now
     with pytest.raises(MlxError, match=r"did not end within 20\.0 s"):
@@ -104,10 +109,7 @@ def test_a_program_that_does_not_end_raises(clock: Clock, hook: Hook | None) -> 
 
 
 def test_the_script_can_wait_for_another_thread() -> None:
-    memory = Memory(patience=HANG_LIMIT)
-    m = Mlx(memory)
-    mlx = m.mlx_init()
-    m.mlx_new_window(mlx, 10, 10, "wake")
+    memory, m, mlx, _ = opened(10, 10, HANG_LIMIT)
     seen: list[str] = []
     m.mlx_wake_hook(mlx, seen.append, "woken")
     memory.await_wake()
@@ -120,9 +122,7 @@ def test_the_script_can_wait_for_another_thread() -> None:
 
 
 def test_waiting_for_a_wake_that_never_comes_raises(clock: Clock) -> None:
-    memory = Memory(patience=PATIENCE)
-    m = Mlx(memory)
-    m.mlx_new_window(m.mlx_init(), 10, 10, "wake")
+    memory, *_ = opened(10, 10, PATIENCE)
     memory.await_wake()
     start = clock.now
     with pytest.raises(MlxError, match=r"mlx_wake was not called within 20\.0 s"):
@@ -132,10 +132,7 @@ def test_waiting_for_a_wake_that_never_comes_raises(clock: Clock) -> None:
 
 def test_a_window_of_fixed_size_keeps_it() -> None:
     """A window of fixed size that is shown larger keeps its size, and its picture is stretched."""
-    memory = Memory()
-    m = Mlx(memory)
-    mlx = m.mlx_init()
-    win = m.mlx_new_window(mlx, 2, 1, "fixed")
+    memory, m, mlx, win = opened(2, 1)
     m.mlx_resize_hook(win, lambda *_: pytest.fail("it has not changed"))
     memory.resize(4, 2)
     memory.play()
@@ -146,10 +143,7 @@ def test_a_window_of_fixed_size_keeps_it() -> None:
 
 
 def test_a_hidden_window_is_redrawn_when_it_is_shown_again() -> None:
-    memory = Memory()
-    m = Mlx(memory)
-    mlx = m.mlx_init()
-    win = m.mlx_new_window(mlx, 4, 3, "hidden")
+    memory, m, mlx, win = opened(4, 3)
     memory.play()
     memory.minimise(True)
     memory.play()

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import sys
+import threading
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, TypeAlias
 
 from minirt.mlx import Key, Window
-from tests.mlx.wake_thread import wake_thread
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from types import FrameType
 
     import numpy as np
     from numpy.typing import NDArray
 
+    from minirt.mlx import Mlx
+    from minirt.mlx.backend import Display
     from minirt.mlx.memory import Memory
     from tests.mlx.harness import Harness
     from tests.mlx.screen_user import ScreenUser
@@ -164,3 +169,23 @@ class MemoryUser(Typist):
 def _code(name: str) -> int:
     """Key code of a name."""
     return KEYS.get(name) or Key[name.upper()]
+
+
+def wake_thread(m: Mlx, mlx: Display) -> threading.Thread:
+    """Make a thread that calls `mlx_wake` as soon as the script in the main thread waits for it."""
+
+    def wake() -> None:
+        until(_main_thread_waits, "the step of the script that waits for mlx_wake")
+        m.mlx_wake(mlx)
+
+    return threading.Thread(target=wake)
+
+
+def _main_thread_waits() -> bool:
+    """Whether the main thread is in the wait of `Memory._await_wake`."""
+    frame: FrameType | None = sys._current_frames()[threading.main_thread().ident or 0]
+    names = []
+    while frame is not None:
+        names.append(frame.f_code.co_name)
+        frame = frame.f_back
+    return "_await_wake" in names and names[0] == "wait"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ import pyglet.display
 from pyglet.app.base import EventLoop
 
 from minirt.errors import MlxError
-from minirt.mlx.backend import ADVICE, Backend
+from minirt.mlx.backend import ADVICE, TICK, Backend
 from minirt.mlx.on_pyglet.interrupt import end_program_when_connection_is_lost, interruptible
 from minirt.mlx.on_pyglet.native import NativeWindow
 
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
 
     from minirt.mlx.backend import Display
     from minirt.mlx.window import Window
-
-TICK = 1 / 60  # seconds between two turns of a busy loop
 
 
 class PygletBackend(Backend):
@@ -65,9 +62,6 @@ class PygletBackend(Backend):
     def dispatch_event(self, _name: str) -> None:
         """Request a turn: pyglet calls this in the main thread for a posted event."""
         self._request_turn()
-
-    def time(self) -> float:
-        return time.perf_counter()
 
     def screen_size(self) -> tuple[int, int]:
         return int(self._screen.width), int(self._screen.height)
