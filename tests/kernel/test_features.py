@@ -166,14 +166,6 @@ def test_coordinates_are_relative_to_the_eye(shift: tuple[float, float, float]) 
     assert np.quantile(difference, 0.99) < 1e-4
 
 
-def test_rounding_before_the_eye_is_subtracted_is_noticed() -> None:
-    def far(p: Any) -> Any:
-        return tuple(float(np.float32(x + 1e6)) for x in p)
-
-    difference = np.abs(single(changed(ALL, far)) - single(ALL)).max(axis=-1)
-    assert difference.max() > 0.1
-
-
 def test_any_number_of_threads_gives_the_same_bits() -> None:
     assert np.array_equal(single(ALL, ONE_SCENE), single(ALL, TWO))
 

@@ -9,14 +9,12 @@ import pytest
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, Point
-from minirt.kernel.shading import shade
-from minirt.lanes import splat
 from minirt.scene import FurtherLight, Scene
 from minirt.shapes.box import Box
 from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.square import Square
 from tests import reference
-from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SECOND, SHAPES, interpreted, linear
+from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SECOND, SHAPES, linear
 
 SCENES = pytest.mark.parametrize("scene", [ALL, EVERY], ids=["some kinds", "every kind"])
 UPRIGHT = (Box, Ellipsoid, Square)  # their axis alone does not determine their orientation
@@ -125,10 +123,3 @@ def test_ambient_light_alone_shows_the_colours_of_surfaces() -> None:
     picture = linear(Scene((AMBIENT, EYE, *SHAPES)), 60, 40)
     colours = {tuple(np.round(np.divide(s.colour, 255) * np.divide(AMBIENT.colour, 255) * 0.15, 12)) for s in SHAPES}
     assert {tuple(np.round(pixel, 12)) for pixel in picture.reshape(-1, 3)} <= colours | {(0, 0, 0)}
-
-
-def test_a_fixed_shadow_ray_offset_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = interpreted(ALL)[1]
-    monkeypatch.setattr(shade, "clearance", lambda point, extent: splat(1e-4, extent))
-    assert np.abs(interpreted(ALL)[1] - before).max() < 0.01  # it fits the scale that it was made for
-    assert np.abs(interpreted(scaled(ALL, 2.0**-20))[1] - before).max() > 0.1

@@ -281,15 +281,6 @@ def test_rays_that_graze_the_sides_of_boxes_hit_what_they_hit_without_boxes() ->
     assert 3000 < hits < 27_000
 
 
-def test_boxes_without_margins_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    shapes, *rays = grazing_rays(1)
-    assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) == 0
-    monkeypatch.setattr(bvh_nodes, "MARGIN", 0.0)
-    assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) == 0  # one of the two margins is enough here
-    monkeypatch.setattr(bvh_build, "MARGIN", 0.0)
-    assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) > 5
-
-
 NOT_NUMBERS = [((np.nan,) * 3, (0, 0, 1)), ((0, 0, 0), (np.nan,) * 3), ((1e308, -1e308, 1e308), (0, 1e-300, -1))]
 
 
@@ -302,13 +293,6 @@ def test_rays_of_nan_and_infinity_end(ray: tuple[Any, Any], count: int) -> None:
         leaves_along(tree, *ray)
     if count > len(KINDS):  # with all kinds, as in other tests: no further kernel is compiled
         trace(tree, *(np.full((WIDTH, 3), part) for part in ray))
-
-
-def test_lanes_to_spare_that_refer_to_the_root_are_noticed() -> None:
-    tree = build_tree([sphere(0, 0, 5, 1)])
-    tree.nodes.reshape(-1, 7, WIDTH)[:, 6, 1:] = 0.0
-    with np.errstate(all="ignore"), pytest.raises(ValueError, match="could not broadcast"):  # the stack is full
-        leaves_along(tree, *NOT_NUMBERS[0])
 
 
 def axis_rays() -> tuple[list[Shape], tuple[Array, Array]]:

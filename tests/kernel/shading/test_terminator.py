@@ -94,13 +94,6 @@ def test_the_edge_of_light_on_a_smooth_ball_is_that_of_the_sphere(splits: int) -
     assert (right & ~lit).sum() <= 1e-3 * len(right)
 
 
-def test_shadow_rays_from_the_facets_leave_teeth(monkeypatch: pytest.MonkeyPatch) -> None:
-    shape = smooth_ball(2)
-    monkeypatch.setattr(Mesh, "smooth", False)
-    lit, right = lit_pixels(shape)
-    assert (right & ~lit).sum() > 1e-2 * len(right)
-
-
 def test_a_smooth_closed_mesh_that_is_lit_from_within_is_dark_outside() -> None:
     shape = named("knot", scale=2.0)
     row = shape.rows()[1000]
