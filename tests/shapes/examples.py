@@ -80,6 +80,18 @@ def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, 
     return points, normals
 
 
+def scaled(shape: Shape, factor: float) -> Shape:
+    """A shape that is larger by a factor, as seen from the origin: each number is rounded once."""
+    new = {}
+    for field in fields_of(type(shape)):
+        value = getattr(shape, field.name)
+        if isinstance(field, Length):
+            new[field.name] = factor * value
+        elif isinstance(field, Point | Lengths):
+            new[field.name] = tuple(factor * part for part in value)
+    return shape.replace(**new)
+
+
 class Hits(NamedTuple):
     """Hits of random rays: m shapes, n rays for each."""
 

@@ -21,7 +21,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.shapes.examples import example, hits
+from tests.shapes.examples import example, hits, scaled
 from tests.shapes.execution_modes import surfaces
 from tests.shapes.mapping_checks import (
     MODES,
@@ -36,7 +36,6 @@ from tests.shapes.mapping_checks import (
     lengths,
 )
 from tests.shapes.regimes import GREY
-from tests.shapes.test_protocol import scaled
 from tests.skipping import skip_incomplete
 
 TITLED = partial(pytest.mark.parametrize, ids=lambda each: each.title if isinstance(each, Shape) else None)

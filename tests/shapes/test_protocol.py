@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from minirt.element import fields_of, pattern
-from minirt.fields import Colour, Lengths, Point
+from minirt.fields import Colour, Point
 from minirt.kernel.scene_arrays import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
-from tests.shapes.examples import example, hits, is_concave, place, shadow_offsets
+from tests.shapes.examples import example, hits, is_concave, place, scaled, shadow_offsets
 from tests.shapes.execution_modes import MODES, kind_of, shape_rows, surfaces
 from tests.shapes.regimes import random_directions, unit
 
@@ -154,14 +154,3 @@ def test_it_scales_exactly(kind: Kind) -> None:
         scale = 2.0**power
         larger = [scaled(shape, scale) for shape in shapes]
         assert np.array_equal(MODES["compiled"](larger, origins * scale, directions), t * scale)
-
-
-def scaled(shape: Shape, scale: float) -> Shape:
-    changes = {}
-    for each in fields_of(type(shape)):
-        value = getattr(shape, each.name)
-        if isinstance(each, (Point, Lengths)):
-            changes[each.name] = tuple(scale * x for x in value)
-        elif isinstance(value, float):
-            changes[each.name] = scale * value
-    return dataclasses.replace(shape, **changes)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from minirt.element import fields_of
-from minirt.fields import Length, Lengths, Point, Triple
+from minirt.fields import Point, Triple
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.box import Box
@@ -29,7 +29,7 @@ from minirt.shapes.torus import Torus
 from tests import oracle
 from tests.kernel.pictures import linear
 from tests.oracle.body import body
-from tests.shapes.examples import example, hits, place, shadow_offsets
+from tests.shapes.examples import example, hits, place, scaled, shadow_offsets
 from tests.shapes.execution_modes import Intersect, compiled, kind_of, on_arrays, surfaces
 from tests.shapes.regimes import (
     GREY,
@@ -177,18 +177,6 @@ AT_1_0_0 = (  # solids whose side contains the point 1,0,0
     Ellipsoid((0, 0, 0), (0, 1, 0), (2, 6, 2), GREEN),
     Torus((0, 0, 0), (0, 1, 0), 1.4, 0.6, GREEN),
 )
-
-
-def scaled(shape: Shape, factor: float) -> Shape:
-    """A shape that is larger by a factor, as seen from the origin: each number is rounded once."""
-    new = {}
-    for field in fields_of(type(shape)):
-        value = getattr(shape, field.name)
-        if isinstance(field, Length):
-            new[field.name] = factor * value
-        elif isinstance(field, Point | Lengths):
-            new[field.name] = tuple(factor * part for part in value)
-    return shape.replace(**new)
 
 
 def surface_place(shape: Shape) -> str:
