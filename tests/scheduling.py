@@ -63,7 +63,6 @@ SLOW = (
     "tests/shapes/test_protocol.py",
     "tests/stability/",
     "tests/test_concurrency.py",
-    "tests/test_environment.py",
     "tests/test_example_scenes.py",
     "tests/test_faulty_writes.py",
     "tests/helpers/test_fork_safety.py",

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from tests.faulty_files import CODES, faulty_files, short
-from tests.file_writers import Writer, writers
 from tests.fuzz import faults
+from tests.fuzz.faults import Writer, writers
 
 WRITERS = writers()
 SOME = 2  # writes of a sort of file that fail

@@ -52,21 +52,21 @@ def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
     assert minirt.render(sized, height=10).array.shape == (10, 40, 3)
 
 
-@pytest.mark.parametrize("size", [(-1, 5), (5, -1)])
-def test_a_negative_size_is_an_error(scene: minirt.Scene, size: tuple[int, int]) -> None:
-    with pytest.raises(minirt.RenderError, match=f"at least 1x1 pixels, got {size[0]}x{size[1]}"):
-        minirt.render(scene, *size)
-
-
-@pytest.mark.parametrize("size", [(0, 5), (5, 0)])
-def test_a_size_of_zero_is_an_error(scene: minirt.Scene, size: tuple[int, int]) -> None:
-    with pytest.raises(minirt.RenderError, match="at least 1x1 pixels"):
-        minirt.render(scene, *size)
-
-
-def test_zero_samples_are_an_error(scene: minirt.Scene) -> None:
-    with pytest.raises(minirt.RenderError, match="at least 1 sample"):
-        minirt.render(scene, 4, 4, samples=0)
+@pytest.mark.parametrize(
+    ("width", "height", "samples", "reason"),
+    [
+        (-1, 5, 1, "1x1 pixels, got -1x5"),
+        (5, -1, 1, "1x1 pixels, got 5x-1"),
+        (0, 5, 1, "1x1 pixels"),
+        (5, 0, 1, "1x1 pixels"),
+        (4, 4, 0, "1 sample"),
+    ],
+)
+def test_a_picture_of_nothing_is_an_error(
+    scene: minirt.Scene, width: int, height: int, samples: int, reason: str
+) -> None:
+    with pytest.raises(minirt.RenderError, match=f"at least {reason}"):
+        minirt.render(scene, width, height, samples=samples)
 
 
 def test_the_error_falls_with_the_number_of_samples(scene: minirt.Scene) -> None:

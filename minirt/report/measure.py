@@ -221,7 +221,10 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     require_matplotlib()
-    make_folder(folder)
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RenderError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None
     measurement = Measurement(scene, name, QUICK if quick else FULL, threads)
     try:
         with TemporaryDirectory(prefix="minirt-report-") as files, progress(measurement.state):
@@ -240,11 +243,3 @@ def write_report(measurement: Measurement, folder: str | os.PathLike[str], inter
         return ""
     write_files(folder, found, measurement.pictures, measurement.reference.picture)
     return f"{summary(found)}\nThe report is in {Path(folder, PAGE)}"
-
-
-def make_folder(folder: str | os.PathLike[str]) -> None:
-    """Create the folder before the measurements begin, so that a wrong path fails at once. RenderError."""
-    try:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RenderError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None

@@ -50,13 +50,13 @@ def without_lists(scene: Scene) -> Iterator[Variant]:
 def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
     """Yield the scene with each feature, then with each kind of shape, that it lacks; files are put into a folder."""
     used, invisible = features(scene), InvisibleElements(scene, folder)
-    plain = invisible.shape(next(iter({type(shape) for shape in scene.shapes}), ALL_KINDS[0].element))
+    plain = invisible.record(next(iter({type(shape) for shape in scene.shapes}), ALL_KINDS[0].element))
     for feature, added in invisible.features(plain).items():
         if feature not in used:
             yield Variant("feature", WORDS[feature], "added", with_element(scene, added))
     for kind in ALL_KINDS:
         if kind.element not in set(map(type, scene.shapes)):
-            shape = invisible.shape(kind.element)
+            shape = invisible.record(kind.element)
             yield Variant("kind", kind.element.plural, "added", with_element(scene, shape))
 
 
@@ -96,11 +96,6 @@ class InvisibleElements:
         found["background"] = Background(DARK)
         found["environment"] = Background(self.picture())
         return {feature: found[feature] for feature in WORDS}
-
-    def shape(self, kind: type[Shape]) -> Shape:
-        """Return a shape of a kind."""
-        made: Shape = self.record(kind)
-        return made
 
     def record(self, kind: type[Any]) -> Any:
         """Make a record of its required fields."""

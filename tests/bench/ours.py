@@ -5,17 +5,17 @@ from __future__ import annotations
 from functools import lru_cache
 from itertools import cycle
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 
 from minirt import load
+from minirt.helpers.system import runs
 from minirt.rendering import Renderer
+from minirt.report.bench import moved
 from tests.bench.measure import Setting, System
 
 LEAST_FRAMES = 3
 RECENT = 4  # packed scenes that are kept
-STEP = 1e-3  # scene units that the eye moves from frame to frame
 
 read = lru_cache(RECENT)(load)
 
@@ -39,13 +39,8 @@ class MiniRT(System):
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         scene, renderer = read(path), self.renderer(path)
-        x, y, z = scene.camera.position
-        steps = cycle((scene, scene.replace(scene.camera, position=(x + STEP, y, z))))
+        frames = cycle((scene, moved(scene)))
         pixels = np.empty((self.setting.height, self.setting.width, 4), np.uint8)
-        renderer.render(next(steps), pixels)
-        times: list[float] = []
-        while len(times) < LEAST_FRAMES or sum(times) < seconds * 1e3:
-            start, step = perf_counter(), next(steps)
-            renderer.render(step, pixels)
-            times.append((perf_counter() - start) * 1e3)
-        return times
+        renderer.render(next(frames), pixels)
+        timed = runs(lambda: renderer.render(next(frames), pixels), LEAST_FRAMES, seconds)
+        return [run.wall * 1e3 for run in timed]

@@ -59,17 +59,6 @@ def test_peers_show_the_same_scene_and_mesh(kind: type[System], tolerances: tupl
 
 
 @pytest.mark.parametrize(
-    ("text", "wrong"), [("sp 1,2,3 4", "sp 1,2,3 3.5"), ("l 5,5,-8 0.3", "l 5,5,-8 0.2"), ("A 0.5", "A 0.4")]
-)
-def test_another_scene_is_found(text: str, wrong: str, tmp_path: Path) -> None:
-    ours, other = (
-        minirt.render(minirt.loads(lines), WIDTH, HEIGHT).array for lines in (LINES, LINES.replace(text, wrong))
-    )
-    assert shows_the_same(ours, ours, 0)
-    assert not shows_the_same(other, ours, 12)
-
-
-@pytest.mark.parametrize(
     ("kind", "printed", "ms"),
     [
         (PovRay, "  Trace Time:       0 hours  0 minutes  0 seconds (0.169 seconds)\n  using 2 thread(s)", 169),

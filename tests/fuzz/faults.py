@@ -1,4 +1,4 @@
-"""Faults at all writes of all sorts of files: kills, and errors of the disk.
+"""Faults at all writes of all sorts of files that are replaced as a whole: kills, and errors of the disk.
 
 python -m tests.fuzz.faults [WRITES]      # at so many random writes of each sort of file, or all; status 1 if one fails
 """
@@ -9,13 +9,65 @@ import os
 import random
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from minirt.errors import MiniRTError
+from minirt.formats.table import FORMATS, is_installed
 from minirt.helpers import file_io
+from minirt.image import Image
+from minirt.movie import save_movie
+from minirt.report.document import write_files
+from minirt.scene import parse
 from tests.faulty_files import CODES, counting, failing_at, faulty_files, is_killed_at
-from tests.file_writers import Writer, writers
+from tests.formats.pictures import picture
+from tests.report.made_up import FINDINGS, ROWS
+
+Writer = Callable[[Path], object]  # writes into an empty folder, or one in which it has written before
+
+SIZE = HEIGHT, WIDTH = 18, 32
+SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\n" + "".join(f"sp 0,0,{n} 4 10,20,30\n" for n in range(5, 90))
+BLACK = np.zeros((20, 32, 3))
+
+
+def still(suffix: str) -> Writer:
+    """Return a writer of a picture."""
+    return lambda folder: picture(*SIZE).save(folder / f"still{suffix}")
+
+
+def film(suffix: str) -> Writer:
+    """Return a writer of a film, or of numbered pictures."""
+
+    def write(folder: Path) -> None:
+        levels = picture(*SIZE).array
+        save_movie((Image(np.roll(levels, 5 * n, axis=1)) for n in range(4)), folder / f"film{suffix}")
+
+    return write
+
+
+def scene(folder: Path) -> None:
+    """Save a scene, as the editor does."""
+    parse(SCENE, "scene.rt").scene.save(folder / "scene.rt")
+
+
+def report(folder: Path) -> None:
+    """Write the report of a scene."""
+    write_files(folder, FINDINGS, {ROWS[0].name: BLACK}, BLACK)
+
+
+def writers() -> dict[str, Writer]:
+    """Return the writers by the names of what they write."""
+    found: dict[str, Writer] = {"scene": scene, "report": report, "numbered": film(".png")}
+    for name, each in FORMATS.items():
+        if is_installed(name):
+            if each.is_still:
+                found[f"{name} still"] = still(each.suffixes[0])
+            if each.is_film:
+                found[f"{name} film"] = film(each.suffixes[0])
+    return found
+
 
 OLD = b"old"
 RANDOM = slice(256, 512)  # bytes of a WebM film with its random identifiers

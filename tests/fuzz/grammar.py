@@ -1,17 +1,19 @@
 """Strict grammar of scene files, written from the format's description: the referee of the parser, with which it shares
-nothing else. A table of elements, a predicate for each kind of field, and the files that random scenes name."""
+nothing else. A table of elements, and each kind of field with its predicate and its maker of random words."""
 
 from __future__ import annotations
 
 import math
+import random
 import re
 import tempfile
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 from PIL import Image
 
@@ -43,8 +45,20 @@ def exists(name: str, suffix: str) -> bool:
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
 LONGEST, FARTHEST = 300, 1e15
+EDGES = (
+    "0", "1", "-1", "0.5", "180", "255", "1e15", "-1e15", "5e-324", "1e-400", "1e400", "360", "+1", "1.", ".5",
+)  # fmt: skip
 
+Chance = random.Random
 Test = Callable[[str], bool]
+
+
+class Kind(NamedTuple):
+    """A kind of word: whether a text is one, a maker of such texts, and how many parts with commas it has."""
+
+    fits: Test
+    make: Callable[[Chance], str]
+    width: int = 1
 
 
 def value_of(text: str) -> float:
@@ -53,28 +67,57 @@ def value_of(text: str) -> float:
     return value if math.isfinite(value) else math.nan
 
 
-def between(low: float, high: float) -> Test:
-    """Return the test of a number in an interval."""
-    return lambda text: low <= value_of(text) <= high
+def number(chance: Chance) -> str:
+    """Return a number."""
+    if chance.random() < 0.3:
+        return chance.choice(EDGES)
+    return chance.choice(("{:.3f}", "{!r}", "{:e}", "{:g}")).format(chance.choice((1, 10, 100)) * chance.uniform(-1, 1))
 
 
-def whole(low: int, high: int) -> Test:
-    """Return the test of a whole number in an interval."""
-    return lambda text: len(text) <= LONGEST and bool(WHOLE.fullmatch(text)) and low <= int(text) <= high
+def between(low: float, high: float) -> Kind:
+    """Return the kind of a number in an interval, both ends included."""
+    return Kind(
+        lambda text: low <= value_of(text) <= high,
+        lambda chance: repr(chance.choice((low, high, chance.uniform(low, high), chance.uniform(low, high)))),
+    )
 
 
-def length(text: str) -> bool:
-    """Whether a text is a length."""
-    return 0 < value_of(text) <= FARTHEST
+def whole(low: int, high: int) -> Kind:
+    """Return the kind of a whole number in an interval."""
+    return Kind(
+        lambda text: len(text) <= LONGEST and bool(WHOLE.fullmatch(text)) and low <= int(text) <= high,
+        lambda chance: str(chance.randint(low, high)),
+    )
 
 
-def three(part: Test) -> Test:
-    """Return the test of three parts with commas between them."""
-    return lambda text: text.count(",") == 2 and all(map(part, text.split(",")))
+def one_of(words: Sequence[str], fits: Test | None = None) -> Kind:
+    """Return the kind of a word among some, or of what `fits`."""
+    return Kind(fits or words.__contains__, lambda chance: chance.choice(words))
 
 
-ratio, byte, point, lengths = between(0, 1), whole(0, 255), three(between(-FARTHEST, FARTHEST)), three(length)
-colour, component = three(byte), three(between(-1, 1))
+def three(part: Kind) -> Kind:
+    """Return the kind of three parts with commas between them."""
+    return Kind(
+        lambda text: text.count(",") == 2 and all(map(part.fits, text.split(","))),
+        lambda chance: ",".join(part.make(chance) for _ in range(3)),
+        3,
+    )
+
+
+def parts(*kinds: Kind, least: int) -> Kind:
+    """Return the kind of values with commas between them, of which the last ones may be left out."""
+
+    def fits(text: str) -> bool:
+        words, count = text.split(","), 0
+        for kind in kinds:
+            if not words and count >= least:
+                return True
+            if len(words) < kind.width or not kind.fits(",".join(words[: kind.width])):
+                return False
+            words, count = words[kind.width :], count + 1
+        return not words
+
+    return Kind(fits, lambda chance: ",".join(each.make(chance) for each in kinds[: chance.randint(least, len(kinds))]))
 
 
 def without_homogeneous_zero(text: str) -> str:
@@ -83,47 +126,25 @@ def without_homogeneous_zero(text: str) -> str:
     return head if text.count(",") == 3 and value_of(last) == 0 else text
 
 
-def may_be_zero(text: str) -> bool:
-    """Whether a text is the direction of a camera, which may be 0,0,0."""
-    return component(without_homogeneous_zero(text))
-
-
-def direction(text: str) -> bool:
+def is_direction(text: str) -> bool:
     """Whether a text is a direction."""
-    text = without_homogeneous_zero(text)
-    return component(text) and any(map(value_of, text.split(",")))
+    return may_be_zero.fits(text) and any(map(value_of, without_homogeneous_zero(text).split(",")))
 
 
-def picture(text: str) -> bool:
-    """Whether a text is the name of a picture."""
-    return exists(text, ".png")
-
-
-def mesh(text: str) -> bool:
-    """Whether a text is the name of a mesh."""
-    return exists(text, ".obj")
-
-
-def paint(text: str) -> bool:
-    """Whether a text is a colour or the name of a picture."""
-    return colour(text) if "," in text else picture(text)
-
-
-def parts(*tests: tuple[int, Test], least: int) -> Test:
-    """Return the test of values with commas between them; each takes some parts, and the last ones may be left out."""
-
-    def test(text: str) -> bool:
-        words, count = text.split(","), 0
-        for width, each in tests:
-            if not words and count >= least:
-                return True
-            if len(words) < width or not each(",".join(words[:width])):
-                return False
-            words, count = words[width:], count + 1
-        return not words
-
-    return test
-
+ratio, colour, component = between(0, 1), three(whole(0, 255)), three(between(-1, 1))
+length = Kind(
+    lambda text: 0 < value_of(text) <= FARTHEST,
+    lambda chance: repr(chance.choice((5e-324, 1e-9, 1e15, *[abs(chance.gauss(0, 3)) + 0.01] * 9))),
+)
+point, lengths = three(between(-FARTHEST, FARTHEST)._replace(make=number)), three(length)
+may_be_zero = component._replace(fits=lambda text: component.fits(without_homogeneous_zero(text)))  # of a camera
+direction = component._replace(fits=is_direction)
+angle = between(0, 180)._replace(make=whole(0, 180).make)
+picture, mesh = one_of(PICTURES, lambda text: exists(text, ".png")), one_of(MESHES, lambda text: exists(text, ".obj"))
+paint = Kind(
+    lambda text: (colour if "," in text else picture).fits(text),
+    lambda chance: chance.choice((colour, picture)).make(chance),
+)
 
 KEY = re.compile(r"([A-Za-z_]+):(.*)", re.DOTALL)
 HEX_COLOUR = re.compile(r"#([0-9A-Fa-f]{3}){1,2}([ \t]|$)")
@@ -132,41 +153,41 @@ LARGE = 1e14  # scale and place of a mesh, all of which must be within FARTHEST
 SMALLEST = 1e-140  # size of a triangle whose area a float64 can hold
 
 TURN, HEIGHT, FADE = between(-360, 360), between(-10, 10), between(0, FARTHEST)
-PATTERN = parts((1, length), (3, colour), (1, whole(1, 12)), (1, HEIGHT), least=1)
-SURFACE: dict[str, Test] = {
-    "specular spc": parts((1, ratio), (1, between(1, 1e6)), (1, "blinn".__eq__), least=2),
-    "mirror mir": parts((1, ratio), (1, FADE), least=1),
-    "glass ref": parts((1, between(1, 10)), (1, ratio), (1, FADE), least=1),
-    "tint": parts((3, colour), (1, length), least=1),
+PATTERN = parts(length, colour, whole(1, 12), HEIGHT, least=1)
+SURFACE: dict[str, Kind] = {
+    "specular spc": parts(ratio, between(1, 1e6), one_of(("blinn",)), least=2),
+    "mirror mir": parts(ratio, FADE, least=1),
+    "glass ref": parts(between(1, 10), ratio, FADE, least=1),
+    "tint": parts(colour, length, least=1),
     "fresnel": ratio,
     "glow": ratio,
-    "checker pat": parts((1, length), (3, colour), least=1),
+    "checker pat": parts(length, colour, least=1),
     "texture txm tx": picture,
-    "bump bum": parts((1, picture), (1, HEIGHT), least=1),
+    "bump bum": parts(picture, HEIGHT, least=1),
     "normal nm": picture,
-    "uv": parts((1, length), (1, length), *[(1, between(-1e6, 1e6))] * 2, (1, TURN), least=2),
+    "uv": parts(length, length, *[between(-1e6, 1e6)] * 2, TURN, least=2),
     **dict.fromkeys(("marble", "wood", "clouds"), PATTERN),
 }
 ROLL = {"roll": TURN}
 TURNED = SURFACE | ROLL
 AXIS = TURNED | {"axis": direction}
 CAMERA = ROLL | {
-    "tone": ("plain", "srgb", "filmic").__contains__, "exposure": between(-20, 20), "lens": length, "focus": length
+    "tone": one_of(("plain", "srgb", "filmic")), "exposure": between(-20, 20), "lens": length, "focus": length
 }  # fmt: skip
-LAMP: dict[str, Test] = {"fade": length, "size": length}
+LAMP: dict[str, Kind] = {"fade": length, "size": length}
 SOLID = [point, direction, length, length, colour]  # with an axis
 BARE = {"fresnel", "checker"}  # keys that may stand alone
 
-Element = tuple[list[Test], int, dict[str, Test]]  # fields, how many of them must be given, attributes
+Element = tuple[list[Kind], int, dict[str, Kind]]  # fields, how many of them must be given, attributes
 ELEMENTS: dict[str, Element] = {
     "R": ([whole(1, 16384)] * 2, 2, {}),
     "A": ([ratio, colour], 2, {}),
     "bg": ([paint], 1, {}),
-    "C": ([point, may_be_zero, between(0, 180)], 3, CAMERA),
+    "C": ([point, may_be_zero, angle], 3, CAMERA),
     "L": ([point, ratio, colour], 2, LAMP),
     "l": ([point, ratio, colour], 2, LAMP),
     "dl": ([direction, ratio, colour], 2, {"size": between(0, 90)}),
-    "sl": ([point, direction, between(0, 180), ratio, colour], 4, LAMP | {"rim": ratio}),
+    "sl": ([point, direction, angle, ratio, colour], 4, LAMP | {"rim": ratio}),
     "sp": ([point, length, colour], 3, AXIS),
     "pl": ([point, direction, colour], 3, TURNED),
     "cy": (SOLID, 5, TURNED),
@@ -232,7 +253,7 @@ def verdict(code: str, words: list[str], comment: str) -> str:
         return "wrong"
     if len(values) < len(fields) and HEX_COLOUR.match(comment):  # '#' begins a comment, and no colour
         return "wrong"
-    if not all(test(value) for test, value in zip(fields, values, strict=False)):
+    if not all(kind.fits(value) for kind, value in zip(fields, values, strict=False)):
         return "wrong"
     seen = set()
     for word in keyed:
@@ -240,7 +261,7 @@ def verdict(code: str, words: list[str], comment: str) -> str:
         names = keys.get(match[1] if match else word)
         if names is None or names in seen or not (match or is_bare(word, keys)):
             return "wrong"
-        if match and not attributes[names](match[2]):
+        if match and not attributes[names].fits(match[2]):
             return "wrong"
         seen.add(names)
     return fitting(code, values)

@@ -6,7 +6,6 @@ agree with the referee. A lenient reader accepts whatever a strict one does.
 
 from __future__ import annotations
 
-import random
 import warnings
 from functools import cache
 
@@ -16,17 +15,54 @@ from minirt.errors import SceneError
 from minirt.rendering import Renderer
 from minirt.scene import Scene, dump, parse
 from minirt.scene.fast import FEW_LINES
-from tests.fuzz import grammar, scene_words
-from tests.fuzz.grammar import folder
+from tests.fuzz import grammar
+from tests.fuzz.grammar import Chance, folder
 from tests.fuzz.mutations import Fuzzer, mutated
 
 COMMENTS = b"#\n" * FEW_LINES  # so many lines that the fast reader is used
 BOM = b"\xef\xbb\xbf"
+LONELY = sorted(set(grammar.FORMS) - grammar.ONCE)
+WRONG = (
+    "nan", "inf", "1_0", "0x1", "--1", "", "٣", "1e", "2..0", "20f", "1.1", "256", "-0.5", "2e15", "0,0,0",
+    "file.png",
+)  # fmt: skip
 
 
-def make_scene(chance: random.Random) -> bytes:
-    """Make a scene file, mutated or not."""
-    data = scene_words.scene(chance)
+def line(code: str, chance: Chance) -> list[str]:
+    """Return the words of a line; now and then one is wrong."""
+    wanted, least, attributes = grammar.FORMS[code]
+    kept = wanted[: chance.randint(least, len(wanted))]
+    words = [kind.make(chance) for kind in kept]
+    for names in chance.sample(sorted(attributes), min(len(attributes), chance.choice((0, 0, 1, 1, 2, 4)))):
+        key = chance.choice(names.split())
+        is_bare = key in grammar.BARE and chance.random() < 0.5
+        words.append(key if is_bare else f"{key}:{attributes[names].make(chance)}")
+    if chance.random() < 0.02:
+        spoil(words, chance)
+    spellings = [spelling for spelling, own in grammar.CODES.items() if own == code]
+    return [chance.choice(spellings), *words]
+
+
+def spoil(words: list[str], chance: Chance) -> None:
+    """Make one word of a line wrong, or leave it out, or write it twice."""
+    at, wrong = chance.randrange(len(words)), chance.choice(WRONG)
+    words[at : at + 1] = chance.choice(
+        ([], [wrong], [words[at]] * 2, [words[at] + ",0"], [words[at], wrong], [words[at] + ","])
+    )
+
+
+def make_scene(chance: Chance) -> bytes:
+    """Make a scene file, most often a valid one before it may be mutated."""
+    codes = ["A", "C", *(code for code in ("R", "bg", "L") if chance.random() < 0.4)]
+    codes += chance.choices(LONELY, k=chance.randint(0, 6))
+    chance.shuffle(codes)
+    lines = []
+    for code in codes:
+        blank = chance.choice((" ", " ", "  ", "\t", " \t "))
+        end = chance.choice(("", "", "", " ", " # é", "#fff", "\t#", "\r", " # //\r"))
+        lines.append(chance.choice(("", "", " ")) + blank.join(line(code, chance)) + end)
+        lines += chance.choice(([], [], [""], ["# \x0b"], [" \t"]))
+    data = (chance.choice(("", "", "", "\ufeff")) + "\n".join(lines) + chance.choice(("", "\n"))).encode()
     return mutated(data, chance) if chance.random() < 0.5 else data
 
 
@@ -73,17 +109,16 @@ SCENES = Fuzzer(make_scene, check_scene, 300)
 WIDTH, HEIGHT = 8, 6
 PRECISIONS = ("double", "single")
 EXTREME = ("0", "5e-324", "-5e-324", "1e-308", "1e-160", "1e-30", "0.001", "1e8", "1e15", "-1e15", "999999999999999.9")
-LONELY = sorted(set(grammar.FORMS) - grammar.ONCE)
 
 
-def make_extreme(chance: random.Random) -> bytes:
+def make_extreme(chance: Chance) -> bytes:
     """Make a scene; in many of its numbers stand extreme ones."""
     codes = ["A", "C", *(code for code in ("bg", "L") if chance.random() < 0.7)]
     codes += chance.choices(LONELY, k=chance.randint(1, 5))
-    return "\n".join(" ".join(extreme(scene_words.line(code, chance), chance)) for code in codes).encode()
+    return "\n".join(" ".join(extreme(line(code, chance), chance)) for code in codes).encode()
 
 
-def extreme(words: list[str], chance: random.Random) -> list[str]:
+def extreme(words: list[str], chance: Chance) -> list[str]:
     """Replace some numbers of a line by extreme ones; a line that this makes wrong is made anew."""
     for _ in range(20):
         tried = [words[0], *(",".join(other(part, chance) for part in word.split(",")) for word in words[1:])]
@@ -92,7 +127,7 @@ def extreme(words: list[str], chance: random.Random) -> list[str]:
     return words
 
 
-def other(part: str, chance: random.Random) -> str:
+def other(part: str, chance: Chance) -> str:
     """Return a number, most often as it is."""
     is_number = not np.isnan(grammar.value_of(part))
     return chance.choice(EXTREME) if is_number and chance.random() < 0.15 else part
@@ -100,9 +135,8 @@ def other(part: str, chance: random.Random) -> str:
 
 def check_extreme(data: bytes) -> str:
     """Render the scene in both precisions."""
-    try:
-        scene = parse(data, folder() / "fuzz.rt").scene
-    except SceneError:
+    scene = read(data)
+    if scene is None:
         return "refused"
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -18,12 +18,10 @@ from functools import partial
 
 import numpy as np
 
-from minirt.errors import SceneError
-from minirt.scene import Scene, parse
+from minirt.scene import Scene
 from tests import environment
-from tests.fuzz.grammar import folder
 from tests.fuzz.mutations import seeded
-from tests.fuzz.scenes import PRECISIONS, make_extreme, renderer
+from tests.fuzz.scenes import PRECISIONS, make_extreme, read, renderer
 from tests.usage import Record, Usage
 
 LARGEST = (320, 240)  # pixels of a picture; small ones are as frequent
@@ -42,14 +40,6 @@ def soak(share: Callable[[int], float], seed: int, record: Record) -> int:
         record.note(progress)
     record.note(1.0)
     return pictures
-
-
-def read(data: bytes) -> Scene | None:
-    """Return the scene of a file; None where it is refused."""
-    try:
-        return parse(data, folder() / "soak.rt").scene
-    except SceneError:
-        return None
 
 
 def render(scene: Scene, chance: random.Random) -> None:

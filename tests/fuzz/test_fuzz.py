@@ -7,12 +7,9 @@ from pathlib import Path
 import pytest
 
 from minirt.errors import FileError, MiniRTError, SceneError
-from minirt.fields import scalars
-from minirt.materials import pictures
 from minirt.meshes import obj_lines
-from minirt.mlx.recording import Line
 from minirt.rendering.packing import camera
-from tests.fuzz import grammar, inputs, scenes
+from tests.fuzz import grammar
 from tests.fuzz.mutations import Fuzzer, seeded
 from tests.fuzz.worker import FUZZERS
 
@@ -56,43 +53,32 @@ def test_the_grammar_agrees_with_the_description(line: str, expected: bool) -> N
     assert grammar.is_scene((FRAME + line).encode()) is expected
 
 
-def test_a_limit_that_is_off_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scalars, "LONGEST", 302)
-    with pytest.raises(AssertionError, match="the grammar says False"):
-        scenes.check_scene(f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3".encode())
+def refuse(path: Path, _: bytes) -> None:
+    """Decode no picture."""
+    raise FileError(path, "broken data stream")
 
 
-def test_a_fast_reader_of_meshes_that_counts_wrongly_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    table = obj_lines.corner_table
-    monkeypatch.setattr(obj_lines, "corner_table", lambda faces: abs(table(faces)))
-    with pytest.raises(AssertionError, match="diagnosing reader"):
-        run("meshes", FUZZERS["meshes"].short)
+TABLE = obj_lines.corner_table
+LENS = FRAME.replace("60", "60 lens:1 focus:1e-310") + "sp 0,0,5 1 1,2,3"
+LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
 
 
-def test_a_decoder_that_refuses_good_pictures_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def strict(path: Path, _: bytes) -> None:
-        raise FileError(path, "broken data stream")
-
-    monkeypatch.setattr(pictures, "decode_by_pillow", strict)
-    with pytest.raises(AssertionError, match="a good picture is refused"):
-        run("pictures", FUZZERS["pictures"].short)
-
-
-def test_a_recording_whose_times_are_not_checked_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Line, "seconds", lambda self, index: float(self.words[index]))
-    with pytest.raises(ValueError, match="could not convert"):
-        FUZZERS["replays"].check(b"wait x")
-
-
-def test_a_program_that_lets_errors_through_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("minirt.cli.MiniRTError", SceneError)
-    with pytest.raises(MiniRTError):
-        run("arguments", inputs.ARGUMENTS.short)
-
-
-def test_a_lens_whose_focus_has_no_reciprocal_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(camera, "SMALLEST", 0.0)
-    monkeypatch.setattr(camera, "CLOSEST", 0.0)
-    line = "A 1 9,9,9\nC 0,0,0 0,0,1 60 lens:1 focus:1e-310\nsp 0,0,5 1 1,2,3"
-    with pytest.raises(Warning):
-        FUZZERS["extremes"].check(line.encode())
+@pytest.mark.parametrize(
+    ("name", "text", "where", "wrong", "error"),
+    [
+        ("scenes", LONG, "minirt.fields.scalars.LONGEST", 302, AssertionError),
+        ("meshes", "", "minirt.meshes.obj_lines.corner_table", lambda faces: abs(TABLE(faces)), AssertionError),
+        ("pictures", "", "minirt.materials.pictures.decode_by_pillow", refuse, AssertionError),
+        ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),
+        ("arguments", "", "minirt.cli.MiniRTError", SceneError, MiniRTError),
+        ("extremes", LENS, "minirt.rendering.packing.camera.CLOSEST", 0.0, Warning),
+    ],
+)
+def test_a_wrong_program_is_found(
+    name: str, text: str, where: str, wrong: object, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By an input, or by those of the short run."""
+    monkeypatch.setattr(where, wrong)
+    monkeypatch.setattr(camera, "SMALLEST", 0.0)  # which limits the focus, too
+    with pytest.raises(error):
+        FUZZERS[name].check(text.encode()) if text else run(name, FUZZERS[name].short)

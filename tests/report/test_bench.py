@@ -57,13 +57,6 @@ def test_an_eye_at_rest_keeps_the_lists_and_a_moving_one_needs_new_ones_for_each
     assert moving == [1] * (1 + bench.LEAST_FRAMES)
 
 
-def test_an_eye_that_does_not_move_is_found(made: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """The planted fault: frames that only claim to be of a moving eye."""
-    monkeypatch.setattr(bench, "moved", lambda scene: scene)
-    measure()
-    assert frames_without_lists(made) == [2 * (1 + bench.LEAST_FRAMES)]
-
-
 def test_the_eye_moves_by_a_thousandth() -> None:
     scene: Scene = load(PATH)
     moved = bench.moved(scene)

@@ -15,12 +15,10 @@ from PIL import Image
 
 import minirt
 from minirt.errors import RenderError
-from minirt.report import measure, povray
-from minirt.report.measure import COMPILING, FULL, QUICK, Measurement, fitting_size, report
+from minirt.report import measure
+from minirt.report.measure import QUICK, Measurement, fitting_size, report
 from minirt.report.metrics import HEAT
 from minirt.report.pictures import Budget
-from minirt.report.settings import AUTO, KNOBS, Setting
-from minirt.report.variants import Variant
 from minirt.scene import Scene, dump
 from tests.cli.conftest import folder, run
 from tests.cli.program import Result
@@ -147,11 +145,6 @@ def test_the_program_writes_a_report(run: Run, folder: Path) -> None:
     assert minirt.load("ball.rt").shapes
 
 
-def test_the_program_refuses_a_folder_that_is_a_file(run: Run, folder: Path) -> None:
-    ended = run("ball.rt", "--report", "ball.rt", "--quick")
-    assert (ended.status, ended.out, ended.err) == (1, b"", "Error\nball.rt: cannot be made: File exists\n")
-
-
 def test_the_steps_are_those_that_were_expected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     came: list[str] = []
     step, seen = Measurement.step, list[Measurement]()
@@ -169,15 +162,3 @@ def test_the_steps_are_those_that_were_expected(tmp_path: Path, monkeypatch: pyt
     assert all(isfinite(seconds) and seconds > 0 for seconds in measured.seconds.values())
     measured.step("the end")
     assert measured.state().share == pytest.approx(1.0)
-
-
-def test_more_work_is_expected_to_take_longer() -> None:
-    measured = Measurement(ALL, "all.rt", FULL, 1)
-    measured.width, measured.height = 32, 20
-    settings = [Setting(KNOBS[0], 4), Setting(KNOBS[0], 16), Setting(AUTO, 0.01), Setting(AUTO, 0.001)]
-    lists, kernel = (Variant("", name, "", ALL, packing) for name, packing in (("l", (lambda *_: None,)), ("k", ())))
-    steps = dict(measured.steps(settings, [lists, kernel]))
-    assert steps["uniform 4"] < steps["uniform 16"]
-    assert steps["auto 0.01"] < steps["auto 0.001"]
-    assert steps["k "] == steps["l "] + COMPILING
-    assert {f"{each.knob} {each.label}" for each in povray.SETTINGS} < set(steps)
