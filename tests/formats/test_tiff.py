@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
-import tifffile
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.formats import tiff
+
+cv2 = pytest.importorskip("cv2")  # `make lowest` is without
+tifffile = pytest.importorskip("tifffile")
 
 
 def write(path: Path, levels: np.ndarray, order: list[int], first: int = 0) -> None:
