@@ -1,4 +1,4 @@
-"""Where bands are rendered: by the threads of this process, an executor of `concurrent.futures`, or a dask cluster."""
+"""Executors of bands: the threads of this process, an executor of `concurrent.futures`, or a dask cluster."""
 
 from __future__ import annotations
 

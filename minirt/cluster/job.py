@@ -46,7 +46,7 @@ class Band(NamedTuple):
 
 
 class Made(NamedTuple):
-    """What was made of a band."""
+    """Result of rendering a band."""
 
     parts: tuple[np.ndarray | bytes, ...]  # levels, and light if asked for; or compressed strips of a TIFF file
     reached: Outcome | None

@@ -172,7 +172,7 @@ def packed(made: Made) -> bytes:
 
 
 class Record(NamedTuple):
-    """What a record of a band begins with."""
+    """Head of the record of a band."""
 
     sizes: list[int]  # bytes of its parts
     reached: Outcome | None

@@ -21,7 +21,7 @@ LEVEL, FAST = 6, 2  # of zlib: of 1 to 9; the fast one takes no longer than rend
 
 
 class Layout(NamedTuple):
-    """How a kind of TIFF file writes numbers."""
+    """Number formats of a kind of TIFF file: classic TIFF or BigTIFF."""
 
     header: struct.Struct  # order of bytes, version, place of the directory; BigTIFF says how long places are
     version: tuple[int, ...]

@@ -17,7 +17,7 @@ from minirt.shapes import Shape
 
 
 class Feature(NamedTuple):
-    """What most scenes lack: code of the kernel, and an array that is None where it is not compiled for it."""
+    """Optional code of the kernel, and its array, which is None in a kernel that is compiled without it."""
 
     words: str = ""  # in notes and reports; empty for a part of another feature
     absent: float | tuple[float, ...] | None = None  # of the array of rows: the row of a shape or a light without it
