@@ -162,10 +162,10 @@ class Dispatcher:
             each.cancel()
         if not self.is_own:
             return
-        processes = list((vars(self.executor).get("_processes") or {}).values())
-        self.executor.shutdown(wait=not unfinished, cancel_futures=True)
-        for each in processes if unfinished else ():
+        # An idle process waits with the lock of the queue: where it has been killed, the others never learn of the end.
+        for each in list((vars(self.executor).get("_processes") or {}).values()):
             each.terminate()
+        self.executor.shutdown(wait=not unfinished, cancel_futures=True)
 
 
 def local_pool() -> Executor:
