@@ -30,7 +30,7 @@ KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
 
 
 class Typist(ABC):
-    """What both users of a scenario do alike."""
+    """Actions that both users of a scenario share."""
 
     def keys(self, actions: str) -> None:
         """Press (+) and release (-) keys, by their names on the keyboard."""

@@ -85,7 +85,7 @@ def test_the_folder_is_made_private_and_not_used_where_others_may_write_it(
 def test_without_a_folder_of_the_user_nothing_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, fault: str
 ) -> None:
-    """Where a file has its name, on a disk that is read only, and where it belongs to another user."""
+    """A file has the name of the folder, the disk is read only, or the folder belongs to another user."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     if fault == "file":
         (tmp_path / "minirt").touch()

@@ -123,7 +123,7 @@ def test_the_next_program_loads_the_kernels_and_edited_sources_compile_them_anew
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are neither modes nor such a limit")
 def test_the_picture_is_right_where_nothing_can_be_kept(copy: Path) -> None:
-    """Where others may write the folder, and on a full disk."""
+    """The picture is right where others may write the folder, and on a full disk."""
     (copy / "open" / "minirt").mkdir(parents=True)
     (copy / "open" / "minirt").chmod(0o777)
     assert rendered(copy, NOTHING_KEPT, "open") == ["None", "0", KERNELS, PIXEL]
