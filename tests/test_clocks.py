@@ -19,7 +19,7 @@ LIMITS = {"timeout", "patience", "deadline"}  # arguments in seconds
 EXEMPT = {  # files that measure time, or run for a given time
     "waiting.py",
     "fuzz/soak.py",
-    "fuzz/worker.py",
+    "fuzz/__main__.py",
     "viewer/monkey.py",
     "viewer/kill.py",
     "viewer/test_recovery.py",  # which dates files

@@ -4,72 +4,76 @@ python -m tests.fuzz 60                    # seconds
 python -m tests.fuzz 3600 7 scenes meshes  # with another seed, and some fuzzers alone
 python -m tests.fuzz --input scenes FILE   # check an input that was kept in out/fuzz
 
-The same seed gives the same inputs. `make fuzz SECONDS=60 SEED=7` does the same.
+The same seed gives the same inputs. `make fuzz SECONDS=60 SEED=7` does the same. An input stands in a file before it is
+checked, so that it is not lost where a library ends the whole process.
 """
 
 from __future__ import annotations
 
-import json
-import subprocess
+import faulthandler
+import os
 import sys
+import time
+import traceback
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 
-from tests.fuzz.worker import FUZZERS
+from tests import environment
+from tests.fuzz import inputs, scenes
+from tests.fuzz.mutations import Fuzzer, seeded
+from tests.guards import must_end
 from tests.paths import ROOT
-from tests.processes import started
-from tests.waiting import HANG_LIMIT
 
+FUZZERS = {
+    "scenes": scenes.SCENES,
+    "meshes": inputs.MESHES,
+    "pictures": inputs.PICTURES,
+    "replays": inputs.REPLAYS,
+    "arguments": inputs.ARGUMENTS,
+    "extremes": scenes.EXTREMES,
+}
 OUT = ROOT / "out" / "fuzz"
 SECONDS, SEED = "60", "1"
-SLICE = 20.0  # seconds of a process, after which the next fuzzer has its turn
-FAILURES = ("crashes", "hangs", "wrong verdicts")
+FAILURES = {TimeoutError: "hangs", AssertionError: "wrong verdicts", Exception: "crashes"}
+MOST_KEPT = 20  # inputs that failed
 
 
-def run_slice(name: str, first: int, seconds: float) -> Counter[str]:
-    """Run a fuzzer in a process of its own; a process that dies or hangs is one failure."""
-    command = [sys.executable, "-m", "tests.fuzz.worker", name, str(first), str(seconds), str(OUT)]
-    current = OUT / f"{name}-current"
-    with (
-        (OUT / f"{name}-stderr").open("w") as errors,
-        started(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=errors) as process,
-    ):
-        try:
-            out, _ = process.communicate(timeout=seconds + 2 * HANG_LIMIT)
-        except subprocess.TimeoutExpired:
-            current.replace(OUT / f"{name}-hung-{first}")
-            return Counter(hangs=1)
-    if process.returncode:
-        (OUT / f"{name}-stderr").replace(OUT / f"{name}-crashed-{first}.txt")
-        if current.exists():
-            current.replace(OUT / f"{name}-crashed-{first}")
-        return Counter(crashes=1)
-    return Counter(json.loads(out))
+def attempt(fuzzer: Fuzzer, name: str, number: int) -> str:
+    """Check one input; return the verdict on it, or the failure, whose input and traceback are kept."""
+    data = fuzzer.make(seeded(name, number))
+    (OUT / f"{name}-current").write_bytes(data)
+    try:
+        with must_end():
+            return fuzzer.check(data)
+    except Exception as error:
+        failure = next(word for kind, word in FAILURES.items() if isinstance(error, kind))
+        if len(list(OUT.glob("*.txt"))) < MOST_KEPT:
+            (OUT / f"{name}-{number}").write_bytes(data)
+            (OUT / f"{name}-{number}.txt").write_text(f"{failure}\n{traceback.format_exc()}", encoding="utf-8")
+        return failure
 
 
 def fuzz(seconds: float, seed: int, names: list[str]) -> dict[str, Counter[str]]:
-    """Run fuzzers in turn until the seconds are over, or until Ctrl+C; count the verdicts of each."""
-    OUT.mkdir(parents=True, exist_ok=True)
+    """Run fuzzers for equal times, until the seconds are over, or until Ctrl+C; count the verdicts of each."""
     counts = {name: Counter[str]() for name in names}
-    left, turn = seconds, 0
+    spent = dict.fromkeys(names, 0.0)
     with suppress(KeyboardInterrupt):
-        while left > 0:
-            each = min(SLICE, seconds / len(names), left)
-            name = names[turn % len(names)]
-            counts[name] += run_slice(name, seed * 10**9 + turn * 10**6, each)
-            left, turn = left - each, turn + 1
+        while sum(spent.values()) < seconds:
+            name = min(spent, key=spent.__getitem__)
+            start = time.monotonic()
+            counts[name][attempt(FUZZERS[name], name, seed * 10**9 + counts[name].total())] += 1
+            spent[name] += time.monotonic() - start
     return counts
 
 
 def table(counts: dict[str, Counter[str]]) -> str:
-    """Return a line for each fuzzer: inputs, failures and verdicts."""
-    lines = []
-    for name, each in counts.items():
-        failures = ", ".join(f"{each[failure]} {failure}" for failure in FAILURES)
-        verdicts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(each.items()) if verdict not in FAILURES)
-        lines.append(f"{name:<10} {each.total():>9,} inputs: {failures} ({verdicts})")
-    return "\n".join(lines)
+    """Return a line for each fuzzer: its inputs and their verdicts."""
+    return "\n".join(
+        f"{name:<10} {each.total():>9,} inputs: "
+        + ", ".join(f"{count:,} {verdict}" for verdict, count in sorted(each.items()))
+        for name, each in counts.items()
+    )
 
 
 def main(arguments: list[str]) -> int:
@@ -80,11 +84,16 @@ def main(arguments: list[str]) -> int:
     seconds, seed, *names = arguments + [SECONDS, SEED][len(arguments) :]
     counts = fuzz(float(seconds), int(seed), names or list(FUZZERS))
     print(table(counts))
-    failed = any(each[failure] for each in counts.values() for failure in FAILURES)
+    failed = any(each[failure] for each in counts.values() for failure in FAILURES.values())
     if failed:
         print(f"The inputs that failed are in {OUT}.")
     return int(failed)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    environment.prepare()
+    OUT.mkdir(parents=True, exist_ok=True)
+    with (OUT / "stderr").open("w") as told:  # what decoders print, and the stack after a crash
+        os.dup2(told.fileno(), sys.stderr.fileno())
+        faulthandler.enable()
+        sys.exit(main(sys.argv[1:]))

@@ -10,8 +10,8 @@ from minirt.errors import FileError, MiniRTError, SceneError
 from minirt.meshes import obj_lines
 from minirt.rendering.packing import camera
 from tests.fuzz import grammar
+from tests.fuzz.__main__ import FUZZERS
 from tests.fuzz.mutations import Fuzzer, seeded
-from tests.fuzz.worker import FUZZERS
 
 FRAME = "A 1 9,9,9\nC 0,0,0 0,0,1 60\n"
 
