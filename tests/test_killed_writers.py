@@ -84,16 +84,3 @@ def test_a_new_file_is_written_as_a_whole(tmp_path: Path) -> None:
     assert contents_after_kills(file_io.write, path, None) == {None, NEW}
     path.unlink(missing_ok=True)
     assert contents_after_kills(file_io.create, path, None) == {None, NEW}
-
-
-def test_the_next_writer_deletes_temporary_files_of_killed_ones(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "scene.rt"
-    monkeypatch.setattr(file_io, "CLEANED", set())
-    for number in kill_at_each_line(lambda: file_io.write(path, NEW), ("file_io",)):
-        if number > 30:
-            break
-    assert list(tmp_path.glob(file_io.TEMPORARY))
-    file_io.write(path, NEW)
-    assert list(tmp_path.iterdir()) == [path]

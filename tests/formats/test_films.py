@@ -14,8 +14,8 @@ from PIL import Image as pillow  # noqa: N813
 from minirt.errors import RenderError
 from minirt.image import Image
 from minirt.movie import save_movie
-from tests.fuzz.faults import comparable
 from tests.processes import in_child
+from tests.test_faulty_writes import comparable
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")  # what Python 3.12 says of a fork

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import os
 import stat
-import sys
 import threading
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, BinaryIO
 
 import pytest
 
 from minirt.errors import FileError
 from minirt.helpers import file_io
 from minirt.viewer.files import create_numbered
-from tests.processes import run
 
 
 def names(folder: Path) -> list[str]:
@@ -53,7 +50,7 @@ def test_file_systems_without_hard_links(tmp_path: Path, monkeypatch: pytest.Mon
     file_io.create(tmp_path / "a", b"new")
     assert (tmp_path / "a").read_bytes() == b"new"
     with pytest.raises(FileExistsError):
-        file_io.create_in_place(tmp_path / "a", b"other")
+        file_io.create(tmp_path / "a", b"other")
     assert names(tmp_path) == ["a"]
 
 
@@ -115,42 +112,10 @@ def test_the_owner_stays(tmp_path: Path) -> None:
     assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (12345, 54321, 0o640)
 
 
-def test_files_that_killed_programs_left_are_deleted(tmp_path: Path) -> None:
-    program = """
-import os, sys
-from pathlib import Path
-from minirt.helpers import file_io
-file_io.os.fsync = lambda _: os.kill(os.getpid(), 9)
-file_io.write(sys.argv[1], b"new")
-"""
-    path = tmp_path / "file"
-    assert run([sys.executable, "-c", program, str(path)]).returncode == -9
-    assert len(names(tmp_path)) == 1
-    file_io.write(path, b"new")
-    assert names(tmp_path) == ["file"]
-
-
-def test_files_that_running_programs_write_stay_however_old_they_are(tmp_path: Path) -> None:
-    path = tmp_path / "file"
-
-    def write(file: BinaryIO) -> None:
-        (written,) = tmp_path.glob(file_io.TEMPORARY)
-        for seconds in (1, 2**33):  # after 1970, and in a future: clocks may be wrong
-            os.utime(written, (seconds, seconds))
-            file_io.CLEANED.discard(tmp_path)
-            file_io.write(tmp_path / "other", b"other")
-        file.write(b"new")
-
-    file_io.write(path, write)
-    assert path.read_bytes() == b"new"
-    assert names(tmp_path) == ["file", "other"]
-
-
 @pytest.mark.parametrize(("seconds", "is_left"), [(0, True), (-3000, True), (-4000, False), (4000, False)])
-def test_without_locks_old_files_are_deleted(
+def test_old_temporary_files_are_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, is_left: bool
 ) -> None:
-    monkeypatch.setattr(file_io, "is_free", lambda _: None)
     left = tmp_path / file_io.TEMPORARY.replace("*", "left")
     left.touch()
     now = left.stat().st_mtime
@@ -158,24 +123,6 @@ def test_without_locks_old_files_are_deleted(
     os.utime(left, (now + seconds, now + seconds))
     file_io.write(tmp_path / "file", b"new")
     assert left.exists() == is_left
-
-
-def test_a_file_that_is_taken_for_abandoned_before_it_is_locked_is_created_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def late(descriptor: int, lock: Callable[[int], bool] = file_io.lock) -> bool:
-        nonlocal tries
-        tries += 1
-        if tries == 1:
-            file_io.delete_abandoned(tmp_path)
-        return lock(descriptor)
-
-    tries = 0
-    monkeypatch.setattr(file_io, "lock", late)
-    file_io.write(tmp_path / "file", b"new")
-    assert tries == 2
-    assert names(tmp_path) == ["file"]
-    assert (tmp_path / "file").read_bytes() == b"new"
 
 
 LARGEST = 2**26
@@ -211,36 +158,15 @@ def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None
             file_io.read(path, 1000)
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
-@pytest.mark.parametrize("first", [b"", b"a"])
-def test_a_file_whose_bytes_do_not_come_is_an_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: bytes
-) -> None:
-    """As /proc/kmsg, a regular file of length 0, whose reader waits for the next message of the kernel."""
-    path = tmp_path / "a"
-    os.mkfifo(path)
-    monkeypatch.setattr(file_io, "check_regular", lambda path, status, largest: status)
-    with path.open("r+b", buffering=0) as writer:
-        writer.write(first)
-        with pytest.raises(FileError) as caught:
-            file_io.read(path, 1000)
-    assert caught.value.reason == "cannot be read: resource temporarily unavailable"
-
-
 @pytest.mark.parametrize(("told", "largest", "fits"), [(0, 5000, True), (10, 5000, True), (10, 1999, False)])
 def test_a_file_that_grows_while_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: int, largest: int, fits: bool
 ) -> None:
     path = tmp_path / "a"
     path.write_bytes(bytes(2000))
-    real = file_io.check_regular
-
-    def before_it_grew(path: Any, status: os.stat_result, largest: int) -> os.stat_result:
-        values = list(real(path, status, 2**40))
-        values[6] = told  # st_size
-        return os.stat_result(values)
-
-    monkeypatch.setattr(file_io, "check_regular", before_it_grew)
+    values = [*path.stat()]
+    values[6] = told  # st_size
+    monkeypatch.setattr(file_io, "status", lambda *_: os.stat_result(values))
     if fits:
         assert file_io.read(path, largest) == bytes(2000)
     else:
