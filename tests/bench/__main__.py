@@ -14,7 +14,7 @@ from typing import NamedTuple
 from minirt.rendering.threads import usable_cores
 from minirt.report.findings import processor
 from tests.bench import scenes, starts
-from tests.bench.measure import MARK, Cells, Setting, System, available, records, table, take_turns
+from tests.bench.measure import Cells, Setting, System, available, records, table, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
 from tests.bench.peers.programs import PovRay, Tachyon
@@ -73,9 +73,6 @@ def main() -> None:
     growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
     print(table(growth, names(own), [scene.stem for scene in grown], "spheres in view"), end="\n\n")
 
-    disturbed = any(cell.disturbed for cells in (compared, started, growth) for cell in cells.values())
-    if disturbed:
-        print(f"{MARK} other programs needed the processors in every round")
     for system in systems:
         print(f"{system.name}: {system.how}")
     reasons += more_reasons + start_reasons

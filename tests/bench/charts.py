@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from matplotlib import pyplot, rcParams
@@ -25,11 +26,13 @@ def dots(cells: Cells, path: Path, label: str) -> None:
     systems, scenes = names(cells)
     canvas, panel = pyplot.subplots(figsize=(9, 1.3 + 0.55 * len(systems)))
     for scene, colour, mark in zip(scenes, SCENES, MARKS, strict=False):
-        measured = [(row, cells[system, scene].ms) for row, system in enumerate(systems) if (system, scene) in cells]
+        measured = [
+            (row, median(cells[system, scene])) for row, system in enumerate(systems) if (system, scene) in cells
+        ]
         rows, values = zip(*measured, strict=True)
         panel.plot(values, rows, mark, color=colour, markersize=9, label=scene)
     for row, system in enumerate(systems):
-        values = sorted(cells[system, scene].ms for scene in scenes if (system, scene) in cells)
+        values = sorted(median(cells[system, scene]) for scene in scenes if (system, scene) in cells)
         for value, offset in zip(values, offsets(values), strict=True):
             panel.annotate(
                 figure(value), (value, row), (0, offset), textcoords="offset points", ha="center", fontsize=9
@@ -63,10 +66,10 @@ def growth(cells: Cells, path: Path) -> None:
     counts = [int(scene) for scene in scenes]
     canvas, panel = pyplot.subplots(figsize=(9, 4.5))
     for system in systems:
-        values = [cells[system, str(count)].ms for count in counts]
+        values = [median(cells[system, str(count)]) for count in counts]
         panel.plot(counts, values, marker="o", label=system, color=COLOURS.get(system, OTHERS))
     beyond = [count for count in counts if count >= ROOT_FROM]
-    base = cells[systems[0], str(beyond[0])].ms
+    base = median(cells[systems[0], str(beyond[0])])
     root = [base * (count / beyond[0]) ** 0.5 for count in beyond]
     panel.plot(beyond, root, "--", color="#999999", linewidth=1, label="growth with $\\sqrt{N}$")
     panel.set(xscale="log", yscale="log", xlabel="spheres in view, N", ylabel="milliseconds per frame")

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
-from time import perf_counter
 from typing import Any, NamedTuple
-
-from minirt.rendering.threads import usable_cores
 
 INSTALL = "`make bench-peers` installs it"  # on Debian and Ubuntu
 
@@ -52,65 +47,7 @@ class System(ABC):
         return self.setting.folder / f"{path.stem}-{self.name}.png"
 
 
-PROCESSOR_TIME = Path("/proc/stat")  # processor time of all programs, in ticks
-QUIET = 0.1  # processors that others may use before a round counts as disturbed
-
-
-class Clock(NamedTuple):
-    """Wall time, processor time of all programs and of this one, in seconds."""
-
-    wall: float
-    all: float
-    own: float
-
-
-def clock() -> Clock:
-    """Read the clock; where the system does not tell about other programs, they count as idle."""
-    own = sum(os.times()[:4])
-    try:
-        user, nice, system, _, _, *interrupts_and_stolen = map(int, PROCESSOR_TIME.read_text().split()[1:9])
-        everyone = (user + nice + system + sum(interrupts_and_stolen)) / os.sysconf("SC_CLK_TCK")
-    except (OSError, ValueError):
-        everyone = own
-    return Clock(perf_counter(), everyone, own)
-
-
-def elsewhere(start: Clock, end: Clock) -> float:
-    """Return how many processors other programs kept busy, on average."""
-    return max(0.0, (end.all - start.all) - (end.own - start.own)) / (end.wall - start.wall)
-
-
-class Round(NamedTuple):
-    """One turn of a system on a scene."""
-
-    ms: float  # milliseconds per frame, the median
-    elsewhere: float
-
-
-@dataclass
-class Cell:
-    """All rounds of a system on a scene."""
-
-    threads: int
-    rounds: list[Round] = field(default_factory=list)
-
-    def quiet(self) -> list[Round]:
-        """The rounds in which no other program needed the processors."""
-        spare = usable_cores() - self.threads
-        return [each for each in self.rounds if each.elsewhere - max(0, spare) <= QUIET]
-
-    @property
-    def disturbed(self) -> bool:
-        """Whether all rounds were disturbed."""
-        return not self.quiet()
-
-    @property
-    def ms(self) -> float:
-        """Milliseconds per frame: the median of the quiet rounds, or of all rounds if none was quiet."""
-        return median(each.ms for each in self.quiet() or self.rounds)
-
-
-Cells = dict[tuple[str, str], Cell]  # (system, scene) -> cell
+Cells = dict[tuple[str, str], list[float]]  # (system, scene) -> milliseconds a frame of each round
 
 
 def available(makers: Iterable[Callable[[], System]]) -> tuple[list[System], list[str]]:
@@ -125,21 +62,17 @@ def available(makers: Iterable[Callable[[], System]]) -> tuple[list[System], lis
 
 
 def take_turns(systems: list[System], scenes: list[Path], rounds: int, seconds: float) -> Cells:
-    """Measure each system on each scene that it renders; cells without a quiet round get as many further rounds."""
+    """Measure each system on each scene that it renders, once a round."""
     cells: Cells = {}
-    for number in range(2 * rounds):
+    for number in range(rounds):
         for scene in scenes:
             for system in (each for each in systems if each.renders(scene)):
-                cell = cells.setdefault((system.name, scene.stem), Cell(system.setting.threads))
-                if number < rounds or cell.disturbed:
-                    print(f"round {number + 1}: {system.name} on {scene.stem}", file=sys.stderr, flush=True)
-                    start = clock()
-                    times = system.frame_times(scene, seconds)
-                    cell.rounds.append(Round(median(times), elsewhere(start, clock())))
+                print(f"round {number + 1}: {system.name} on {scene.stem}", file=sys.stderr, flush=True)
+                times = system.frame_times(scene, seconds)
+                cells.setdefault((system.name, scene.stem), []).append(median(times))
     return cells
 
 
-MARK = "*"  # marks a figure that other programs disturbed
 LACKING = "-"  # for a scene that a system does not render
 
 
@@ -163,12 +96,11 @@ def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms 
 
 
 def text(cells: Cells, system: str, scene: str, first: str) -> str:
-    """Format a figure, marked if other programs disturbed it, and its ratio to the first system's."""
+    """Format the median of all rounds, and its ratio to the first system's."""
     if (system, scene) not in cells:
         return LACKING
-    cell = cells[system, scene]
-    ratio = times(cell.ms / cells[first, scene].ms)
-    return f"{figure(cell.ms)}{MARK if cell.disturbed else ' '} {ratio:>5}"
+    ms = median(cells[system, scene])
+    return f"{figure(ms)} {times(ms / median(cells[first, scene])):>5}"
 
 
 def aligned(rows: list[list[str]]) -> str:
@@ -187,11 +119,8 @@ def records(cells: Cells) -> list[dict[str, Any]]:
         {
             "system": system,
             "scene": scene,
-            "ms": round(cell.ms, 3),
-            "disturbed": cell.disturbed,
-            "rounds": [round(each.ms, 3) for each in cell.rounds],
-            "elsewhere": [round(each.elsewhere, 2) for each in cell.rounds],
-            "threads": cell.threads,
+            "ms": round(median(rounds), 3),
+            "rounds": [round(each, 3) for each in rounds],
         }
-        for (system, scene), cell in cells.items()
+        for (system, scene), rounds in cells.items()
     ]

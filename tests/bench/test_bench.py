@@ -1,4 +1,4 @@
-"""The benchmark measures in turn, leaves disturbed rounds out, starts whole programs, and draws what it measured."""
+"""The benchmark measures in turn, starts whole programs, and draws what it measured."""
 
 from __future__ import annotations
 
@@ -12,21 +12,8 @@ from PIL import Image
 
 from minirt import load
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.threads import usable_cores
 from tests.bench import charts, scenes, starts
-from tests.bench.measure import (
-    Cell,
-    Clock,
-    MissingError,
-    Round,
-    Setting,
-    System,
-    clock,
-    elsewhere,
-    records,
-    table,
-    take_turns,
-)
+from tests.bench.measure import Cells, MissingError, Setting, System, records, table, take_turns
 from tests.bench.starts import HEIGHT, WIDTH, FileStart, WindowStart, right_picture, shows, virtual_screen
 
 ONE = scenes.HERE / "one.rt"
@@ -51,59 +38,33 @@ class Counting(System):
         return [100.0, float(self.took * len(self.name)), 0.0]
 
 
-def counted(names: str, paths: str, rounds: int) -> tuple[dict[tuple[str, str], Cell], list[str]]:
+def counted(names: str, paths: str, rounds: int) -> tuple[Cells, list[str]]:
     """Let fake systems take turns; return the cells and the calls."""
     calls: list[str] = []
-    systems: list[System] = [Counting(Setting(16, 16, usable_cores(), Path()), each, calls) for each in names.split()]
+    systems: list[System] = [Counting(Setting(16, 16, 2, Path()), each, calls) for each in names.split()]
     return take_turns(systems, [Path(f"{each}.rt") for each in paths.split()], rounds, 0.0), calls
 
 
-def test_systems_take_turns_on_what_they_render(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tests.bench.measure.elsewhere", lambda start, end: 0.0)
+def test_systems_take_turns_on_what_they_render() -> None:
     cells, calls = counted("a bb", "x y", 3)
     assert calls == ["a x", "bb x", "a y", "bb y"] * 3
-    assert [each.ms for each in cells["bb", "x"].rounds] == [2, 6, 10]
-    assert cells["bb", "x"].ms == 6
+    assert cells["bb", "x"] == [2, 6, 10]
     cells, _ = counted("a bb", "one mesh", 1)
     assert table(cells, ["a", "bb"], ["one", "mesh"]).splitlines() == [
-        "ms a frame          one         mesh",
-        "a           1.00   x1.0  2.00   x1.0",
-        "bb          2.00   x2.0            -",
+        "ms a frame         one        mesh",
+        "a           1.00  x1.0  2.00  x1.0",
+        "bb          2.00  x2.0           -",
     ]
 
 
-def test_cells_that_were_always_disturbed_are_measured_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    loads = iter([9.0, 9.0, 0.0, 9.0, 0.0])  # of bb and a in two rounds, then of a alone
-    monkeypatch.setattr("tests.bench.measure.elsewhere", lambda start, end: next(loads))
-    cells, calls = counted("bb a", "x", 2)
-    assert calls == ["bb x", "a x", "bb x", "a x", "a x"]
-    assert [cells[name, "x"].ms for name in ("bb", "a")] == [4, 3]
-
-
-def test_rounds_that_others_disturbed_do_not_count() -> None:
-    everything = usable_cores()
-    cell = Cell(everything, [Round(5, 0.0), Round(90, 1.5), Round(7, 0.05)])
-    assert (cell.ms, cell.disturbed) == (6, False)
-    assert Cell(everything, [Round(90, 1.5), Round(80, 1.5)]).ms == 85
-    assert not Cell(everything - 2, [Round(90, 1.5)]).disturbed  # there was a processor to spare
-    assert elsewhere(Clock(0, 100, 10), Clock(2, 107, 13)) == 2
-    start, end = clock(), clock()
-    assert end.wall >= start.wall
-    assert end.all >= start.all >= 0
-
-
-def test_the_table_has_figures_of_three_digits_ratios_of_two_and_marks() -> None:
-    busy = usable_cores()
-    figures = {("us", "one"): (2, 0), ("us", "two"): (9.996, 0), ("them", "one"): (1, 9), ("them", "two"): (912.3, 0)}
-    cells = {key: Cell(busy, [Round(*each)]) for key, each in figures.items()}
-    assert table(cells, ["us", "them"], ["one", "two"]).splitlines() == [
-        "ms a frame          one          two",
-        "us          2.00   x1.0  10.0   x1.0",
-        "them        1.00* x0.50   912    x91",
+def test_the_table_has_medians_of_three_digits_and_ratios_of_two() -> None:
+    figures = {("us", "one"): [9, 2, 1], ("us", "two"): [9.996], ("them", "one"): [1], ("them", "two"): [912.3]}
+    assert table(figures, ["us", "them"], ["one", "two"]).splitlines() == [
+        "ms a frame         one         two",
+        "us          2.00  x1.0  10.0  x1.0",
+        "them        1.00 x0.50   912   x91",
     ]
-    assert records(cells)[2] == {
-        "system": "them", "scene": "one", "ms": 1, "disturbed": True, "rounds": [1], "elsewhere": [9], "threads": busy,
-    }  # fmt: skip
+    assert records(figures)[0] == {"system": "us", "scene": "one", "ms": 2, "rounds": [9, 2, 1]}
 
 
 def test_the_scenes_are_as_documented(tmp_path: Path) -> None:
@@ -194,13 +155,13 @@ def pixels_of(path: Path, colour: str) -> np.ndarray:
 def test_charts_show_the_measured_times(tmp_path: Path) -> None:
     """On a logarithmic axis a factor is a distance: 3, 30 and 300 ms lie equally far apart."""
     times = {"one": 3.0, "fifty": 30.0, "tenthousand": 300.0}
-    cells = {("miniRT double", scene): Cell(1, [Round(ms, 0)]) for scene, ms in times.items()}
+    cells = {("miniRT double", scene): [ms] for scene, ms in times.items()}
     charts.dots(cells, tmp_path / "dots.png", "ms")
     near, middle, far = (pixels_of(tmp_path / "dots.png", colour).mean() for colour in charts.SCENES[:3])
     assert far - middle == pytest.approx(middle - near, rel=0.02)
     assert middle - near > 100
     assert charts.offsets([1.0, 1.1, 1.2, 9.0]) == [7, -15, 17, -15]  # labels of near values do not overlap
-    grown = {("miniRT double", str(n)): Cell(1, [Round(n**0.4, 0)]) for n in (10, 100, 1000)}
+    grown = {("miniRT double", str(n)): [n**0.4] for n in (10, 100, 1000)}
     charts.growth(grown, tmp_path / "growth.png")
     assert len(pixels_of(tmp_path / "growth.png", COLOUR)) > 1000
     assert len(pixels_of(tmp_path / "growth.png", charts.OTHERS)) == 0
