@@ -11,7 +11,6 @@ import os
 import sys
 from functools import cache
 from importlib import import_module
-from math import inf
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from minirt.errors import RenderError as RenderError
@@ -29,18 +28,20 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.example_scenes import examples as examples
     from minirt.fields import MeshFile as MeshFile
     from minirt.helpers.system import limit_memory as limit_memory
-    from minirt.image import Image as Image
-    from minirt.image import LinearImage as LinearImage
     from minirt.materials import *  # noqa: F403
     from minirt.movie import save_movie as save_movie
     from minirt.notebook import view as view
     from minirt.rendering import Renderer as Renderer
     from minirt.rendering.buffers import Buffers as Buffers
     from minirt.rendering.buffers import buffers as buffers
+    from minirt.rendering.image import Image as Image
+    from minirt.rendering.image import LinearImage as LinearImage
     from minirt.rendering.queries.rays import Hits as Hits
     from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace
-    from minirt.rendering.settings import RenderSettings
+    from minirt.rendering.renderer import renderer as renderer
+    from minirt.rendering.settings import DEFAULT_ERROR as DEFAULT_ERROR
+    from minirt.scene import DEFAULT_SIZE as DEFAULT_SIZE
     from minirt.scene import Ambient as Ambient
     from minirt.scene import Background as Background
     from minirt.scene import Camera as Camera
@@ -53,13 +54,10 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.scene import SpotLight as SpotLight
     from minirt.scene import dumps as dumps
     from minirt.scene import loads as loads
+    from minirt.scene import size_of as size_of
     from minirt.shapes import *  # noqa: F403
 
 __version__ = "0.1.0"
-DEFAULT_ERROR = 0.002  # half a level of 255: the least that a picture of bytes can show
-CANCELLED = "the picture was cancelled"  # by `minirt.renderer(...).cancel()`, from another thread
-PIXEL, LIGHT = 4, 24  # bytes of a pixel and of its light, while they are rendered
-DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 
 # Names that are imported on first use, so that `miniRT --help` need not wait for them.
 MODULES = {
@@ -68,14 +66,19 @@ MODULES = {
     "minirt.errors": ("FileError", "MiniRTError", "MlxError", "ReplayError", "SceneError"),
     "minirt.example_scenes": ("example", "examples"),
     "minirt.fields": ("MeshFile",),
-    "minirt.image": ("Image", "LinearImage"),
+    "minirt.rendering.image": ("Image", "LinearImage"),
     "minirt.helpers.system": ("limit_memory",),
     "minirt.notebook": ("view",),
     "minirt.rendering": ("Renderer",),
     "minirt.rendering.buffers": ("Buffers", "buffers"),
+    "minirt.rendering.renderer": ("renderer",),
+    "minirt.rendering.settings": ("DEFAULT_ERROR",),
     "minirt.rendering.queries.rays": ("Hits", "camera_rays", "trace"),
     "minirt.movie": ("save_movie",),
-    "minirt.scene": (*("Ambient", "Background", "Camera", "Lamp", "Resolution", "Scene", "dumps", "loads"),),
+    "minirt.scene": (
+        *("Ambient", "Background", "Camera", "Lamp", "Resolution", "Scene", "dumps", "loads"),
+        *("DEFAULT_SIZE", "size_of"),
+    ),
     "minirt.shapes": ("Shape",),
 }
 HOMES = {name: module for module, names in MODULES.items() for name in names}
@@ -84,7 +87,7 @@ REGISTRIES = (
     "minirt.materials",
     "minirt.scene.lights",
 )  # the names in their `PUBLIC` are public here, too
-OWN = ("DEFAULT_ERROR", "DEFAULT_SIZE", "RenderError", "load", "render", "renderer", "size_of")
+OWN = ("RenderError", "load", "render")
 
 if not TYPE_CHECKING:
 
@@ -123,11 +126,6 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
     from minirt.scene import load as read
 
     return read(path, lenient, left_handed).scene
-
-
-def size_of(scene: Scene) -> tuple[int, int]:
-    """Width and height in pixels that a scene asks for, or the default."""
-    return (scene.resolution.width, scene.resolution.height) if scene.resolution else DEFAULT_SIZE
 
 
 @overload
@@ -206,8 +204,8 @@ def render(
     RenderError for a picture, textures or lists of shapes that need more memory than `minirt.limit_memory` allows.
     """
     from minirt.rendering.packing.camera import Region
-    from minirt.rendering.settings import RenderSettings
-    from minirt.scene.scene import check_scene
+    from minirt.rendering.settings import RenderSettings, rendered
+    from minirt.scene.scene import check_scene, size_for
 
     check_scene(scene, "render")
     size = size_for(scene, width, height)
@@ -217,58 +215,3 @@ def render(
         region = (0, rows[0], size[0], rows[1] - rows[0])
     part = region and Region(*region)
     return rendered(scene, size, RenderSettings(samples, error, time, threads, precision, depth, linear, dither, part))
-
-
-def size_for(scene: Scene, width: int | None, height: int | None) -> tuple[int, int]:
-    """The size of a picture of a scene, whose own is used where none is asked for; RenderError for an empty one."""
-    own_width, own_height = size_of(scene)
-    size = own_width if width is None else width, own_height if height is None else height
-    if min(size) < 1:
-        raise RenderError(f"a picture has at least 1x1 pixels, got {size[0]}x{size[1]}")
-    return size
-
-
-def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:
-    """A picture of a scene: what `render` returns. RenderError."""
-    import numpy as np
-
-    from minirt.helpers import system
-    from minirt.helpers.progress import State, in_notebooks
-    from minirt.image import Image, LinearImage
-    from minirt.rendering.packing.camera import cut_for
-
-    crop, shape, kept, _ = cut_for(settings.region, *size)
-    system.check_picture(*shape, PIXEL + LIGHT * (settings.linear or settings.dither))
-    pixels = np.empty((*shape, 4), np.uint8)
-    light = np.zeros((*shape, 3)) if settings.linear else None
-    chosen = settings.renderer
-    reached = None
-    if settings.samples == "auto":
-        default = DEFAULT_ERROR if settings.time is None else 0.0
-        goal = settings.error or default, inf if settings.time is None else settings.time
-        if settings.time is not None:
-            chosen.prepare(scene)
-        with in_notebooks(lambda: State("sampling")):
-            reached = chosen.reach(scene, pixels, *goal, light, crop)
-        is_done = reached is not None
-    else:
-        with in_notebooks(lambda: State("picture", chosen.rows_done(len(pixels)))):
-            is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
-    if not is_done:
-        raise RenderError(CANCELLED)
-    if light is None:
-        return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone)
-    light = np.ascontiguousarray(light[kept])
-    return LinearImage.from_bgra(pixels[kept], light, reached, scene.camera.tone)
-
-
-def renderer(
-    threads: int | None = None, precision: str = "double", depth: int | None = None, dither: bool = False
-) -> Renderer:
-    """A renderer with these threads, precision and depth, that dithers or not: the one that `render` uses.
-
-    Equal arguments, defaults included, give the same object, which keeps its threads and the packed scene.
-    """
-    from minirt.rendering.renderer import shared_renderer
-
-    return shared_renderer(threads, precision, depth, dither)

@@ -17,7 +17,7 @@ from minirt.helpers.progress import State, in_notebooks
 
 if TYPE_CHECKING:
     from minirt.formats.films import Film
-    from minirt.image import Image
+    from minirt.rendering.image import Image
 
 Recording: TypeAlias = Callable[[Callable[["Image"], None]], object]  # gives pictures to a function
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.image import Image
+from minirt.rendering.image import Image
 
 Bytes = NDArray[np.uint8]  # (h, w, 3)
 

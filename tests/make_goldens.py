@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from minirt.image import Image
+from minirt.rendering.image import Image
 from minirt.scene import Scene, load
 from tests.compare import Bytes
 from tests.paths import scene_files

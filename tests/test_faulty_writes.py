@@ -15,8 +15,8 @@ import pytest
 from minirt.errors import MiniRTError
 from minirt.formats.table import FORMATS, is_installed
 from minirt.helpers import file_io
-from minirt.image import Image
 from minirt.movie import save_movie
+from minirt.rendering.image import Image
 from minirt.report.document import write_files
 from minirt.scene import parse
 from tests.faulty_files import CODES, counting, failing_at, faulty_files, is_killed_at, short

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import RenderError
-from minirt.image import Image, format_of
+from minirt.rendering.image import Image, format_of
 
 ARRAY = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3) * 3
 

@@ -29,20 +29,19 @@ MAY: dict[str, set[str]] = {
     "formats": {"errors", "helpers"},
     "scene": LOW - {"lanes"} | {"meshes", "helpers", "formats"},
     "kernel": {"errors", "lanes", "shapes", "helpers"},
-    "rendering": LOW | {"helpers", "kernel", "scene"},
-    "image": {"errors", "helpers", "formats", "rendering"},
+    "rendering": LOW | {"helpers", "formats", "kernel", "scene"},
     "cluster": LOW - {"lanes", "shapes", "materials", "records", "fields"}
-    | {"__init__", "helpers", "formats", "image", "kernel", "meshes", "rendering", "scene"},
-    "movie": {"errors", "helpers", "image", "formats"},
+    | {"__init__", "helpers", "formats", "kernel", "meshes", "rendering", "scene"},
+    "movie": {"errors", "helpers", "rendering", "formats"},
     "mlx": {"errors", "formats"},
-    "viewer": LOW - {"lanes", "records"} | {"__init__", "helpers", "image", "meshes", "mlx", "rendering", "scene"},
-    "notebook": {"__init__", "helpers", "errors", "scene", "image", "mlx", "viewer"},
-    "report": LOW | {"__init__", "helpers", "image", "kernel", "rendering", "scene"},
-    "cli": {"__init__", "cluster", "errors", "formats", "helpers", "image", "movie"}
+    "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "rendering", "scene"},
+    "notebook": {"helpers", "errors", "scene", "mlx", "rendering", "viewer"},
+    "report": LOW | {"__init__", "helpers", "kernel", "rendering", "scene"},
+    "cli": {"__init__", "cluster", "errors", "formats", "helpers", "movie"}
     | {"rendering", "report", "scene", "viewer"},
     "__main__": {"cli"},
     "example_scenes": {"errors", "scene"},
-    "__init__": LOW | {"image", "helpers", "scene", "rendering"},
+    "__init__": LOW | {"helpers", "scene", "rendering"},
 }
 COMPILER = {"numba", "llvmlite"}
 COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler
@@ -193,6 +192,6 @@ def test_parts_modules_and_folders_import_each_other_in_no_circle() -> None:
 
 
 def test_heavy_imports_are_late() -> None:
-    light = {path: source for path, source in sources().items() if path.startswith(("__init__.py", "cli/", "image.py"))}
+    light = {path: source for path, source in sources().items() if path.startswith(("__init__.py", "cli/"))}
     del light["cli/render.py"]  # which is imported late
     assert importers(light, LATE, late=False) == {}

@@ -13,7 +13,6 @@ from collections.abc import Iterable
 from math import inf
 from typing import Any, NamedTuple, NoReturn
 
-from minirt import DEFAULT_ERROR
 from minirt.cli.output import say, tell
 from minirt.errors import nearest
 
@@ -220,7 +219,7 @@ def argument_parser() -> Arguments:
         "--error",
         type=positive_number,
         metavar="E",
-        help=f"with --samples auto: sample until the estimated error is at most E ({DEFAULT_ERROR})",
+        help="with --samples auto: sample until the estimated error is at most E (0.002)",
     )
     add("--time", type=positive_number, metavar="SECONDS", help="with --samples auto: sample for that long")
     add(

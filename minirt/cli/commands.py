@@ -62,10 +62,10 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
 
 def report(scene: Scene, options: argparse.Namespace) -> int:
     """Measure error against run time and write the report into a folder."""
-    import minirt
     from minirt.report.measure import report as write_report
+    from minirt.scene import size_of
 
-    size = options.size or minirt.size_of(scene)
+    size = options.size or size_of(scene)
     how = options.threads, options.quick, options.ablation
     say(write_report(scene, options.scene[0], options.report, size, *how))
     return OK
@@ -76,8 +76,8 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
 
     `saved` is the scene of the file, where options have changed it.
     """
-    import minirt
     from minirt import viewer
+    from minirt.rendering.renderer import renderer
 
     try:
         return viewer.run(
@@ -90,35 +90,41 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
             watch=options.watch,
             text_scale=options.text_scale,
             saved=saved,
-            renderer=minirt.renderer(options.threads, options.precision, options.depth, options.dither),
+            renderer=renderer(options.threads, options.precision, options.depth, options.dither),
         )
     except MlxError as error:
         if not options.fallback:
             raise
-        from minirt.cli.render import render_picture
+        from minirt.cli.render import render_picture, settings_for
+        from minirt.cluster.job import Job
+        from minirt.scene import size_of
 
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
-        render_picture(scene, argparse.Namespace(**vars(options) | {"output": None}), options.fallback)
+        without_output = argparse.Namespace(**vars(options) | {"output": None})
+        job = Job(scene, options.size or size_of(scene), settings_for(options, options.fallback))
+        render_picture(job, without_output, options.fallback)
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 
 
 def replay(scene: Scene, options: argparse.Namespace) -> int:
     """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
-    import minirt
     from minirt.cli.files import check_output, is_film
     from minirt.cli.render import write
     from minirt.movie import record_movie
+    from minirt.rendering.image import Image
+    from minirt.rendering.renderer import renderer
+    from minirt.scene import size_of
     from minirt.viewer.app.replay import FPS, record
     from minirt.viewer.app.replay import replay as play
 
-    width, height = options.size or minirt.size_of(scene)
+    width, height = options.size or size_of(scene)
     if options.output:
         check_output(options.output, width, height)
     lines = read_lines(options.replay)
     settings: dict[str, Any] = {
         "file": options.replay,
-        "renderer": minirt.renderer(options.threads, options.precision, options.depth, options.dither),
+        "renderer": renderer(options.threads, options.precision, options.depth, options.dither),
         "size": (width, height),
         "path": options.scene[0],
         "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine
@@ -133,7 +139,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
         pixels = play(scene, lines, **settings)
     if options.output:  # which carries no scene: keys have edited it
         without_scene = argparse.Namespace(**vars(options) | {"metadata": False})
-        write(minirt.Image.from_bgra(pixels), options.output, scene, without_scene)
+        write(Image.from_bgra(pixels), options.output, scene, without_scene)
     return OK
 
 

@@ -12,21 +12,21 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-import minirt
 from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.files import check_output, format_name, is_film, needs_light
 from minirt.cli.output import say_bytes, tell
+from minirt.cluster.job import Job
 from minirt.cluster.journal import Journal, delete, path_for
-from minirt.cluster.pictures import bands_of, frames, picture_of, work_of
+from minirt.cluster.pictures import frames, picture_of, render_to
 from minirt.errors import RenderError
 from minirt.formats.table import memory_of
 from minirt.helpers import system
 from minirt.helpers.progress import State, progress
-from minirt.rendering.packing.camera import Region, cut_for
-from minirt.rendering.settings import RenderSettings
+from minirt.rendering.settings import LIGHT, RenderSettings
+from minirt.scene import size_of
 
 if TYPE_CHECKING:
-    from minirt.image import Image
+    from minirt.rendering.image import Image
     from minirt.rendering.outcome import Outcome
     from minirt.scene import Scene
 
@@ -37,13 +37,14 @@ SIZE = struct.Struct("<q")  # of a numbered picture that is written
 
 def render_output(scene: Scene, options: argparse.Namespace) -> int:
     """Render a picture, or the pictures of a turntable, and write the output."""
+    job = Job(scene, options.size or size_of(scene), settings_for(options, options.output))
     with system.gc_paused(), workers(options) as executor:
         if options.turntable:
-            outcome = render_film(scene, options, executor)
-        elif is_streamed(scene, options):
-            outcome = stream(scene, options, executor)
+            outcome = render_film(job, options, executor)
+        elif is_streamed(job, options):
+            outcome = stream(job, options, executor)
         else:
-            outcome = render_picture(scene, options, options.output, executor)
+            outcome = render_picture(job, options, options.output, executor)
     return FAILED if options.strict and outcome and not outcome.is_reached else OK
 
 
@@ -78,11 +79,12 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
         yield client
 
 
-def is_long(options: argparse.Namespace, size: tuple[int, int], settings: RenderSettings, count: int = 1) -> bool:
+def is_long(job: Job, options: argparse.Namespace, count: int = 1) -> bool:
     """Whether `count` pictures are so much work that it is kept when it is interrupted. Samples that depend on those
     before cannot be gone on with."""
-    *_, width, height = settings.region or size
-    rays = 0 if settings.samples == "auto" else width * height * settings.samples * count
+    *_, width, height = job.region
+    samples = job.settings.samples
+    rays = 0 if samples == "auto" else width * height * samples * count
     return options.output not in (None, "-") and bool(options.resume or rays >= LONG)
 
 
@@ -134,27 +136,20 @@ class Share:
         return (self.done - found + rows) / max(1, self.total - found)
 
 
-def render_picture(scene: Scene, options: argparse.Namespace, output: str, executor: Any = None) -> Outcome | None:
-    """Render the scene as the options ask and write the output; print measurements and notices to standard error."""
-    from minirt.cluster.job import Band, columns_of, rows_of
-    from minirt.rendering.queries.preview import notice_about
+def render_picture(job: Job, options: argparse.Namespace, output: str, executor: Any = None) -> Outcome | None:
+    """Render a picture as the options ask and write the output; print measurements and notices to standard error."""
+    from minirt.rendering.notices import notices_about
 
-    size = options.size or minirt.size_of(scene)
-    settings = settings_for(options, output)
-    region = check_region(options, output, size)
-    check_memory(options, output, size)
+    scene, size, settings = job
+    check_job(job, options, output)
     start = perf_counter()
     if options.verbose and not executor:
         settings.renderer.prepare(scene)
         tell(f"kernel ready after {perf_counter() - start:.2f} s")
         start = perf_counter()
-    is_kept = is_long(options, size, settings)
-    bands = [Band(0, scene, size, settings)]
-    if executor:
-        bands = bands_of(rows_of(region), scene, size, settings)
-    elif is_kept and settings.samples != "auto":
-        bands = bands_of(columns_of(region, settings.samples), scene, size, settings)
-    share = Share(settings, len(bands), None if executor else region.height)
+    is_kept = is_long(job, options)
+    bands = job.cut(bool(executor), is_kept)
+    share = Share(settings, len(bands), None if executor else job.region.height)
 
     def state() -> State:
         if executor:
@@ -163,22 +158,28 @@ def render_picture(scene: Scene, options: argparse.Namespace, output: str, execu
             return State(output, share())
         return State("sampling", (perf_counter() - start) / settings.time if settings.time else None)
 
-    work = work_for(scene, options, size, settings) if is_kept else None
+    work = work_for(job, options) if is_kept else None
     with kept_work(options, work, f"{len(bands)} bands of the picture") as journal:
         with progress(state):
             image, not_finite = picture_of(bands, executor, journal, share.note)
         tell_outcome(image.reached)
+        seconds = perf_counter() - start
+        notices = notices_about(scene, size, settings, image, options.verbose and not executor)
         if not executor:
-            tell_more(scene, options, size, settings, perf_counter() - start, not_finite)
-        if not options.region and (notice := notice_about(scene, image.array)):
-            tell(f"notice: {notice}")
+            for each in notices.lost:
+                tell(f"notice: {each}")
+            if options.verbose:
+                tell_measurements(options, size, settings, seconds, not_finite)
+                tell(notices.clipped)
+        if notices.view:
+            tell(f"notice: {notices.view}")
         write(image, output, scene, options)
     return image.reached
 
 
-def work_for(scene: Scene, options: argparse.Namespace, size: tuple[int, int], settings: RenderSettings) -> str:
+def work_for(job: Job, options: argparse.Namespace) -> str:
     """Return what tells the work from others: a hash of all that the output depends on."""
-    return work_of(scene, size, settings, options.turntable, options.bits, options.quality, options.metadata)
+    return job.work(options.turntable, options.bits, options.quality, options.metadata)
 
 
 def tell_outcome(reached: Outcome | None) -> None:
@@ -189,44 +190,18 @@ def tell_outcome(reached: Outcome | None) -> None:
             tell(f"notice: {reached.notice}")
 
 
-def tell_more(
-    scene: Scene,
-    options: argparse.Namespace,
-    size: tuple[int, int],
-    settings: RenderSettings,
-    seconds: float,
-    not_finite: int,
+def tell_measurements(
+    options: argparse.Namespace, size: tuple[int, int], settings: RenderSettings, seconds: float, not_finite: int
 ) -> None:
-    """Tell what single precision cannot show, and with --verbose measurements of the picture."""
+    """Tell the time of a picture that was rendered here, and how its scene was packed."""
     renderer = settings.renderer
-    if options.precision == "single":
-        from minirt.report.stiffness import lost_in_single
-
-        for stiff in lost_in_single(scene, renderer.packing, *size):
-            tell(f"notice: single precision cannot show {stiff}")
-    if not options.verbose:
-        return
     place = f"region {options.region}, " if options.region else ""
     sampling = "" if settings.samples == "auto" else f"{settings.samples} samples a pixel, "
     threads = f"{renderer.threads} threads, {renderer.precision} precision"
     tell(f"{size[0]}x{size[1]}, {place}{sampling}{threads}: {seconds * 1e3:.1f} ms")
     tell(f"rays whose light is not finite: {not_finite}")
-    clipping = clipped(scene, size, settings)
     for note in renderer.notes:  # of the whole picture, since the light that is clipped was rendered
         tell(note)
-    tell(clipping)
-
-
-def clipped(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> str:
-    """Count the pixels that are brighter than the picture can show, by their light with one sample each."""
-    from minirt.rendering.tone_mapping import clipped_pixels
-
-    light = minirt.rendered(
-        scene, size, settings.replace(samples=1, error=None, time=None, linear=True, dither=False)
-    ).light("clipped pixels")
-    count, pixels = clipped_pixels(light, scene.camera.tone), light.size // 3
-    share = f"{100 * count / pixels:.2g} %"
-    return f"clipped pixels, brighter than the picture can show: {count} of {pixels} ({share}), by one sample each"
 
 
 def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) -> None:
@@ -243,22 +218,20 @@ def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[st
     from minirt.cli.options import settings_text
     from minirt.scene import dump, files
 
-    width, height = options.size or minirt.size_of(scene)
+    width, height = options.size or size_of(scene)
     way = files.way_to_scene("" if output == "-" else output, scene.file)
     return files.picture_texts(dump(scene), settings_text(options, width, height), way)
 
 
-def stream(scene: Scene, options: argparse.Namespace, executor: Any) -> Outcome | None:
+def stream(job: Job, options: argparse.Namespace, executor: Any) -> Outcome | None:
     """Render a picture of any size into a TIFF file, which goes on with what was interrupted."""
-    size = options.size or minirt.size_of(scene)
-    settings = settings_for(options, options.output)
-    region = check_region(options, options.output, size)
-    share = Share(settings, 0, None if executor else region.height)
+    scene, size, settings = job
+    share = Share(settings, 0, None if executor else job.region.height)
     how = {name: getattr(settings, name) for name in ("samples", "error", "threads", "precision", "depth", "dither")}
     how |= {"bits": options.bits or 8, "region": options.region}
     try:
         with progress(lambda: State(f"{share.done} of {share.total} bands", share() if share.total else None)):
-            reached = minirt.render_to(options.output, scene, *size, executor=executor, on_progress=share.note, **how)
+            reached = render_to(options.output, scene, *size, executor=executor, on_progress=share.note, **how)
     except KeyboardInterrupt:
         tell(f"{share.done} of {share.total} bands are kept; the same command goes on")
         raise
@@ -266,20 +239,18 @@ def stream(scene: Scene, options: argparse.Namespace, executor: Any) -> Outcome 
     return reached
 
 
-def render_film(scene: Scene, options: argparse.Namespace, executor: Any) -> Outcome | None:
+def render_film(job: Job, options: argparse.Namespace, executor: Any) -> Outcome | None:
     """Render the scene from all around it and write the film; return the worst outcome of a frame."""
-    size = options.size or minirt.size_of(scene)
-    settings = settings_for(options, options.output)
-    check_region(options, options.output, size)
-    check_memory(options, options.output, size)
+    check_job(job, options, options.output)
     wanted = options.frames or range(1, options.turntable + 1)
-    is_kept = is_long(options, size, settings, len(wanted))
-    work = work_for(scene, options, size, settings) if is_kept else None
+    work = work_for(job, options) if is_long(job, options, len(wanted)) else None
     with kept_work(options, work, f"{len(wanted)} pictures of the film") as journal:
-        film = Film(scene, options, size, settings, wanted, executor, journal)
+        film = Film(job, options, wanted, executor, journal)
         with progress(film.state):
             if is_film(options):
-                minirt.save_movie(film.images(), options.output, quality=options.quality)
+                from minirt.movie import save_movie
+
+                save_movie(film.images(), options.output, quality=options.quality)
             else:
                 deque(film.images(), 0)
     worst = max(film.outcomes, key=lambda each: each.error, default=None)
@@ -291,27 +262,20 @@ class Film:
     """The pictures of a turntable, each rendered, or kept by a program that was interrupted."""
 
     def __init__(
-        self,
-        scene: Scene,
-        options: argparse.Namespace,
-        size: tuple[int, int],
-        settings: RenderSettings,
-        wanted: range,
-        executor: Any,
-        journal: Journal | None,
+        self, job: Job, options: argparse.Namespace, wanted: range, executor: Any, journal: Journal | None
     ) -> None:
         from minirt.viewer.app.replay import turntable
 
-        views = islice(turntable(scene, options.turntable), wanted.start - 1, wanted.stop - 1)
+        views = islice(turntable(job.scene, options.turntable), wanted.start - 1, wanted.stop - 1)
         self.views = dict(zip(wanted, views, strict=True))
         self.options = options
         self.journal = journal
-        *_, width, height = settings.region or size
+        *_, width, height = job.region
         self.shape = height, width, 3
         self.kept = {number for number in wanted if self.is_kept(number)}
         missing = [view for number, view in self.views.items() if number not in self.kept]
-        self.pictures = frames(missing, size, settings, executor)
-        self.share = Share(settings, len(wanted), None if executor else height)
+        self.pictures = frames(missing, job.size, job.settings, executor)
+        self.share = Share(job.settings, len(wanted), None if executor else height)
         self.share.note(len(self.kept), len(wanted))
         self.current = wanted.start
         self.outcomes: list[Outcome] = []
@@ -366,28 +330,22 @@ def settings_for(options: argparse.Namespace, output: str) -> RenderSettings:
     return RenderSettings(options.samples or SAMPLES, linear=needs_light(options, output), **given)
 
 
-def is_streamed(scene: Scene, options: argparse.Namespace) -> bool:
+def is_streamed(job: Job, options: argparse.Namespace) -> bool:
     """Whether a picture is written as its bands come: by workers or beyond memory, as TIFF."""
     if format_name(options.output) != "TIFF" or options.time:
         return False
     try:
-        check_memory(options, options.output, options.size or minirt.size_of(scene))
+        check_job(job, options, options.output)
     except system.TooLargeError:
         return True
     return bool(options.cluster)
 
 
-def check_region(options: argparse.Namespace, output: str, size: tuple[int, int]) -> Region:
-    """Return the region that the options ask for, or all of a picture of this size; RenderError where it does not lie
-    in the picture, or cannot be written to the output."""
-    region = cut_for(options.region, *size).region
-    check_output(output, region.width, region.height)
-    return region
-
-
-def check_memory(options: argparse.Namespace, output: str, size: tuple[int, int]) -> None:
-    """Check that there is memory to render and write a picture of this size, or its region; RenderError otherwise."""
-    *_, width, height = options.region or size
-    is_light_extra = (options.dither or options.verbose) and not needs_light(options, output)
-    needed = memory_of(format_name(output), options.bits) + minirt.LIGHT * is_light_extra
+def check_job(job: Job, options: argparse.Namespace, output: str) -> None:
+    """Check that there is memory to render and write a picture, and that the output can hold it; RenderError
+    otherwise."""
+    *_, width, height = job.region
+    check_output(output, width, height)
+    is_light_extra = (options.dither or options.verbose) and not job.settings.linear
+    needed = memory_of(format_name(output), options.bits) + LIGHT * is_light_extra
     system.check_picture(height, width, needed)

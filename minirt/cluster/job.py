@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-import minirt
+from minirt import __version__
 from minirt.formats import tiff
-from minirt.image import Image, LinearImage
 from minirt.kernel.pixels import TILE
+from minirt.rendering import settings as rendering_settings
+from minirt.rendering.image import Image, LinearImage
 from minirt.rendering.outcome import Outcome
-from minirt.rendering.packing.camera import Region
+from minirt.rendering.packing.camera import Region, cut_for
 from minirt.rendering.settings import RenderSettings
 from minirt.scene import Scene
 
@@ -22,6 +23,39 @@ ROWS = 64  # of a band, where the next two leave the choice
 MOST_PIXELS = 2**21  # of a band, whose light takes 48 MiB; but at least one row of tiles
 LEAST_PIXELS = 2**15  # of a band: twice those from which on the estimated error of a picture is promised
 RAYS, MOST_COLUMNS = 2**21, 64  # rays of a band of columns, and bands; they are wider where there would be more of them
+
+
+class Job(NamedTuple):
+    """A picture of a scene, or a region of it, that is rendered in bands."""
+
+    scene: Scene
+    size: tuple[int, int]  # of the whole picture, in pixels
+    settings: RenderSettings
+
+    @property
+    def region(self) -> Region:
+        """The rectangle of the picture that is rendered; RenderError where it does not lie in the picture."""
+        return cut_for(self.settings.region, *self.size).region
+
+    def bands(self, regions: Sequence[Region], bits: int | None = None) -> list[Band]:
+        """Return the bands that render some regions."""
+        pairs = enumerate(regions)
+        return [Band(number, self.scene, self.size, self.settings.replace(region=each), bits) for number, each in pairs]
+
+    def cut(self, by_workers: bool, is_kept: bool) -> list[Band]:
+        """Cut the picture into bands for workers, or for a journal; return one band where neither is there."""
+        if by_workers:
+            return self.bands(rows_of(self.region))
+        if is_kept and self.settings.samples != "auto":
+            return self.bands(columns_of(self.region, self.settings.samples))
+        return [Band(0, self.scene, self.size, self.settings)]
+
+    def work(self, *more: object) -> str:
+        """Return what tells the job from others: a hash of all that the bits of the picture, or of `more`, depend
+        on."""
+        from minirt.rendering.identity import identity
+
+        return identity(self.scene, f"{__version__} {self.size} {self.settings.replace(threads=None)} {more}")
 
 
 class Band(NamedTuple):
@@ -55,7 +89,7 @@ class Made(NamedTuple):
 
 def render_band(band: Band) -> Made:
     """Render a band in this process."""
-    image = minirt.rendered(band.scene, band.size, band.settings)
+    image = rendering_settings.rendered(band.scene, band.size, band.settings)
     if band.bits:
         return Made(tiff.strips(image.array if band.bits == 8 else image.deep), image.reached)
     parts = (image.array,) if image.linear is None else (image.array, image.linear)

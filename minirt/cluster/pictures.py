@@ -12,19 +12,18 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-import minirt
-from minirt.cluster.job import Band, Made, image_of, render_band, rows_of, whole
+from minirt.cluster.job import Band, Job, Made, image_of, render_band, rows_of, whole
 from minirt.cluster.journal import Journal, packed, record_of
 from minirt.errors import RenderError
 from minirt.formats import tiff
 from minirt.formats.table import check_bits, check_size, format_of
 from minirt.helpers import file_io
-from minirt.image import Image
+from minirt.rendering.image import Image
 from minirt.rendering.outcome import Outcome
-from minirt.rendering.packing.camera import Region, cut_for
+from minirt.rendering.packing.camera import Region
 from minirt.rendering.settings import RenderSettings
 from minirt.scene import Scene
-from minirt.scene.scene import check_scene
+from minirt.scene.scene import check_scene, size_for
 
 if TYPE_CHECKING:
     from minirt.cluster.executor import Workers
@@ -72,7 +71,7 @@ def frames(
         first = None
         for number, scene in enumerate(scenes):
             check_scene(scene, "render_all")
-            first = first or minirt.size_for(scene, *size)
+            first = first or size_for(scene, *size)
             tones.append(scene.camera.tone)
             yield Band(number, scene, first, settings)
 
@@ -115,28 +114,22 @@ def render_to(
     check_bits(name, bits)
     part = region and Region(*region)
     settings = RenderSettings(samples, error, None, threads, precision, depth, bits == 16, dither, part)
-    size = minirt.size_for(scene, width, height)
+    size = size_for(scene, width, height)
     check_size(path, name, *size)
     try:
         file_io.probe(path)
-        return stream(Path(os.path.realpath(path)), scene, size, settings, bits, executor, on_progress)  # a link stays
+        return stream(
+            Path(os.path.realpath(path)), Job(scene, size, settings), bits, executor, on_progress
+        )  # a link stays
     except OSError as reason:
         raise RenderError(f"{os.fspath(path)}: cannot write: {reason.strerror or reason}") from None
 
 
-def stream(
-    output: Path,
-    scene: Scene,
-    size: tuple[int, int],
-    settings: RenderSettings,
-    bits: int,
-    executor: Workers | None,
-    on_progress: Progress,
-) -> Outcome | None:
+def stream(output: Path, job: Job, bits: int, executor: Workers | None, on_progress: Progress) -> Outcome | None:
     """Render a picture into a journal that begins as a TIFF file does, and make that the output. OSError."""
-    region = cut_for(settings.region, *size).region
-    bands = bands_of(rows_of(region), scene, size, settings, bits)
-    with closing(Journal(output, work_of(scene, size, settings, bits), resume=True, head=tiff.header())) as journal:
+    region = job.region
+    bands = job.bands(rows_of(region), bits)
+    with closing(Journal(output, job.work(bits), resume=True, head=tiff.header())) as journal:
         kept = ((band.number, journal.read(band.number)) for band in bands)
         done = {number: record_of(data) for number, data in kept if data}
         on_progress(len(done), len(bands))
@@ -204,18 +197,3 @@ def render_bands(bands: Iterable[Band], executor: Workers | None, in_order: bool
     from minirt.cluster.executor import Dispatcher
 
     return Dispatcher(executor).results(bands, in_order)
-
-
-def bands_of(
-    regions: Sequence[Region], scene: Scene, size: tuple[int, int], settings: RenderSettings, bits: int | None = None
-) -> list[Band]:
-    """Return the bands of a picture of a scene: some regions of it."""
-    pairs = enumerate(regions)
-    return [Band(number, scene, size, settings.replace(region=region), bits) for number, region in pairs]
-
-
-def work_of(scene: Scene, size: tuple[int, int], settings: RenderSettings, *more: object) -> str:
-    """Return what tells a picture from others: a hash of all that its bits depend on."""
-    from minirt.rendering.identity import identity
-
-    return identity(scene, f"{minirt.__version__} {size} {settings.replace(threads=None)} {more}")

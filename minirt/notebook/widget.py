@@ -10,9 +10,10 @@ import anywidget
 import traitlets
 
 from minirt.errors import MiniRTError
-from minirt.image import Image
 from minirt.notebook.page_back_end import PageBackend
 from minirt.notebook.page_events import deliver
+from minirt.rendering.image import Image
+from minirt.scene import size_of
 from minirt.scene.scene import check_scene
 
 if TYPE_CHECKING:
@@ -47,18 +48,18 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
         dither: bool = False,
     ) -> None:
         """Open the viewer; see `minirt.view`."""
-        import minirt
         from minirt.mlx import Mlx
+        from minirt.rendering.renderer import renderer
         from minirt.viewer.app.desktop import open_session
 
         self._assigned: Scene | None = None  # the last scene, until the session's thread shows it
-        size = size or (minirt.size_of(scene) if scene.resolution else DEFAULT_SIZE)
+        size = size or (size_of(scene) if scene.resolution else DEFAULT_SIZE)
         self._backend = PageBackend(lambda message, data: self.send(message, [data] if data else None))
         self._session = open_session(
             scene,
             scene.file or Path("scene.rt"),
             size,
-            minirt.renderer(threads, precision, dither=dither),
+            renderer(threads, precision, dither=dither),
             Mlx(self._backend),
             keys=keys,
             samples=samples,

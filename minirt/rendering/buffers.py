@@ -14,7 +14,7 @@ from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.rays import camera_rays, trace
-from minirt.rendering.renderer import shared_renderer
+from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Ambient, Scene
 from minirt.scene.scene import check_scene
 from minirt.shapes import Shape

@@ -262,8 +262,13 @@ renderers: dict[Settings, Renderer] = {}
 lock = ForkSafeLock()  # two threads that ask at once get the same renderer
 
 
-def shared_renderer(threads: int | None, precision: str, depth: int | None, dither: bool) -> Renderer:
-    """Return the renderer with these settings, which keeps its threads and the packed scene for the next picture."""
+def renderer(
+    threads: int | None = None, precision: str = "double", depth: int | None = None, dither: bool = False
+) -> Renderer:
+    """A renderer with these threads, precision and depth, that dithers or not: the one that `minirt.render` uses.
+
+    Equal arguments, defaults included, give the same object, which keeps its threads and the packed scene.
+    """
     settings = threads, precision, depth, dither
     with lock:
         if settings not in renderers:

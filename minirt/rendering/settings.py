@@ -1,14 +1,25 @@
-"""Settings of a picture, the same for the library, the command line, workers and journals."""
+"""Settings of a picture, and rendering it: the same for the library, the command line, workers and journals."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 from typing import Any, Literal
 
+import numpy as np
+
 from minirt.errors import RenderError
+from minirt.helpers import system
+from minirt.helpers.progress import State, in_notebooks
 from minirt.records import Immutable, record
-from minirt.rendering.packing.camera import Region
-from minirt.rendering.renderer import Renderer, shared_renderer
+from minirt.rendering.image import Image, LinearImage
+from minirt.rendering.packing.camera import Region, cut_for
+from minirt.rendering.renderer import Renderer, renderer
+from minirt.scene import Scene
+
+DEFAULT_ERROR = 0.002  # half a level of 255: the least that a picture of bytes can show
+CANCELLED = "the picture was cancelled"  # by `minirt.renderer(...).cancel()`, from another thread
+PIXEL, LIGHT = 4, 24  # bytes of a pixel and of its light, while they are rendered
 
 
 @record()
@@ -39,4 +50,30 @@ class RenderSettings(Immutable):
     @property
     def renderer(self) -> Renderer:
         """The renderer that all pictures with these threads, precision, depth and dithering share."""
-        return shared_renderer(self.threads, self.precision, self.depth, self.dither)
+        return renderer(self.threads, self.precision, self.depth, self.dither)
+
+
+def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:
+    """Return the picture of a scene: what `minirt.render` returns. RenderError."""
+    crop, shape, kept, _ = cut_for(settings.region, *size)
+    system.check_picture(*shape, PIXEL + LIGHT * (settings.linear or settings.dither))
+    pixels = np.empty((*shape, 4), np.uint8)
+    light = np.zeros((*shape, 3)) if settings.linear else None
+    chosen = settings.renderer
+    reached = None
+    if settings.samples == "auto":
+        default = DEFAULT_ERROR if settings.time is None else 0.0
+        goal = settings.error or default, inf if settings.time is None else settings.time
+        if settings.time is not None:
+            chosen.prepare(scene)
+        with in_notebooks(lambda: State("sampling")):
+            reached = chosen.reach(scene, pixels, *goal, light, crop)
+        is_done = reached is not None
+    else:
+        with in_notebooks(lambda: State("picture", chosen.rows_done(len(pixels)))):
+            is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
+    if not is_done:
+        raise RenderError(CANCELLED)
+    if light is None:
+        return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone)
+    return LinearImage.from_bgra(pixels[kept], np.ascontiguousarray(light[kept]), reached, scene.camera.tone)

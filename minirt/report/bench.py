@@ -10,10 +10,9 @@ from time import perf_counter
 
 import numpy as np
 
-import minirt
 from minirt.helpers.system import runs
 from minirt.rendering import Renderer
-from minirt.scene import Scene, load
+from minirt.scene import Scene, load, size_of
 
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0  # of each of both measurements
 STEP = 1e-3  # scene units that the eye moves from frame to frame
@@ -31,7 +30,7 @@ def measure(
     start = perf_counter()
     load(path, lenient=True)
     load_s = perf_counter() - start
-    width, height = size or minirt.size_of(scene)
+    width, height = size or size_of(scene)
     renderer = Renderer(threads, precision)
     start = perf_counter()
     renderer.specialise(scene)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from minirt.errors import RenderError
 from minirt.helpers import file_io
-from minirt.image import Image
+from minirt.rendering.image import Image
 from minirt.report.findings import Findings, as_csv, as_json, choices, recommended, title
 from minirt.report.metrics import Picture as Light
 from minirt.report.metrics import error_image, to_8_bits

@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import minirt
+from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
 from minirt.report.metrics import Line, fit
 from minirt.report.pictures import DISTURBED_BY_OTHERS, OURS, Row
 from minirt.report.precision import KindCertificates, SingleError
-from minirt.report.stiffness import Stiff
 from minirt.scene import Scene, dump
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pillow")

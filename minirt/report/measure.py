@@ -17,6 +17,7 @@ from minirt.helpers.progress import State, progress
 from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
+from minirt.rendering.queries.stiffness import coincident, stiff_shapes
 from minirt.rendering.threads import usable_cores
 from minirt.report import povray
 from minirt.report.ablation import PAIRS, Ablation, Part
@@ -37,7 +38,6 @@ from minirt.report.pictures import (
 )
 from minirt.report.precision import KindCertificates, SingleError, hit_certificates, single_errors
 from minirt.report.settings import AUTO, COUNTS, Setting, settings
-from minirt.report.stiffness import coincident, stiff_shapes
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import Scene
 

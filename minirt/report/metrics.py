@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.image import Image
+from minirt.rendering.image import Image
 
 Picture = NDArray[np.float64]
 

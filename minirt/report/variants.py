@@ -13,8 +13,8 @@ import numpy as np
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture, Point, Triple
-from minirt.image import Image
 from minirt.materials import Attributes, Clouds, Compound, Glass
+from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import ATTRIBUTES, NEEDS, PLAIN, WORDS, features, material_features
 from minirt.rendering.scene_packing import Packing

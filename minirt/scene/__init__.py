@@ -5,5 +5,5 @@ from minirt.scene.lights import FurtherLight, Lamp, Light, ParallelLight, SpotLi
 from minirt.scene.pages import Item
 from minirt.scene.parser import Reading, load, loads, parse
 from minirt.scene.registry import format_table
-from minirt.scene.scene import Scene, check_scene, dump, dumps, save
+from minirt.scene.scene import DEFAULT_SIZE, Scene, check_scene, dump, dumps, save, size_of
 from minirt.scene.writer import describe

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import cos, radians, sin
 
 from minirt.element import Element
-from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real, Triple, Whole, declare, unit, upright
+from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real, Triple, Whole, declare, unit
 from minirt.records import record
 
 TONES = ("plain", "srgb", "filmic")  # how light becomes the levels of a picture, see `minirt.rendering.tone_mapping`
@@ -98,22 +97,6 @@ class Background(Element):
 
     code, title, plural, once = "bg", "background", "backgrounds", True
     paint: Triple | str = declare(Paint, "colour, or an environment map")
-
-
-def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
-    """Return the basis of a camera's picture in world space: the orthonormal vectors right, up and forward.
-
-    Without a roll the picture is upright. A roll turns right and up about forward, clockwise as the camera sees it.
-    A left-handed camera mirrors its picture: right is negated.
-    """
-    x, y, z = camera.direction
-    right, up = upright(x, y, z)
-    if camera.roll:
-        c, s = cos(radians(camera.roll)), sin(radians(camera.roll))
-        right, up = linear_combination(c, right, -s, up), linear_combination(s, right, c, up)
-    if camera.left_handed:
-        right = linear_combination(-1.0, right, 0.0, right)
-    return right, up, (x, y, z)
 
 
 def linear_combination(a: float, u: Triple, b: float, v: Triple) -> Triple:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from minirt.element import Element
+from minirt.errors import RenderError
 from minirt.scene import writer
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
         Triangle,
     )
 
+DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 
 
@@ -263,3 +265,17 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     An existing file keeps its permissions, and a symbolic link stays one.
     """
     writer.write(scene.pages, path)
+
+
+def size_of(scene: Scene) -> tuple[int, int]:
+    """Width and height in pixels that a scene asks for, or the default."""
+    return (scene.resolution.width, scene.resolution.height) if scene.resolution else DEFAULT_SIZE
+
+
+def size_for(scene: Scene, width: int | None, height: int | None) -> tuple[int, int]:
+    """The size of a picture of a scene, whose own is used where none is asked for; RenderError for an empty one."""
+    own_width, own_height = size_of(scene)
+    size = own_width if width is None else width, own_height if height is None else height
+    if min(size) < 1:
+        raise RenderError(f"a picture has at least 1x1 pixels, got {size[0]}x{size[1]}")
+    return size

@@ -14,8 +14,8 @@ from minirt.fields import MeshFile
 from minirt.fields.triples import file_name
 from minirt.helpers import file_io
 from minirt.helpers.file_io import reason
-from minirt.image import Image
 from minirt.meshes import load_mesh
+from minirt.rendering.image import Image
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
 

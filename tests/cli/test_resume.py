@@ -16,6 +16,7 @@ from minirt.cli import render
 from minirt.cluster import job, journal
 from minirt.cluster.job import Made
 from minirt.cluster.journal import Journal
+from minirt.rendering import settings
 from tests import processes
 from tests.cli.program import SCENE, Run, environment
 
@@ -36,8 +37,8 @@ class Renders:
     """Counts the pictures and strips that are rendered, and interrupts one."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.count, self.last, self.render = 0, 0, minirt.rendered
-        monkeypatch.setattr(minirt, "rendered", self)
+        self.count, self.last, self.render = 0, 0, settings.rendered
+        monkeypatch.setattr(settings, "rendered", self)
 
     def __call__(self, *arguments: Any, **settings: Any) -> Any:
         self.count += 1
@@ -127,7 +128,7 @@ def test_what_was_left_by_other_work_is_refused(
     elif change == "texture":
         minirt.Image(minirt.render(minirt.loads(SCENE), 9, 6).array).save(folder / "dots.png")
     elif change == "kernel":
-        monkeypatch.setattr(minirt, "__version__", "0.0.1")
+        monkeypatch.setattr(job, "__version__", "0.0.1")
     renders.until(0)
     ended = run(*STILL, *CHANGES.get(change, ()), "--resume")
     assert ended.status == 1
@@ -201,14 +202,15 @@ import os, signal, sys
 import minirt
 from minirt.cli import main, render
 from minirt.cluster import job, journal
+from minirt.rendering import settings
 render.LONG, job.RAYS, journal.SHARE = 0, 32 * 40 * 4, 1e9
-rendered, calls = minirt.rendered, []
+rendered, calls = settings.rendered, []
 def killed(*arguments, **settings):
     calls.append(1)
     if len(calls) == 4:
         os.kill(os.getpid(), signal.SIGKILL)
     return rendered(*arguments, **settings)
-minirt.rendered = killed
+settings.rendered = killed
 main(sys.argv[1:])
 """
 

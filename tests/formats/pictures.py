@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.image import Image
+from minirt.rendering.image import Image
 
 SIZES = ((1, 1), (5, 7), (33, 40), (18, 301), (3, 9))  # height, width: of one block of 16 lines, and of several
 

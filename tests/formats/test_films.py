@@ -12,8 +12,8 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import RenderError
-from minirt.image import Image
 from minirt.movie import save_movie
+from minirt.rendering.image import Image
 from tests.processes import in_child
 from tests.test_faulty_writes import comparable
 

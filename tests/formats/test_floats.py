@@ -10,8 +10,8 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.formats import floats
-from minirt.image import Image
 from minirt.materials.radiance import read_header, read_pixels
+from minirt.rendering.image import Image
 from tests.formats.pictures import SIZES, light, picture
 
 exr = pytest.importorskip("OpenEXR")

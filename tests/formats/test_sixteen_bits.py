@@ -10,7 +10,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import RenderError
-from minirt.image import Image
+from minirt.rendering.image import Image
 from minirt.rendering.tone_mapping import light_of
 from tests.formats.pictures import SIZES, light, picture
 

@@ -11,7 +11,7 @@ from PIL import Image as pillow  # noqa: N813
 from minirt.errors import RenderError
 from minirt.formats import table
 from minirt.formats.table import BY_SUFFIX, FILMS_BY_PYAV, FORMATS, check_size, format_of, is_installed
-from minirt.image import Image
+from minirt.rendering.image import Image
 
 ARRAY = np.moveaxis(np.indices((200, 300)).repeat(2, axis=0)[:3], 0, -1).astype(np.uint8)
 FLOATS = {"EXR", "HDR", "PFM"}  # see `test_floats.py`

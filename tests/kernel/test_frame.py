@@ -9,9 +9,8 @@ from minirt.kernel import frame
 from minirt.kernel.frame import ray_direction
 from minirt.lanes import Vec
 from minirt.rendering import Renderer, scene_packing
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import camera_frame, camera_numbers, pixel_rays
 from minirt.scene import FurtherLight, Scene
-from minirt.scene.elements import camera_frame
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, interpreted, linear, picture
 
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]

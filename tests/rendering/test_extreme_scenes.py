@@ -17,8 +17,8 @@ from minirt.rendering import Renderer
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.queries.preview import render_interpreted
+from minirt.rendering.queries.stiffness import lost_in_single
 from minirt.rendering.scene_packing import Packing
-from minirt.report.stiffness import lost_in_single
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import ALL_KINDS, Shape
 from minirt.shapes.mesh import Mesh

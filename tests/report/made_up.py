@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
 from minirt.report.findings import EIGHT_BITS, Findings, Order, Subject
 from minirt.report.pictures import Row
 from minirt.report.precision import KindCertificates, SingleError
-from minirt.report.stiffness import Stiff
 
 REFERENCE_ERROR = 0.0002
 

@@ -11,17 +11,17 @@ neighbouring pixels, and the dimensions of one pixel, have nothing in common.
 from __future__ import annotations
 
 from functools import cache, lru_cache
-from math import pi, radians, tan
+from math import cos, pi, radians, sin, tan
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.fields import clamp
+from minirt.fields import Triple, clamp, upright
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.lanes import width
 from minirt.scene import Camera
-from minirt.scene.elements import camera_frame
+from minirt.scene.elements import linear_combination
 
 
 class Region(NamedTuple):
@@ -71,6 +71,22 @@ def cut_for(region: tuple[int, int, int, int] | None, width: int, height: int) -
 
 
 NARROWEST, WIDEST = 1e-6, 179.9999  # degrees; fields of view of 0 and 180 are drawn as these
+
+
+def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
+    """Return the basis of a camera's picture in world space: the orthonormal vectors right, up and forward.
+
+    Without a roll the picture is upright. A roll turns right and up about forward, clockwise as the camera sees it.
+    A left-handed camera mirrors its picture: right is negated.
+    """
+    x, y, z = camera.direction
+    right, up = upright(x, y, z)
+    if camera.roll:
+        c, s = cos(radians(camera.roll)), sin(radians(camera.roll))
+        right, up = linear_combination(c, right, -s, up), linear_combination(s, right, c, up)
+    if camera.left_handed:
+        right = linear_combination(-1.0, right, 0.0, right)
+    return right, up, (x, y, z)
 
 
 def camera_numbers(camera: Camera, width: int, height: int) -> np.ndarray:

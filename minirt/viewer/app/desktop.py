@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import numpy as np
 
-import minirt
 from minirt.helpers.signals import ended_by_signals
 from minirt.helpers.system import gc_paused
 from minirt.mlx import Image, Mlx
-from minirt.scene import Scene
+from minirt.rendering.renderer import renderer as shared_renderer
+from minirt.scene import Scene, size_of
 from minirt.scene.scene import check_scene
 from minirt.viewer.app.commands import offer_found
 from minirt.viewer.app.events import EventDispatcher
@@ -63,7 +63,7 @@ def run(
     """
     use_one_heap()
     options = {"keys": keys, "lenient": lenient, "samples": samples, "watch": watch, "saved": saved}
-    session = open_session(scene, Path(path), size, renderer or minirt.renderer(threads), mlx or Mlx(), **options)
+    session = open_session(scene, Path(path), size, renderer or shared_renderer(threads), mlx or Mlx(), **options)
     session.screen.text_scale = text_scale
     session.recovery = Recovery()
     offer_found(session)
@@ -94,7 +94,7 @@ def view(
     `run` and `minirt.render`.
     """
     check_scene(scene, "view")
-    renderer = minirt.renderer(threads, precision, dither=dither)
+    renderer = shared_renderer(threads, precision, dither=dither)
     path = scene.file or Path("scene.rt")
     session = open_session(scene, path, size, renderer, mlx or Mlx(), keys=keys, samples=samples)
     status, _ = run_event_loop(session)
@@ -112,7 +112,7 @@ def open_session(
     try:
         with gc_paused():
             _, *screen = mlx.mlx_get_screen_size(display)
-            wanted = size or minirt.size_of(scene)
+            wanted = size or size_of(scene)
             fitting = min(wanted[0], screen[0]), min(wanted[1], screen[1])
             painter = partial(BackgroundPainter, renderer)
             session = Session(mlx, display, scene, path, fitting, painter, renderer.pick, **options)

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from minirt.image import Image
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.mlx.recording import add_recording
+from minirt.rendering.image import Image
 from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session

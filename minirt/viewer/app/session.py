@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from minirt.errors import MiniRTError, RenderError
-from minirt.image import Image
 from minirt.mlx import Cursor, Mlx, Modifier
+from minirt.rendering.image import Image
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.viewer.bindings import Binding, Keymap

@@ -25,9 +25,10 @@ from minirt.fields import (
     clamp,
 )
 from minirt.materials import Compound
+from minirt.rendering.packing.camera import camera_frame
 from minirt.rendering.queries.pick import clearance
 from minirt.scene import Light, Scene
-from minirt.scene.elements import camera_frame, linear_combination
+from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.viewer.editing.motion import clamp_point, translate

@@ -20,8 +20,8 @@ from typing import Any
 
 from minirt.errors import ElementError, FieldError
 from minirt.fields import Colour, Count, Field, MeshFile, Point, number
+from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
-from minirt.scene.elements import camera_frame
 from minirt.viewer.editing import motion, structure
 from minirt.viewer.editing.adding import drop, keep_standing
 from minirt.viewer.editing.motion import (

@@ -11,10 +11,9 @@ from pathlib import Path
 
 from minirt import load
 from minirt.fields import Triple
-from minirt.rendering.packing.camera import camera_numbers
+from minirt.rendering.packing.camera import camera_frame, camera_numbers
 from minirt.report import povray
 from minirt.scene import Scene
-from minirt.scene.elements import camera_frame
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane

@@ -16,9 +16,10 @@ from PIL import Image
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Picture, Point
 from minirt.materials import Compound, Mirror
+from minirt.rendering.packing.camera import camera_frame
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Background, Camera, Resolution, Scene, dump, load, parse
-from minirt.scene.elements import camera_frame, linear_combination
+from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.box import Box

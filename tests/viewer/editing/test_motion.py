@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from minirt.element import Element
 from minirt.fields import FARTHEST, LEAST_LENGTH
 from minirt.materials import Checker
+from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera, Scene, describe, dump, load, parse
-from minirt.scene.elements import camera_frame
 from minirt.shapes.box import Box
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.ellipsoid import Ellipsoid

@@ -1,4 +1,4 @@
-"""Lengths of shapes, from their fields."""
+"""Stiff parts of a scene: shapes that need more digits or more samples than the renderer has, and close surfaces."""
 
 from __future__ import annotations
 
@@ -41,9 +41,6 @@ def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
     points = columns(Point)
     sides = [np.linalg.norm(one - points[i - 1], axis=1, keepdims=True) for i, one in enumerate(points)]
     return np.hstack([*columns(Length, Lengths), *(sides if len(points) > 1 else ())] or [np.zeros((len(shapes), 0))])
-
-
-# Find stiff shapes: shapes that need more digits or more samples than the renderer has.
 
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs

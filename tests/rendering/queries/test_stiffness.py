@@ -12,7 +12,7 @@ from minirt.fields import MeshFile
 from minirt.kernel.frame import ray_direction
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.report.stiffness import ACROSS, DOWN, Stiff, coincident, stiff_shapes
+from minirt.rendering.queries.stiffness import ACROSS, DOWN, Stiff, coincident, stiff_shapes
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder

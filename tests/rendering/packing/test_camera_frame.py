@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
-from minirt.scene.elements import camera_frame
 
 ROOT = sqrt(0.5)
 
