@@ -29,8 +29,6 @@ SLOW = (
     "tests/cli/test_arguments.py",
     "tests/cli/test_cluster.py",
     "tests/cli/test_files.py",
-    "tests/cli/test_full_disk.py",
-    "tests/cli/test_hostile_environment.py",
     "tests/cli/test_formats.py",
     "tests/cli/test_output.py",
     "tests/cli/test_process.py",

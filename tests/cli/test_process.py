@@ -80,12 +80,6 @@ def test_rendering_to_png_imports_nothing_that_other_work_needs(folder: Path) ->
     assert OTHER_WORK & modules(RENDER.format("x.bmp"), folder) == {"PIL"}
 
 
-def test_the_pattern_of_many_lines_is_not_compiled_for_few(folder: Path) -> None:
-    """A picture carries the text of its scene: the lines are read again, to find those that have changed."""
-    code = RENDER.format("x.png") + "\nfrom minirt.scene import fast\nprint(fast.plain_line.cache_info().currsize)"
-    assert printed(code, folder) == ["0"]
-
-
 NO_MEMORY = "lambda *_, **__: (_ for _ in ()).throw(MemoryError())"
 WRITING = """
 import os, pathlib, signal, sys
@@ -170,39 +164,6 @@ def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:
     assert ended.stderr.count("\n") == 2
 
 
-WITHOUT_THREADS = """
-import threading
-def fail(thread):
-    raise RuntimeError("can't start new thread")
-threading.Thread.start = fail
-from minirt import cli
-if {is_needed}:
-    from minirt.cli import render
-    render.progress = lambda read: threading.Thread().start()
-raise SystemExit(cli.main())
-"""
-
-
-def without_threads(folder: Path, is_needed: bool) -> Result:
-    """Render, into x.png, where the system allows no threads; `is_needed`: something cannot do without."""
-    code = WITHOUT_THREADS.format(is_needed=is_needed)
-    command = [sys.executable, "-c", code, "ball.rt", "--size", "8x8", "-o", "x.png"]
-    ended = run(command, cwd=folder, env=environment())
-    return Result(ended.returncode, ended.stdout, ended.stderr.decode())
-
-
-def test_without_threads_a_picture_is_right(folder: Path) -> None:
-    assert program(folder, "ball.rt", "--size", "8x8", "-o", "wanted.png") == (0, b"", "")
-    assert without_threads(folder, is_needed=False) == (0, b"", "")
-    assert (folder / "x.png").read_bytes() == (folder / "wanted.png").read_bytes()
-
-
-def test_a_lack_of_threads_is_a_sentence(folder: Path) -> None:
-    status, _, err = without_threads(folder, is_needed=True)
-    assert (status, err.count("\n")) == (1, 2)
-    assert err.startswith("Error\nthe system allows no more threads; ")
-
-
 def test_no_message_has_control_characters(folder: Path) -> None:
     (folder / "b\x1b[31m\x07.rt").write_text((folder / "ball.rt").read_text())
     ended = program(folder, "b\x1b[31m\x07.rt", "-o", "missing/{name}.png", "--size", "8x8")
@@ -266,11 +227,6 @@ ENVIRONMENTS: dict[str, dict[str, str | None]] = {
     "control characters in the cache": {"XDG_CACHE_HOME": "/dev/null/line\nbreak\x1b[31m"},
     "no temporary folder": {"TMPDIR": "/dev/null/tmp"},
 }
-FEW_FILES = """
-import os, resource, sys
-resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16))
-os.execv(sys.argv[1], sys.argv[1:])
-"""
 
 ON_UNIX = pytest.mark.skipif(sys.platform == "win32", reason="another environment and other limits")
 
@@ -300,10 +256,3 @@ def test_a_hostile_environment_does_not_change_the_picture(folder: Path, wanted:
     lines = ended.err.splitlines()
     assert len(lines) <= 1
     assert all(line.startswith("notice: ") and line.isprintable() for line in lines)
-
-
-@ON_UNIX
-def test_few_open_files_are_enough(folder: Path, wanted: bytes) -> None:
-    limited = [sys.executable, "-c", FEW_FILES, *PROGRAM]
-    assert rendered(folder, {}, limited) == (0, b"", "")
-    assert (folder / "x.png").read_bytes() == wanted

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from tests.cli.program import PROGRAM, SCENE, Result, environment
-from tests.paths import ROOT
 from tests.processes import run
 
 FULL = Path("/dev/full")
@@ -24,15 +23,6 @@ ASKED = {  # what goes to standard output
 }
 CANNOT_WRITE = "Error\nstandard output: cannot write: "
 
-# Warns, and then gives way to the numpy that is installed.
-WARNING_NUMPY = """
-import sys, warnings
-from pathlib import Path
-warnings.warn("numpy is old", UserWarning)
-sys.path.remove(str(Path(__file__).parents[1]))
-del sys.modules["numpy"]
-import numpy
-"""
 
 pytestmark = pytest.mark.skipif(not FULL.exists(), reason="this system has no /dev/full")
 
@@ -108,31 +98,6 @@ def test_names_may_have_characters_that_the_terminal_lacks(folder: Path, name: s
         ended = program(folder, "", *arguments, **settings)
         assert (ended.status, ended.err) == (0, "")
         os.remove(f"{name}/x.png")  # noqa: PTH107
-
-
-def test_warnings_of_libraries_are_shown_only_when_asked_for(folder: Path) -> None:
-    """The program is run with a numpy that warns when it is imported."""
-    (folder / "numpy").mkdir()
-    (folder / "numpy" / "__init__.py").write_text(WARNING_NUMPY)
-    for wanted, shown in (("", False), ("default", True)):
-        settings = {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", "PYTHONWARNINGS": wanted}
-        shell = [*PROGRAM, *ASKED["picture"][:2], "x.png", "--size", "8x8"]
-        ended = run(shell, cwd=folder, env=environment() | settings, text=True)
-        assert (ended.returncode, "numpy is old" in ended.stderr) == (0, shown), ended.stderr
-
-
-@pytest.mark.parametrize("setting", ["NUMBA_DISABLE_JIT=1", "NUMBA_NUM_THREADS=0", "NUMBA_NUM_THREADS=some"])
-def test_settings_for_other_uses_of_numba_change_nothing(folder: Path, tmp_path: Path, setting: str) -> None:
-    """Whether kernels are on disk or must be compiled."""
-    name, value = setting.split("=")
-    program(folder, "", "ball.rt", "-o", "expected.png", "--size", "8x8")
-    places = {"kept": os.environ.get("XDG_CACHE_HOME", ""), "new": str(tmp_path / "new")}
-    for place in ("kept", "new") if setting == "NUMBA_DISABLE_JIT=1" else ("kept",):
-        settings = {name: value, "XDG_CACHE_HOME": places[place]}
-        ended = program(folder, "", "ball.rt", "-o", f"{place}.png", "--size", "8x8", **settings)
-        assert ended == (0, b"", "")
-        assert (folder / f"{place}.png").read_bytes() == (folder / "expected.png").read_bytes()
-    assert program(folder, "", "ball.rt", "--check", **{name: value}).status == 0
 
 
 @pytest.mark.parametrize(
