@@ -11,7 +11,7 @@ import sys
 from argparse import ArgumentTypeError
 from collections.abc import Iterable
 from math import inf
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 from minirt.cli.output import say, tell
 from minirt.errors import nearest
@@ -55,25 +55,13 @@ def cluster(text: str) -> str:
     return text
 
 
-class Region(NamedTuple):
-    """A rectangle of a picture, in pixels from its upper left corner; written as on the command line."""
-
-    x: int
-    y: int
-    width: int
-    height: int
-
-    def __str__(self) -> str:
-        return ",".join(map(str, self))
-
-
-def region(text: str) -> Region:
+def region(text: str) -> tuple[int, ...]:
     """Parse a rectangle of a picture, such as 320,0,640,480."""
     numbers = text.split(",")
     if len(numbers) != 4 or not all(each.isascii() and each.isdigit() for each in numbers):
         raise ArgumentTypeError(f"must be X,Y,WIDTH,HEIGHT, like 320,0,640,480, got '{text[:40]}'")
     place = (whole_number(each, 0, MAX_SIDE) for each in numbers[:2])
-    return Region(*place, *(whole_number(each, 1, MAX_SIDE) for each in numbers[2:]))
+    return *place, *(whole_number(each, 1, MAX_SIDE) for each in numbers[2:])
 
 
 def whole_number(text: str, low: int, high: int) -> int:

@@ -95,14 +95,11 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     except MlxError as error:
         if not options.fallback:
             raise
-        from minirt.cli.render import render_picture, settings_for
-        from minirt.cluster.job import Job
-        from minirt.scene import size_of
+        from minirt.cli.render import render_output
 
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
-        without_output = argparse.Namespace(**vars(options) | {"output": None})
-        job = Job(scene, options.size or size_of(scene), settings_for(options, options.fallback))
-        render_picture(job, without_output, options.fallback)
+        changed = {"output": options.fallback, "command": [*options.command, "-o", options.fallback]}
+        render_output(scene, argparse.Namespace(**vars(options) | changed))
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 

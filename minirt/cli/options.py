@@ -121,6 +121,7 @@ def value_of(action: argparse.Action, value: object) -> object:
 def settings_text(options: argparse.Namespace, width: int, height: int) -> str:
     """Return the settings of a picture of this size as options: `--size 640x480 --samples 16`."""
     values = {name: getattr(options, name) for name in CARRIED} | {"size": f"{width}x{height}"}
+    values["region"] = options.region and ",".join(map(str, options.region))
     if values["precision"] == "double":
         values["precision"] = None
     given = {"--" + name.replace("_", "-"): value for name, value in values.items() if value not in (None, False)}

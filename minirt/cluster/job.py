@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import sqrt
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -96,14 +97,14 @@ def render_band(band: Band) -> Made:
     return Made(parts, image.reached, band.settings.renderer.not_finite)
 
 
-def image_of(made: Made, tone: str) -> Image:
-    """Return the picture of arrays."""
+def image_of(band: Band, made: Made) -> Image:
+    """Return the picture of what was made of a band."""
     levels, *light = made.parts
     assert isinstance(levels, np.ndarray)
     if not light:
-        return Image(levels, None, made.reached, tone)
+        return Image(levels, None, made.reached, band.scene.camera.tone)
     assert isinstance(light[0], np.ndarray)
-    return LinearImage(levels, light[0], made.reached, tone)
+    return LinearImage(levels, light[0], made.reached, band.scene.camera.tone)
 
 
 def rows_of(region: Region) -> list[Region]:
@@ -137,7 +138,8 @@ def whole(parts: Sequence[tuple[Region, Outcome | None]]) -> Outcome | None:
     The square of an error is a mean over pixels: that of the whole is the mean of the squares of its bands. Where each
     of them is at most the goal the whole is, too. Seconds are those of all workers together.
     """
-    known = [(region.width * region.height, each) for region, each in parts if each is not None]
+    in_order = sorted(parts, key=itemgetter(0))  # so that sums are rounded alike
+    known = [(region.width * region.height, each) for region, each in in_order if each is not None]
     if not known or len(known) < len(parts):
         return None
     pixels = sum(count for count, _ in known)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
-from itertools import accumulate
+from itertools import accumulate, chain
+from operator import length_hint
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Literal
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from minirt.cluster.job import Band, Job, Made, image_of, render_band, rows_of, whole
-from minirt.cluster.journal import Journal, packed, record_of
+from minirt.cluster.journal import Journal
 from minirt.errors import RenderError
 from minirt.formats import tiff
 from minirt.formats.table import check_bits, check_size, format_of
@@ -55,28 +56,15 @@ def render_all(
     """
     part = region and Region(*region)
     settings = RenderSettings(samples, error, time, threads, precision, depth, linear, dither, part)
-    return frames(scenes, (width, height), settings, executor)
-
-
-def frames(
-    scenes: Iterable[Scene],
-    size: tuple[int | None, int | None],
-    settings: RenderSettings,
-    executor: Workers | None = None,
-) -> Iterator[Image]:
-    """Yield the pictures of scenes in order."""
-    tones: list[str] = []
 
     def bands() -> Iterator[Band]:
-        first = None
+        size = None
         for number, scene in enumerate(scenes):
             check_scene(scene, "render_all")
-            first = first or size_for(scene, *size)
-            tones.append(scene.camera.tone)
-            yield Band(number, scene, first, settings)
+            size = size or size_for(scene, width, height)
+            yield Band(number, scene, size, settings)
 
-    for number, made in render_bands(bands(), executor, in_order=True):
-        yield image_of(made, tones[number])
+    return (image_of(*each) for each in results(bands(), executor, in_order=True))
 
 
 def render_to(
@@ -116,84 +104,92 @@ def render_to(
     settings = RenderSettings(samples, error, None, threads, precision, depth, bits == 16, dither, part)
     size = size_for(scene, width, height)
     check_size(path, name, *size)
+    return stream(path, Job(scene, size, settings), bits, executor, on_progress)
+
+
+def stream(
+    path: str | os.PathLike[str], job: Job, bits: int, executor: Workers | None, on_progress: Progress
+) -> Outcome | None:
+    """Render a picture into a TIFF file, or go on with it; return its outcome. RenderError."""
     try:
         file_io.probe(path)
-        return stream(
-            Path(os.path.realpath(path)), Job(scene, size, settings), bits, executor, on_progress
-        )  # a link stays
+        return write_tiff(Path(os.path.realpath(path)), job, bits, executor, on_progress)  # a link stays
     except OSError as reason:
         raise RenderError(f"{os.fspath(path)}: cannot write: {reason.strerror or reason}") from None
 
 
-def stream(output: Path, job: Job, bits: int, executor: Workers | None, on_progress: Progress) -> Outcome | None:
+def write_tiff(output: Path, job: Job, bits: int, executor: Workers | None, on_progress: Progress) -> Outcome | None:
     """Render a picture into a journal that begins as a TIFF file does, and make that the output. OSError."""
-    region = job.region
-    bands = job.bands(rows_of(region), bits)
+    _, _, width, height = job.region
+    bands = job.bands(rows_of(job.region), bits)
     with closing(Journal(output, job.work(bits), resume=True, head=tiff.header())) as journal:
-        kept = ((band.number, journal.read(band.number)) for band in bands)
-        done = {number: record_of(data) for number, data in kept if data}
-        on_progress(len(done), len(bands))
-        for number, made in render_bands([each for each in bands if each.number not in done], executor):
-            done[number] = record_of(journal.append(number, packed(made)))
-            on_progress(len(done), len(bands))
-        places, sizes = [], []
+        sizes: dict[int, list[int]] = {}  # bytes of the strips of each band
+        outcomes = []
+        for band, made in results(bands, executor, journal, on_progress):
+            sizes[band.number] = [len(each) for each in made.parts]
+            outcomes.append((band.region, made.reached))
+        starts: list[int] = []  # of the strips, which are at the end of their record
         for band in bands:
-            record = done[band.number]
-            starts = accumulate(record.sizes, initial=journal.places[band.number].start + record.start)
-            places += list(starts)[:-1]
-            sizes += record.sizes
-
-        def ends(start: int) -> tuple[bytes, bytes]:
-            directory = tiff.directory(region.width, region.height, bits, places, sizes, start)
-            return tiff.header(start), directory
-
-        journal.become_output(output, ends)
-    return whole([(band.region, done[band.number].reached) for band in bands])
+            start, length = journal.places[band.number]
+            starts += list(accumulate(sizes[band.number], initial=start + length - sum(sizes[band.number])))[:-1]
+        end = tiff.even(max(start + length for start, length in journal.places.values()))
+        lengths = list(chain.from_iterable(sizes[band.number] for band in bands))
+        tail = tiff.directory(width, height, bits, starts, lengths, end)
+        journal.become_output(output, tiff.header(end), end, tail)
+    return whole(outcomes)
 
 
 def picture_of(
+    job: Job,
     bands: Sequence[Band],
     executor: Workers | None = None,
     journal: Journal | None = None,
     on_progress: Progress = lambda done, bands: None,
 ) -> tuple[Image, int]:
     """Return the picture of bands that are rendered, or that a journal has, and its rays whose light is not finite."""
-    scene, settings = bands[0].scene, bands[0].settings
-    if len(bands) == 1 and not (executor or journal):
-        made = render_band(bands[0])
-        return image_of(made, scene.camera.tone), made.not_finite
-    left, top = bands[0].region[:2]
-    width = max(band.region.x + band.region.width for band in bands) - left
-    height = max(band.region.y + band.region.height for band in bands) - top
-    arrays = [np.empty((height, width, 3), np.uint8)] + [np.empty((height, width, 3))] * settings.linear
-    done: dict[int, Made] = {}
-
-    def place(number: int, made: Made) -> None:
-        x, y, across, down = bands[number].region
-        for array, part in zip(arrays, made.parts, strict=False):
+    made_of = results(bands, executor, journal, on_progress)
+    if len(bands) == 1:
+        ((band, made),) = made_of
+        return image_of(band, made), made.not_finite
+    left, top, width, height = job.region
+    arrays = [np.empty((height, width, 3), np.uint8)] + [np.empty((height, width, 3))] * job.settings.linear
+    outcomes, not_finite = [], 0
+    for band, made in made_of:
+        x, y, across, down = band.region
+        for array, part in zip(arrays, made.parts, strict=True):
             array[y - top : y - top + down, x - left : x - left + across] = part
-        done[number] = made._replace(parts=())
+        outcomes.append((band.region, made.reached))
+        not_finite += made.not_finite
+    return image_of(Band(0, *job), Made(tuple(arrays), whole(outcomes))), not_finite
 
-    for band in bands:
-        shapes = [(band.region.height, band.region.width, 3)] * len(arrays)
-        if journal and (kept := journal.restore(band.number, *shapes)):
-            place(band.number, kept)
-    on_progress(len(done), len(bands))
+
+def results(
+    bands: Iterable[Band],
+    executor: Workers | None = None,
+    journal: Journal | None = None,
+    on_progress: Progress = lambda done, bands: None,
+    in_order: bool = False,
+) -> Iterator[tuple[Band, Made]]:
+    """Yield bands and what is made of them, as it comes or in the order of the bands. RenderError.
+
+    What the journal has is not rendered again; it keeps what is new once that was used.
+    """
+    kept = set(journal.places) if journal else set()
+    restore = journal.restore if journal else lambda band: None
+    done, total = sum(band.number in kept for band in bands) if journal else 0, length_hint(bands)
+    on_progress(done, total)
+    made_of: Iterable[tuple[Band, Made]] = ((band, restore(band) or render_band(band)) for band in bands)
+    if executor is not None:
+        from minirt.cluster.executor import Dispatcher
+
+        made_of = Dispatcher(executor).results(bands, restore, in_order)
     start = perf_counter()
-    for number, made in render_bands([each for each in bands if each.number not in done], executor):
-        if journal:
-            journal.offer(number, made, perf_counter() - start)
-        place(number, made)
-        on_progress(len(done), len(bands))
+    for band, made in made_of:
+        seconds = perf_counter() - start
+        yield band, made
+        if band.number not in kept:
+            if journal:
+                journal.keep(band.number, made, seconds)
+            done += 1
+            on_progress(done, total)
         start = perf_counter()
-    reached = whole([(band.region, done[band.number].reached) for band in bands])
-    return image_of(Made(tuple(arrays), reached), scene.camera.tone), sum(each.not_finite for each in done.values())
-
-
-def render_bands(bands: Iterable[Band], executor: Workers | None, in_order: bool = False) -> Iterator[tuple[int, Made]]:
-    """Yield the numbers of bands and what was made of them, as they come or in the order of the bands. RenderError."""
-    if executor is None:
-        return ((band.number, render_band(band)) for band in bands)
-    from minirt.cluster.executor import Dispatcher
-
-    return Dispatcher(executor).results(bands, in_order)

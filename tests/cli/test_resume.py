@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import signal
 import sys
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import minirt
 from minirt.cli import render
 from minirt.cluster import job, journal
-from minirt.cluster.job import Made
 from minirt.cluster.journal import Journal
 from minirt.rendering import settings
 from tests import processes
@@ -160,20 +157,6 @@ def test_a_damaged_part_is_rendered_again(run: Run, folder: Path, renders: Rende
         assert contents(folder) == wanted
 
 
-def test_a_band_that_cannot_be_unpacked_is_missing(tmp_path: Path) -> None:
-    made = Made((np.arange(24, dtype=np.uint8).reshape(2, 4, 3),), None, 3)
-    good = journal.packed(made)
-    with closing(Journal(tmp_path / "x.png", "work", resume=False)) as kept:
-        for number, data in enumerate((good, good[:-9], b"nonsense", b"[1, 2]\n", good.replace(b"null", b"7777"))):
-            kept.append(number, data)
-        found = kept.restore(0, (2, 4, 3))
-        assert found
-        assert (found.parts[0] == made.parts[0]).all()
-        assert found.not_finite == 3
-        assert [kept.restore(number, (2, 4, 3)) for number in range(1, 6)] == [None] * 5
-        assert kept.restore(0, (2, 5, 3)) is None
-
-
 def test_a_numbered_picture_that_was_deleted_is_written_again(run: Run, folder: Path, renders: Renders) -> None:
     wanted = undisturbed(run, folder, NUMBERED)
     renders.until(4)
@@ -246,11 +229,11 @@ def test_a_full_disk_keeps_nothing_and_spoils_nothing(
     wanted = undisturbed(run, folder, FILM)
     append, parts = Journal.append, []
 
-    def until_full(self: Journal, number: int, data: bytes) -> bytes:
+    def until_full(self: Journal, number: int, data: bytes) -> None:
         if len(parts) == 2:
             raise OSError(28, "No space left on device")
         parts.append(number)
-        return append(self, number, data)
+        append(self, number, data)
 
     monkeypatch.setattr(Journal, "append", until_full)
     assert run(*FILM) == (0, b"", "")

@@ -1,11 +1,11 @@
-"""A worker that dies costs its task: it is made again, unless workers die of it again and again."""
+"""Executors of the caller: workers that die, bands that fail, and the workers of dask, which makes bands again."""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -27,48 +27,25 @@ SIZE = 600, 400
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 
 
-@pytest.mark.parametrize("is_function", [False, True])
-def test_bands_of_a_killed_worker_are_made_again(is_function: bool, tmp_path: Path) -> None:
-    """A pool of processes breaks as a whole: another takes its place."""
-    pools: list[ProcessPoolExecutor] = []
-
-    def pool() -> ProcessPoolExecutor:
-        pools.append(ProcessPoolExecutor(2))
-        return pools[-1]
-
-    def kill(done: int, _: int) -> None:
-        if done in (1, 4):  # the first pool, then perhaps the second
-            for each in list((pools[-1]._processes or {}).values())[:1]:
-                os.kill(each.pid, signal.SIGKILL)
-
-    how = pool if is_function else pool()
-    minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, samples=16, executor=how, on_progress=kill)
-    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE, samples=16).array)
-    # The second pool may have done all of its bands before its death is noticed.
-    assert len(pools) in ((2, 3) if is_function else (1,))
-    for each in pools:
-        each.shutdown()
-
-
-def dies(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
-    """Die of one band."""
-    if band.region.y == 128:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return work(version, digest, camera, band, data)
-
-
-def test_a_band_of_which_workers_die_is_an_error_and_the_others_are_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with monkeypatch.context() as patch:
+@pytest.mark.parametrize("make", [lambda: ProcessPoolExecutor(1), lambda: lambda: ProcessPoolExecutor(1)])
+def test_a_worker_that_dies_ends_the_work_and_what_is_done_is_kept(make: Callable[[], Any], tmp_path: Path) -> None:
+    """`dies` is run by an executor of the caller, and by one that a function makes."""
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr(executor, "work", dies)
-        with pytest.raises(RenderError, match=r"4 workers died"):
-            minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=lambda: ProcessPoolExecutor(1))
+        with pytest.raises(RenderError, match=r"rows \d+ to \d+: its worker died"):
+            minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=make())
     assert not (tmp_path / "a.tif").exists()
     done: list[int] = []
     minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, on_progress=lambda number, _: done.append(number))
     assert done[0] > 0
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE).array)
+
+
+def dies(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
+    """Die of one band."""
+    if band.region.y > 300:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return work(version, digest, camera, band, data)
 
 
 def fails(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
