@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from minirt.cli.arguments import FAILED, INTERRUPTED, OK, Arguments, argument_parser
+from minirt.cli.arguments import FAILED, INTERRUPTED, MAX_SIDE, OK, Arguments, argument_parser
 from minirt.cli.output import hide_warnings, prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
@@ -27,27 +27,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         leave_blas_single_threaded()
     try:
         return run(argument_parser(), argv)
-    except MiniRTError as error:
-        tell(f"Error\n{error}")
-        return FAILED
     except BrokenPipeError:  # the reader of standard output has closed it
         return FAILED
+    except KeyboardInterrupt as error:  # SIGINT, or another signal that the error names
+        number = getattr(error, "number", None)
+        return INTERRUPTED if number is None else 128 + int(number)
+    except MiniRTError as error:
+        return failed(error)
     except MemoryError:
-        tell(f"Error\n{NO_MEMORY}")
-        return FAILED
+        return failed(NO_MEMORY)
     except RuntimeError as error:
         if str(error) != "can't start new thread":  # of Python
             raise
-        tell(f"Error\n{NO_THREADS}")
-        return FAILED
-    except KeyboardInterrupt as error:
-        return signal_status(error)
+        return failed(NO_THREADS)
 
 
-def signal_status(error: KeyboardInterrupt) -> int:
-    """Return 128 + n for the signal n that has interrupted the program, which is SIGINT unless the error tells."""
-    number = getattr(error, "number", None)
-    return INTERRUPTED if number is None else 128 + int(number)
+def failed(message: object) -> int:
+    """Print an error, and return the exit status."""
+    tell(f"Error\n{message}")
+    return FAILED
 
 
 def leave_blas_single_threaded() -> None:
@@ -73,15 +71,12 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     files.choose_example(parser, options, options.command)
     check_options(parser, options)
     system.limit_memory(options.memory)
-    if len(options.scene) == 1:
-        return run_scene(parser, options, options.scene[0])
     statuses = []
     for scene in options.scene:
         try:
             statuses.append(run_scene(parser, options, scene))
         except MiniRTError as error:  # the other scenes are read and rendered all the same
-            tell(f"Error\n{error}")
-            statuses.append(FAILED)
+            statuses.append(failed(error))
     return max(statuses)
 
 
@@ -132,34 +127,37 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         from minirt.cli.files import check_format
 
         check_format(options)  # before the work, not after it
-    if options.turntable and options.output in (None, "-"):
-        parser.error("--turntable needs the name of a file: -o spin.gif")
-    if options.frames and not options.turntable:
-        parser.error("--frames needs --turntable")
-    if options.frames and options.frames.stop - 1 > options.turntable:
-        parser.error(f"--frames: there are {options.turntable} pictures, got {options.frames.stop - 1}")
-    if options.region and (options.replay or not options.output):
-        parser.error("--region needs -o, and no --replay")
-    if options.resume and (options.replay or options.samples == "auto" or options.output in (None, "-")):
-        parser.error("--resume needs the name of a file: -o spin.gif, and no --replay or --samples auto")
-    if (options.error or options.time) and options.samples != "auto":
-        parser.error("--error and --time need --samples auto")
-    if options.strict and not options.error:
-        parser.error("--strict needs --error")
-    is_film = options.replay or (options.turntable and not options.cluster)
-    if options.samples == "auto" and (is_film or not options.output):
-        parser.error("--samples auto makes one picture: it needs -o, and no --replay or --turntable")
-    check_cluster(parser, options)
-
-
-def check_cluster(parser: Arguments, options: argparse.Namespace) -> None:
-    """Exit with a message when the options do not go with --cluster, or need it."""
-    from minirt.cli.arguments import MAX_SIDE
-
-    if options.cluster and (not options.output or options.replay or options.time):
-        parser.error("--cluster needs -o, and no --replay or --time")
-    if options.size and not options.cluster and (side := max(options.size)) > MAX_SIDE:
-        parser.error(f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster")
+    output, replay, is_auto = options.output, options.replay, options.samples == "auto"
+    is_unnamed, last = output in (None, "-"), options.frames.stop - 1 if options.frames else 0
+    is_film = replay or (options.turntable and not options.cluster)
+    side = max(options.size or (0,))
+    wrong = (
+        (options.turntable and is_unnamed, "--turntable needs the name of a file: -o spin.gif"),
+        (last and not options.turntable, "--frames needs --turntable"),
+        (last > (options.turntable or last), f"--frames: there are {options.turntable} pictures, got {last}"),
+        (options.region and (replay or not output), "--region needs -o, and no --replay"),
+        (
+            options.resume and (replay or is_auto or is_unnamed),
+            "--resume needs the name of a file: -o spin.gif, and no --replay or --samples auto",
+        ),
+        ((options.error or options.time) and not is_auto, "--error and --time need --samples auto"),
+        (options.strict and not options.error, "--strict needs --error"),
+        (
+            is_auto and (is_film or not output),
+            "--samples auto makes one picture: it needs -o, and no --replay or --turntable",
+        ),
+        (
+            options.cluster and (not output or replay or options.time),
+            "--cluster needs -o, and no --replay or --time",
+        ),
+        (
+            side > MAX_SIDE and not options.cluster,
+            f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster",
+        ),
+    )
+    for is_wrong, message in wrong:
+        if is_wrong:
+            parser.error(message)
 
 
 def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:

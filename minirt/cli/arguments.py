@@ -9,8 +9,9 @@ import argparse
 import re
 import sys
 from argparse import ArgumentTypeError
-from collections.abc import Iterable
-from math import inf
+from collections.abc import Callable, Iterable
+from functools import partial
+from math import nan
 from typing import Any, NoReturn
 
 from minirt.cli.output import say, tell
@@ -22,12 +23,12 @@ USAGE = 2  # wrong arguments
 INTERRUPTED = 130  # Ctrl+C; 128 + n after another signal n
 SAMPLES, WINDOW_SAMPLES = 1, 16  # default samples a pixel: of a file, of the window
 DEMO = "demo"  # the example scene of a program without arguments
-TONES = ("plain", "srgb", "filmic")
 DEPTH, MAX_DEPTH = 8, 32  # bounces of light: default and limit
 MAX_SIDE = 16384  # pixels
 MOST = 999_999_999  # pixels of a side that --cluster takes, if the format holds them
 LEAST_MEMORY, MOST_MEMORY = 2**20, 2**50  # bytes
 MAX_EXPOSURE = 20.0  # EV, up and down
+MOST_NUMBER = sys.float_info.max
 UNKNOWN = re.compile(r"unrecognized arguments: (-\S*)")
 CHOICE = re.compile(r"argument (?P<option>.*?): invalid choice: '?(?P<value>.*?)'? \(choose from (?P<choices>.*)\)")
 TEXT_SCALES = 0.5, 4.0  # least and largest, as with keys in the window
@@ -81,36 +82,16 @@ def span(text: str) -> range:
         raise ArgumentTypeError(f"must be FIRST-LAST, like 10-20, got '{text[:40]}'") from None
 
 
-def positive_number(text: str) -> float:
-    """Parse a finite number > 0."""
+def number(text: str, low: float = 5e-324, high: float = MOST_NUMBER) -> float:
+    """Parse a number in [low, high]; without limits a finite one > 0."""
     try:
-        number = float(text) if text.isascii() and "_" not in text else 0.0
+        result = float(text) if text.isascii() and "_" not in text else nan
     except ValueError:
-        number = 0.0
-    if not 0 < number < inf:
-        raise ArgumentTypeError(f"must be a number > 0, got '{text[:40]}'")
-    return number
-
-
-def exposure(text: str) -> float:
-    """Parse an exposure: a number of doublings of light."""
-    return number_within(text, -MAX_EXPOSURE, MAX_EXPOSURE)
-
-
-def text_scale(text: str) -> float:
-    """Parse a factor for the size of text."""
-    return number_within(text, *TEXT_SCALES)
-
-
-def number_within(text: str, low: float, high: float) -> float:
-    """Parse a number in [low, high]."""
-    try:
-        number = float(text) if text.isascii() and "_" not in text else inf
-    except ValueError:
-        number = inf
-    if not low <= number <= high:
-        raise ArgumentTypeError(f"must be a number from {low:g} to {high:g}, got '{text[:40]}'")
-    return number
+        result = nan
+    if not low <= result <= high:
+        limits = "> 0" if high == MOST_NUMBER else f"from {low:g} to {high:g}"
+        raise ArgumentTypeError(f"must be a number {limits}, got '{text[:40]}'")
+    return result
 
 
 def memory_size(text: str) -> int:
@@ -137,162 +118,102 @@ class Arguments(argparse.ArgumentParser):
             tell(message.rstrip("\n"))
 
 
+OPTIONS = f"""
+output:
+-o --output=FILE  render to a picture file instead of a window: .png, .jpg, .webp, .tif, ..., or .exr, .hdr, .pfm for
+    linear light; - writes PNG to standard output; out/{{name}}.png is for several scenes
+--size=WxH  size of the picture in pixels
+--region=X,Y,W,H  with -o: render this rectangle of the picture alone, at column X and row Y
+--samples=N  rays for each pixel ({SAMPLES}), or auto: as many as each part of the picture needs; in the window: rays at
+    edges while nothing moves ({WINDOW_SAMPLES})
+--turntable=N  with -o: N pictures from all around the scene; .gif, .webp, .apng, .mp4 and .webm are one file, spin.png
+    is spin-0001.png, ...
+--frames=A-B  with --turntable: only these of its pictures
+--resume  with -o: go on with what an interrupted program has left of the same picture or film
+--bits={{8,16}}  bits a channel of PNG and TIFF pictures (8)
+--quality=N  quality of lossy formats, from 1 to 100
+--[no-]metadata  let a PNG picture carry its scene and settings: miniRT picture.png opens it again
+--error=E  with --samples auto: sample until the estimated error is at most E (0.002)
+--time=SECONDS  with --samples auto: sample for that long
+--strict  exit with status 1 when the picture has not reached the error that --error asks for
+--tone={{plain,srgb,filmic}}  how light becomes colour, in place of the camera's tone (plain)
+--exposure=EV  light times two to this power, in place of the camera's (0)
+--dither  dither with blue noise instead of rounding to 8 bits
+--fallback=FILE  render to FILE when no window can be opened
+--left-handed  mirror the picture, for scenes made for left-handed coordinates
+
+window:
+--keys={{auto,qwerty,azerty,qwertz}}  layout of the keyboard
+--text-scale=F  size of text and icons, from 0.5 to 4 times the usual one (Ctrl + and Ctrl - change it)
+--[no-]watch  reload the scene when its file changes
+--replay=KEYS.txt  play recorded keys without a window; -o writes the last frame, or all frames to a film such as .gif
+
+inspect:
+--check  read the scene and report its errors; render nothing
+--lenient  accept older scenes: several L, blanks around commas, ...
+--bench  measure the frame time: of an eye at rest, and of a moving one
+--json  with --bench: print JSON
+--report=DIR  measure error against run time; write tables, pictures and a diagram into DIR
+--quick  with --report: smaller pictures and fewer rays; takes seconds
+--ablation  with --report: also what each absent feature would cost; takes minutes
+--list-keys  list the key bindings of the window
+--threads=N  number of rendering threads (one for each processor)
+--memory=SIZE  memory that the program may take, such as 512M or 4G: what needs more is refused (seven eighths of that
+    of the machine or container)
+--precision={{double,single}}  floating-point precision of the kernel (double)
+--depth=N  largest number of reflections and refractions of a ray ({DEPTH})
+--cluster=WHERE  with -o: render bands of the picture, or frames of --turntable, by several processes of this machine
+    (local), or by the workers of a dask scheduler (tcp://host:8786); sizes may exceed {MAX_SIDE}
+--config=FILE  file with defaults of options, in place of miniRT's own; '' for none
+--completion={{bash,zsh,fish}}  print the completion of arguments for a shell
+-v --verbose  report each step and its duration
+--version  print the version
+"""
+DEFAULTS = {"keys": "auto", "text_scale": 1.0, "precision": "double"}  # of options that are not off or unset without
+KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text
+    **dict.fromkeys(("output", "fallback", "replay", "report"), file_name),
+    **dict.fromkeys(("error", "time"), number),
+    "size": size,
+    "region": region,
+    "samples": lambda text: text if text == "auto" else whole_number(text, 1, 65536),
+    "turntable": partial(whole_number, low=1, high=3600),
+    "frames": span,
+    "bits": int,
+    "quality": partial(whole_number, low=1, high=100),
+    "exposure": partial(number, low=-MAX_EXPOSURE, high=MAX_EXPOSURE),
+    "text_scale": partial(number, low=TEXT_SCALES[0], high=TEXT_SCALES[1]),
+    "threads": partial(whole_number, low=1, high=1024),
+    "memory": memory_size,
+    "depth": partial(whole_number, low=0, high=MAX_DEPTH),
+    "cluster": cluster,
+}
+
+
 def argument_parser() -> Arguments:
     """Return the parser of the command line."""
     parser = Arguments(prog="miniRT", description="Show a .rt scene in a window, or render it to a file.")
-    parser.add_argument(
-        "scene",
-        type=file_name,
-        nargs="*",
-        metavar="SCENE.rt",
-        help="the scene file, or a PNG picture of it; - for standard input",
-    )
-    parser.add_argument(
-        "--example",
-        nargs="?",
-        const=DEMO,
-        metavar="NAME",
-        help=f"show an example scene ({DEMO}) that is installed with the program, in place of a scene file",
-    )
-    add = parser.add_argument_group("output").add_argument
-    add(
-        "-o",
-        "--output",
-        type=file_name,
-        metavar="FILE",
-        help="render to a picture file instead of a window: .png, .jpg, .webp, .tif, ..., or .exr, .hdr, .pfm for "
-        "linear light; - writes PNG to standard output; out/{name}.png is for several scenes",
-    )
-    add("--size", type=size, metavar="WxH", help="size of the picture in pixels")
-    add(
-        "--region",
-        type=region,
-        metavar="X,Y,W,H",
-        help="with -o: render this rectangle of the picture alone, at column X and row Y",
-    )
-    add(
-        "--samples",
-        type=lambda text: text if text == "auto" else whole_number(text, 1, 65536),
-        metavar="N",
-        help=f"rays for each pixel ({SAMPLES}), or auto: as many as each part of the picture needs; "
-        f"in the window: rays at edges while nothing moves ({WINDOW_SAMPLES})",
-    )
-    add(
-        "--turntable",
-        type=lambda text: whole_number(text, 1, 3600),
-        metavar="N",
-        help="with -o: N pictures from all around the scene; .gif, .webp, .apng, .mp4 and .webm are one file, "
-        "spin.png is spin-0001.png, ...",
-    )
-    add("--frames", type=span, metavar="A-B", help="with --turntable: only these of its pictures")
-    add(
-        "--resume",
-        action="store_true",
-        help="with -o: go on with what an interrupted program has left of the same picture or film",
-    )
-    add("--bits", type=int, choices=(8, 16), help="bits a channel of PNG and TIFF pictures (8)")
-    add(
-        "--quality",
-        type=lambda text: whole_number(text, 1, 100),
-        metavar="N",
-        help="quality of lossy formats, from 1 to 100",
-    )
-    add(
-        "--metadata",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="let a PNG picture carry its scene and settings: miniRT picture.png opens it again",
-    )
-    add(
-        "--error",
-        type=positive_number,
-        metavar="E",
-        help="with --samples auto: sample until the estimated error is at most E (0.002)",
-    )
-    add("--time", type=positive_number, metavar="SECONDS", help="with --samples auto: sample for that long")
-    add(
-        "--strict",
-        action="store_true",
-        help="exit with status 1 when the picture has not reached the error that --error asks for",
-    )
-    add("--tone", choices=TONES, help="how light becomes colour, in place of the camera's tone (plain)")
-    add("--exposure", type=exposure, metavar="EV", help="light times two to this power, in place of the camera's (0)")
-    add("--dither", action="store_true", help="dither with blue noise instead of rounding to 8 bits")
-    add("--fallback", type=file_name, metavar="FILE", help="render to FILE when no window can be opened")
-    add("--left-handed", action="store_true", help="mirror the picture, for scenes made for left-handed coordinates")
-    add = parser.add_argument_group("window").add_argument
-    add("--keys", choices=("auto", "qwerty", "azerty", "qwertz"), default="auto", help="layout of the keyboard")
-    add(
-        "--text-scale",
-        type=text_scale,
-        default=1.0,
-        metavar="F",
-        help="size of text and icons, from 0.5 to 4 times the usual one (Ctrl + and Ctrl - change it)",
-    )
-    add(
-        "--watch",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="reload the scene when its file changes",
-    )
-    add(
-        "--replay",
-        type=file_name,
-        metavar="KEYS.txt",
-        help="play recorded keys without a window; -o writes the last frame, or all frames to a film such as .gif",
-    )
-    add = parser.add_argument_group("inspect").add_argument
-    add("--check", action="store_true", help="read the scene and report its errors; render nothing")
-    add("--lenient", action="store_true", help="accept older scenes: several L, blanks around commas, ...")
-    add("--bench", action="store_true", help="measure the frame time: of an eye at rest, and of a moving one")
-    add("--json", action="store_true", help="with --bench: print JSON")
-    add(
-        "--report",
-        type=file_name,
-        metavar="DIR",
-        help="measure error against run time; write tables, pictures and a diagram into DIR",
-    )
-    add("--quick", action="store_true", help="with --report: smaller pictures and fewer rays; takes seconds")
-    add(
-        "--ablation", action="store_true", help="with --report: also what each absent feature would cost; takes minutes"
-    )
-    add("--list-keys", action="store_true", help="list the key bindings of the window")
-    add(
-        "--threads",
-        type=lambda text: whole_number(text, 1, 1024),
-        metavar="N",
-        help="number of rendering threads (one for each processor)",
-    )
-    add(
-        "--memory",
-        type=memory_size,
-        metavar="SIZE",
-        help="memory that the program may take, such as 512M or 4G: what needs more is refused (seven eighths of that "
-        "of the machine or container)",
-    )
-    add(
-        "--precision",
-        choices=("double", "single"),
-        default="double",
-        help="floating-point precision of the kernel (double)",
-    )
-    add(
-        "--depth",
-        type=lambda text: whole_number(text, 0, MAX_DEPTH),
-        metavar="N",
-        help=f"largest number of reflections and refractions of a ray ({DEPTH})",
-    )
-    add(
-        "--cluster",
-        type=cluster,
-        metavar="WHERE",
-        help="with -o: render bands of the picture, or frames of --turntable, by several processes of this machine "
-        "(local), or by the workers of a dask scheduler (tcp://host:8786); sizes may exceed 16384",
-    )
-    add("--config", metavar="FILE", help="file with defaults of options, in place of miniRT's own; '' for none")
-    add("--completion", choices=("bash", "zsh", "fish"), help="print the completion of arguments for a shell")
-    add("-v", "--verbose", action="store_true", help="report each step and its duration")
-    add("--version", action="store_true", help="print the version")
+    add = parser.add_argument
+    scene_help = "the scene file, or a PNG picture of it; - for standard input"
+    add("scene", type=file_name, nargs="*", metavar="SCENE.rt", help=scene_help)
+    example_help = f"show an example scene ({DEMO}) that is installed with the program, in place of a scene file"
+    add("--example", nargs="?", const=DEMO, metavar="NAME", help=example_help)
+    for group in OPTIONS.strip().replace("\n    ", " ").split("\n\n"):
+        title, *lines = group.split("\n")
+        add = parser.add_argument_group(title.removesuffix(":")).add_argument
+        for line in lines:
+            usage, _, about = line.partition("  ")
+            names, _, value = usage.partition("=")
+            name = names.rpartition("--")[2].replace("-", "_")
+            how: dict[str, Any] = {"action": "store_true"}
+            if names.startswith("--[no-]"):
+                names = names.replace("[no-]", "")
+                how = {"action": argparse.BooleanOptionalAction, "default": True}
+            elif value:
+                kind = KINDS.get(name, str)
+                how = {"type": kind, "default": DEFAULTS.get(name)}
+                listed = value.startswith("{")
+                how |= {"choices": [kind(each) for each in value[1:-1].split(",")]} if listed else {"metavar": value}
+            add(*names.split(), help=about, **how)
     return parser
 
 

@@ -29,7 +29,9 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     from minirt.scene import load
 
     if options.example:
-        return read_example(options)
+        from minirt.example_scenes import example
+
+        return with_handedness(example(options.example), options)
     from minirt.helpers.progress import State
 
     path = options.scene[0]
@@ -83,13 +85,6 @@ def choose_example(parser: Arguments, options: argparse.Namespace, arguments: Se
         parser.error(f"--example shows a scene of its own, got {options.scene[0]}, too")
     names = (f"{options.example}{suffix}.rt" for suffix in ("", *(f"-{number}" for number in range(1, 1000))))
     options.scene = [next((name for name in names if not Path(name).exists()), f"{options.example}.rt")]
-
-
-def read_example(options: argparse.Namespace) -> Scene:
-    """Return the example; FileError for an unknown name."""
-    from minirt import example
-
-    return with_handedness(example(options.example), options)
 
 
 def output_for(scene: str, output: str) -> str:

@@ -138,15 +138,9 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
     scene = options.scene[0]
     if not files.is_picture(scene):
         return options
-    try:
-        text = files.picture_settings(scene)
-    except FileError as error:
-        from minirt.scene.files import file_error
-
-        raise file_error(error.path, error.reason) from None
     usable = CARRIED if options.output else IN_WINDOWS_TOO
     changed = argparse.Namespace(**vars(options))
-    for name, value in carried(parser, text).items():
+    for name, value in carried(parser, files.picture_settings(scene)).items():
         if name in usable and getattr(options, name) == parser.get_default(name):
             setattr(changed, name, value)
     if not options.output or changed.samples != "auto":

@@ -12,12 +12,9 @@ import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from io import TextIOWrapper
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 from minirt.errors import RenderError, printable
-
-if TYPE_CHECKING:
-    pass
 
 
 def prepare_streams() -> None:

@@ -37,7 +37,7 @@ class Dispatcher:
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
         self.present, self.asked = 1, -inf  # workers of the client, and when they were counted
         self.running: dict[Future[Made], Band] = {}
-        self.last: tuple[object, str, Any] = None, "", b""  # the scene that was packed last, its digest and its bytes
+        self.last: tuple[object, Any] = None, b""  # the scene that was packed last, and its bytes
 
     @property
     def count(self) -> int:
@@ -73,21 +73,19 @@ class Dispatcher:
         finally:
             self.close()
 
-    def arguments(self, band: Band) -> tuple[str, str, Camera, Band, Any]:
+    def arguments(self, band: Band) -> tuple[str, Any, Camera, Band]:
         """Return what `work` is sent for a band. Scenes that differ in the camera alone are packed once."""
         scene, settings = band.scene, band.settings
         others = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
         if self.last[0] != others:
             data: Any = packed(scene, with_files=not self.is_pool)
-            digest = hashlib.sha256(data).hexdigest()
             if self.client is not None and len(data) > LARGE:
-                data = self.client.submit(bytes, data, key=f"minirt-{digest}")
-            self.last = others, digest, data
+                data = self.client.submit(bytes, data, key=f"minirt-{hashlib.sha256(data).hexdigest()}")
+            self.last = others, data
         if settings.threads is None and self.is_pool:
             settings = settings.replace(threads=max(1, usable_cores() // self.count))
         nowhere: Any = None
-        _, digest, data = self.last
-        return version(), digest, scene.camera, band._replace(scene=nowhere, settings=settings), data
+        return version(), self.last[1], scene.camera, band._replace(scene=nowhere, settings=settings)
 
     def send(self, band: Band) -> None:
         """Send a band."""

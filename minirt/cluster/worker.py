@@ -16,7 +16,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from copy import copy
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -25,18 +25,14 @@ from minirt.cluster.job import Band, Made, render_band
 from minirt.element import Element, Record, fields_of
 from minirt.errors import RenderError
 from minirt.helpers import file_io
-from minirt.helpers.system import ForkSafeLock
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.meshes.triangles import Triangles
 from minirt.scene import Camera, Scene
 
-SCENES = 4  # kept in memory
+SCENES = 4  # that are kept unpacked in memory
 ARRAYS = ("points", "corners", "normals", "uvs")  # of a mesh
 
 Kind = TypeVar("Kind", bound=Record)
-
-scenes: dict[str, Scene] = {}  # by their digests, the one that was used last at the end
-lock = ForkSafeLock()
 
 
 @cache
@@ -85,6 +81,7 @@ def renamed(record: Kind, name: Callable[[str], str]) -> Kind:
     return changed
 
 
+@lru_cache(SCENES)
 def unpacked(data: bytes) -> Scene:
     """Return a scene; its textures are written into this worker's folder."""
     elements, place = pickle.loads(data)
@@ -105,16 +102,12 @@ def folder() -> Path:
     return Path(path)
 
 
-def work(asked: str, digest: str, camera: Camera, band: Band, data: bytes) -> Made:
+def work(asked: str, data: bytes, camera: Camera, band: Band) -> Made:
     """Render a band of a packed scene, with another camera. RenderError where this version is not the one `asked` for,
     which might draw other bits."""
     if asked != version():
         raise RenderError(f"a worker has another miniRT: {version()} in place of {asked}")
-    with lock:
-        scene = scenes.pop(digest, None) or unpacked(data)
-        scenes[digest] = scene
-        for each in list(scenes)[:-SCENES]:
-            del scenes[each]
+    scene = unpacked(data)
     settings = band.settings
     if settings.threads is None:
         settings = settings.replace(threads=share_of_cores())

@@ -97,13 +97,10 @@ def test_options_win_over_the_settings_of_a_picture(run: Run, folder: Path) -> N
     )
 
 
-def test_pillow_reads_the_texts(run: Run) -> None:
+def test_pillow_reads_the_texts_which_can_be_left_out(run: Run) -> None:
     assert run("ball.rt", "-o", "x.png", "--size", "40x30").status == 0
     with pillow.open("x.png") as image:
         assert image.text == {"miniRT scene": SCENE, "miniRT settings": "--size 40x30"}
-
-
-def test_metadata_can_be_left_out(run: Run) -> None:
     assert run("ball.rt", "-o", "x.png", "--size", "40x30", "--no-metadata").status == 0
     with pillow.open("x.png") as image:
         assert image.text == {}

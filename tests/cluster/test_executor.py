@@ -41,14 +41,14 @@ def test_a_worker_that_dies_ends_the_work_and_what_is_done_is_kept(make: Callabl
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE).array)
 
 
-def dies(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
+def dies(version: str, data: bytes, camera: minirt.Camera, band: Band) -> Made:
     """Die of one band."""
     if band.region.y > 300:
         os.kill(os.getpid(), signal.SIGKILL)
-    return work(version, digest, camera, band, data)
+    return work(version, data, camera, band)
 
 
-def fails(version: str, digest: str, camera: minirt.Camera, band: Band, data: bytes) -> Made:
+def fails(version: str, data: bytes, camera: minirt.Camera, band: Band) -> Made:
     """Fail as no band should."""
     raise KeyError(band.what)
 

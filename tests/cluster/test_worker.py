@@ -23,7 +23,7 @@ from tests.cluster.scenes import BALL, with_files
 def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers keep no scenes, and their files in a folder of this test."""
     (tmp_path / "files").mkdir()
-    monkeypatch.setattr(worker, "scenes", {})
+    unpacked.cache_clear()
     monkeypatch.setattr(worker, "folder", lambda: tmp_path / "files")
 
 
@@ -33,10 +33,10 @@ def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> N
     data = packed(scene, with_files=True)
     shutil.rmtree(tmp_path / "home")
     for _ in range(2):
-        made = work(worker.version(), "x", scene.camera, Band(0, BALL, (40, 30), RenderSettings()), data)
+        made = work(worker.version(), data, scene.camera, Band(0, BALL, (40, 30), RenderSettings()))
         assert np.array_equal(made.parts[1], expected.linear)
         assert len(list((tmp_path / "files").iterdir())) == 1  # a picture that is there twice
-        data = b"not read again"
+    assert unpacked.cache_info().misses == 1
 
 
 def test_executors_that_may_be_elsewhere_get_the_files(tmp_path: Path) -> None:
@@ -77,4 +77,4 @@ def test_a_file_that_has_gone_is_an_error(tmp_path: Path) -> None:
 
 def test_another_version_refuses_to_draw() -> None:
     with pytest.raises(RenderError, match="another miniRT"):
-        work("0.0.9 0123", "x", BALL.camera, Band(0, BALL, (40, 30), RenderSettings()), b"")
+        work("0.0.9 0123", b"", BALL.camera, Band(0, BALL, (40, 30), RenderSettings()))
