@@ -19,6 +19,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import inf
+from operator import index
+from typing import Any
 
 
 class MiniRTError(Exception):
@@ -87,6 +90,15 @@ class SceneError(MiniRTError):
 
 class RenderError(MiniRTError):
     """A picture cannot be rendered or written."""
+
+
+def check_whole(name: str, value: Any, least: int, most: float = inf) -> int:
+    """Return the value of an argument if it is a whole number, numpy's included, of at least `least` and at most
+    `most`; RenderError, which names the argument, for any other."""
+    if isinstance(value, bool) or not hasattr(value, "__index__") or not least <= index(value) <= most:
+        limits = f"of at least {least}" if most == inf else f"from {least} to {most}"
+        raise RenderError(f"{name} must be a whole number {limits}, got {value!r}")
+    return index(value)
 
 
 class FileError(MiniRTError):

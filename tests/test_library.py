@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pickle
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,21 +54,29 @@ def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
     assert minirt.render(sized, height=10).array.shape == (10, 40, 3)
 
 
+INTEGERS = "width", "height", "samples", "threads"
+
+
 @pytest.mark.parametrize(
-    ("width", "height", "samples", "reason"),
+    ("name", "value", "limits"),
     [
-        (-1, 5, 1, "1x1 pixels, got -1x5"),
-        (5, -1, 1, "1x1 pixels, got 5x-1"),
-        (0, 5, 1, "1x1 pixels"),
-        (5, 0, 1, "1x1 pixels"),
-        (4, 4, 0, "1 sample"),
+        *(
+            (name, value, "of at least 1")
+            for name in ("width", "height", "samples", "threads")
+            for value in (0, -1, 2.5)
+        ),
+        *(("depth", value, "from 0 to 32") for value in (-1, 1.5, 33)),
+        ("samples", "many", "of at least 1"),
+        ("samples", True, "of at least 1"),
     ],
 )
-def test_a_picture_of_nothing_is_an_error(
-    scene: minirt.Scene, width: int, height: int, samples: int, reason: str
+def test_an_argument_that_is_no_whole_number_in_its_limits_is_named(
+    scene: minirt.Scene, name: str, value: object, limits: str
 ) -> None:
-    with pytest.raises(minirt.RenderError, match=f"at least {reason}"):
-        minirt.render(scene, width, height, samples=samples)
+    message = f"{name} must be a whole number {limits}, got {value!r}"
+    with pytest.raises(minirt.RenderError, match=f"^{re.escape(message)}$"):
+        minirt.render(scene, **{"width": 4, "height": 4, name: value})
+    assert minirt.render(scene, np.int64(4), np.uint8(4), samples=np.int32(1)).array.shape == (4, 4, 3)
 
 
 def test_the_error_falls_with_the_number_of_samples(scene: minirt.Scene) -> None:
@@ -87,9 +97,9 @@ def test_auto_samples_report_the_error_and_samples_reached(scene: minirt.Scene) 
     assert minirt.render(scene, 96, 54, samples=4).reached is None
 
 
-@pytest.mark.parametrize("goal", [{"error": 0}, {"error": -1.0}, {"time": 0}, {"error": float("nan")}])
-def test_a_goal_that_is_not_positive_or_without_auto_is_an_error(scene: minirt.Scene, goal: dict[str, float]) -> None:
-    with pytest.raises(minirt.RenderError, match=f"{next(iter(goal))} must be > 0"):
+@pytest.mark.parametrize("goal", [{"error": 0}, {"error": -1.0}, {"time": 0}, {"error": float("nan")}, {"time": "1"}])
+def test_a_goal_that_is_not_positive_or_without_auto_is_an_error(scene: minirt.Scene, goal: dict[str, Any]) -> None:
+    with pytest.raises(minirt.RenderError, match=f"{next(iter(goal))} must be a number > 0"):
         minirt.render(scene, 4, 4, samples="auto", **goal)
     with pytest.raises(minirt.RenderError, match="needs samples='auto', got 4"):
         minirt.render(scene, 4, 4, samples=4, **goal)

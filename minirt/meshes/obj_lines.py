@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
-from minirt.errors import FieldError, quoted
-from minirt.fields import FARTHEST, number, spelled, whole
+from minirt.errors import FieldError
+from minirt.fields import FARTHEST, number, whole
 from minirt.fields.scalars import LONGEST
 
 NUMBER_COUNTS = {"v": (3, 7, "x y z"), "vt": (1, 3, "u v"), "vn": (3, 3, "x y z")}  # fewest, most, names
@@ -22,10 +23,21 @@ Rows = list[list[bytes]]  # words of lines
 
 
 class ObjError(Exception):
-    """A file that is not a mesh; the message names the line, unless it is about the whole file."""
+    """A file that is not a mesh; the message names line and column, unless it is about a whole line or file.
 
-    def __init__(self, message: str, line: int = 0) -> None:
-        super().__init__(f"line {line}: {message}" if line else message)
+    It quotes nothing of the file, which a stranger's scene may name though it is none of the stranger's.
+    """
+
+    def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
+        place = (f"line {line}" if line else "") + (f", column {column}" if column else "")
+        super().__init__(f"{place}: {message}" if line else message)
+
+
+class Word(NamedTuple):
+    """A word of a line, and the column at which it begins, from 1."""
+
+    text: str
+    column: int
 
 
 class Block(NamedTuple):
@@ -59,7 +71,7 @@ def diagnose(lines: list[bytes], before: Counts) -> Block:
     corners: list[list[int]] = []
     sizes, face_lines = [], []
     for line, words in words_of(lines, before.lines + 1):
-        key, values = words[0], words[1:]
+        key, values = words[0].text, words[1:]
         if key in rows:
             rows[key].append(parse_numbers(key, values, line))
         elif key == "f":
@@ -70,7 +82,7 @@ def diagnose(lines: list[bytes], before: Counts) -> Block:
             sizes.append(len(values))
             face_lines.append(line)
         elif key.encode() not in SKIPPED:
-            raise ObjError(f"a line begins with v, vt, vn, f or another word of .obj, got {quoted(key)}", line)
+            raise ObjError("a line begins with v, vt, vn, f or another word of .obj", line, words[0].column)
     points, uvs, normals = (
         np.array(values, np.float64).reshape(-1, width) for values, width in zip(rows.values(), (3, 2, 3), strict=True)
     )
@@ -79,7 +91,7 @@ def diagnose(lines: list[bytes], before: Counts) -> Block:
     )
 
 
-def words_of(lines: list[bytes], first: int) -> Iterator[tuple[int, list[str]]]:
+def words_of(lines: list[bytes], first: int) -> Iterator[tuple[int, list[Word]]]:
     """Yield the number and the words of each line that has words; a backslash at its end continues a line."""
     parts: list[bytes] = []
     for line, part in enumerate([*lines, b""], first):
@@ -87,46 +99,53 @@ def words_of(lines: list[bytes], first: int) -> Iterator[tuple[int, list[str]]]:
         if parts[-1].endswith(b"\\"):
             parts[-1] = parts[-1][:-1]
             continue
-        words = b" ".join(parts).partition(b"#")[0].decode("utf-8", "replace").split()
+        text = b" ".join(parts).partition(b"#")[0].decode("utf-8", "replace")
+        words = [Word(each[0], each.start() + 1) for each in re.finditer(r"\S+", text)]
         if words:
             yield line + 1 - len(parts), words
         parts = []
 
 
-def parse_numbers(key: str, words: list[str], line: int) -> list[float]:
+def parse_numbers(key: str, words: list[Word], line: int) -> list[float]:
     """Parse the numbers of a line `v`, `vt` or `vn`; further numbers, such as colours, are left out."""
     least, most, names = NUMBER_COUNTS[key]
     if not least <= len(words) <= most:
         raise ObjError(f"{key} has {names}, got {len(words)} number{'s' * (len(words) != 1)}", line)
-    try:
-        values = [number(word) for word in words]
-    except FieldError as error:
-        raise ObjError(f"{key} {error}", line) from None
-    for value in values:
-        if abs(value) > FARTHEST:
-            raise ObjError(f"{key} must be in [-{FARTHEST:g}, {FARTHEST:g}], got {spelled(value)}", line)
+    values = []
+    for word in words:
+        try:
+            values.append(number(word.text))
+        except FieldError as error:
+            raise ObjError(f"{key} {expected(error)}", line, word.column) from None
+        if abs(values[-1]) > FARTHEST:
+            raise ObjError(f"{key} must be in [-{FARTHEST:g}, {FARTHEST:g}]", line, word.column)
     return [*values, 0.0][: len(names.split())]
 
 
-def parse_corner(word: str, counts: list[int], line: int) -> list[int]:
+def expected(error: FieldError) -> str:
+    """Return what was expected of a number, without what was found."""
+    return str(error).partition(", got ")[0]
+
+
+def parse_corner(word: Word, counts: list[int], line: int) -> list[int]:
     """Return the indices of a corner's point, uv and normal, -1 for a missing one; `counts` of them precede it."""
-    parts = word.split("/")
+    parts = word.text.split("/")
     if len(parts) > 3 or not parts[0] or (len(parts) > 1 and not parts[-1]):
-        raise ObjError(f"a corner is v, v/vt, v//vn or v/vt/vn, got {quoted(word)}", line)
+        raise ObjError("a corner is v, v/vt, v//vn or v/vt/vn", line, word.column)
     parts += [""] * (3 - len(parts))
-    return [parse_index(text, part, counts[part], line) for part, text in enumerate(parts)]
+    return [parse_index(Word(text, word.column), part, counts[part], line) for part, text in enumerate(parts)]
 
 
-def parse_index(text: str, part: int, count: int, line: int) -> int:
+def parse_index(word: Word, part: int, count: int, line: int) -> int:
     """Return the index from 0 that a part of a corner names, -1 for an empty part; `count` items precede it."""
-    if not text:
+    if not word.text:
         return -1
     try:
-        named = whole(text)
+        named = whole(word.text)
     except FieldError as error:
-        raise ObjError(f"the {CORNER_PARTS[part]} of a corner {error}", line) from None
+        raise ObjError(f"the {CORNER_PARTS[part]} of a corner {expected(error)}", line, word.column) from None
     if named == 0 or named < -count:
-        raise ObjError(missing_index_message(part, named, count), line)
+        raise ObjError(missing_index_message(part, named, count), line, word.column)
     return min(named - 1, 2**62) if named > 0 else count + named
 
 

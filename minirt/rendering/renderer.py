@@ -10,9 +10,10 @@ from time import perf_counter
 
 import numpy as np
 
-from minirt.errors import RenderError
+from minirt.errors import RenderError, check_whole
 from minirt.helpers.system import ForkSafeLock, renew_after_fork
 from minirt.kernel.machine_code.library import LIBRARY
+from minirt.kernel.shading.whitted import MAX_DEPTH
 from minirt.rendering.frame_runner import FrameRunner, render_samples, render_to_error
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.notes import NO_GENERIC_KERNEL, kernel_notes
@@ -41,9 +42,9 @@ class Renderer:
         replaces rounding to 8 bits by blue noise."""
         if precision not in PRECISIONS:
             raise RenderError(f"precision must be double or single, got '{precision}'")
-        self.threads = threads or usable_cores()
+        self.threads = usable_cores() if threads is None else check_whole("threads", threads, 1)
         self.precision = precision
-        self.depth = DEPTH if depth is None else depth
+        self.depth = DEPTH if depth is None else check_whole("depth", depth, 0, MAX_DEPTH)
         self.busy = Lock()
         self.kernels = Kernels(precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
@@ -165,8 +166,7 @@ class Renderer:
         crop: Crop | None = None,
     ) -> bool:
         """Render a scene, whether it has shapes or not. The caller holds `busy`."""
-        if samples < 1:
-            raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
+        check_whole("samples", samples, 1)
         self.runner.not_finite = 0
         light = self.tone_mapper.light_for(scene, pixels, linear, edges_only)
         is_done = True

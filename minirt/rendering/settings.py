@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf
+from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
 
-from minirt.errors import RenderError
+from minirt.errors import RenderError, check_whole
 from minirt.helpers import system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.records import Immutable, record
@@ -40,8 +41,10 @@ class RenderSettings(Immutable):
         for name, value in (("error", self.error), ("time", self.time)):
             if value is not None and self.samples != "auto":
                 raise RenderError(f"an error or a time needs samples='auto', got {self.samples}")
-            if value is not None and not value > 0:
-                raise RenderError(f"{name} must be > 0, got {value}")
+            if value is not None and not (isinstance(value, Real) and value > 0):
+                raise RenderError(f"{name} must be a number > 0, got {value!r}")
+        if self.samples != "auto":
+            check_whole("samples", self.samples, 1)
 
     def replace(self, **changes: Any) -> RenderSettings:
         """Return the settings with some of them changed."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from minirt.element import Element
-from minirt.errors import RenderError
+from minirt.errors import check_whole
 from minirt.scene import writer
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
@@ -275,7 +275,7 @@ def size_of(scene: Scene) -> tuple[int, int]:
 def size_for(scene: Scene, width: int | None, height: int | None) -> tuple[int, int]:
     """The size of a picture of a scene, whose own is used where none is asked for; RenderError for an empty one."""
     own_width, own_height = size_of(scene)
-    size = own_width if width is None else width, own_height if height is None else height
-    if min(size) < 1:
-        raise RenderError(f"a picture has at least 1x1 pixels, got {size[0]}x{size[1]}")
-    return size
+    return (
+        own_width if width is None else check_whole("width", width, 1),
+        own_height if height is None else check_whole("height", height, 1),
+    )

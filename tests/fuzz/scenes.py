@@ -13,6 +13,8 @@ import numpy as np
 
 from minirt.errors import SceneError
 from minirt.rendering import Renderer
+from minirt.rendering.queries.preview import notice_about
+from minirt.rendering.queries.stiffness import stiff_shapes
 from minirt.scene import Scene, dump, parse
 from minirt.scene.fast import FEW_LINES
 from tests.fuzz import grammar
@@ -160,6 +162,8 @@ def render(scene: Scene, precision: str) -> None:
     assert (pixels[..., 3] == 255).all(), "pixels were left out"
     assert np.isfinite(light).all(), "light that is not finite"
     assert (light >= 0).all(), "light below 0"
+    notice_about(scene, pixels)
+    assert all(map(str, stiff_shapes(scene, renderer(precision).packing.shape_arrays, WIDTH, HEIGHT)))
 
 
 EXTREMES = Fuzzer(make_extreme, check_extreme, 40)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,7 @@ def refuse(path: Path, _: bytes) -> None:
 
 TABLE = obj_lines.corner_table
 LENS = FRAME.replace("60", "60 lens:1 focus:1e-310") + "sp 0,0,5 1 1,2,3"
+FAR = FRAME + "sp -1e15,0,-9e14 1e15 9,9,9"
 LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
 
 
@@ -72,6 +74,7 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
         ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),
         ("arguments", "", "minirt.cli.MiniRTError", SceneError, MiniRTError),
         ("extremes", LENS, "minirt.rendering.packing.camera.CLOSEST", 0.0, Warning),
+        ("extremes", FAR, "minirt.rendering.queries.preview.FARTHEST", inf, ValueError),
     ],
 )
 def test_a_wrong_program_is_found(

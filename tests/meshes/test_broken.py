@@ -16,34 +16,34 @@ BROKEN = {
     SQUARE + "f 1 1 2\n": "has no triangle that is more than a line",
     SQUARE + "f 1 2\n": "line 6: a face has at least 3 corners, got 2",
     SQUARE + "f\n": "line 6: a face has at least 3 corners, got 0",
-    SQUARE + "f 1 2 0\n": "line 6: a corner names point 0, but there are 4",
+    SQUARE + "f 1 2 0\n": "line 6, column 7: a corner names point 0, but there are 4",
     SQUARE + "f 1 2 5\n": "line 6: a corner names point 5, but there are 4",
-    SQUARE + "\n\nf 1 2 3\nf 1 2 -5\n": "line 9: a corner names point -5, but there are 4",
+    SQUARE + "\n\nf 1 2 3\nf 1 2 -5\n": "line 9, column 7: a corner names point -5, but there are 4",
     SQUARE + "f 1//1 2//2 3//1\n": "line 6: a corner names vn 2, but there is 1",
     SQUARE + "f 1/1 2/1 3/1\n": "line 6: a corner names vt 1, but there are 0",
     SQUARE + "f 1 2 9\nf 1 2 7": "line 6: a corner names point 9, but there are 4",
     SQUARE + f"f 1 2 {10**30}\n": f"line 6: a corner names point {2**62 + 1}, but there are 4",
-    SQUARE + "f 1/ 2/ 3/\n": "line 6: a corner is v, v/vt, v//vn or v/vt/vn, got '1/'",
-    SQUARE + "f /1 /2 /3\n": "line 6: a corner is v, v/vt, v//vn or v/vt/vn, got '/1'",
-    SQUARE + "f 1/1/1/1 2 3\n": "line 6: a corner is v, v/vt, v//vn or v/vt/vn, got '1/1/1/1'",
-    SQUARE + "f 1 2 x\n": "line 6: the point of a corner must be a whole number, got 'x'",
-    SQUARE + "f 1 2 3.0\n": "line 6: the point of a corner must be a whole number, got '3.0'",
-    SQUARE + "f 1 2 1_0\n": "line 6: the point of a corner must be a whole number, got '1_0'",
+    SQUARE + "f 1/ 2/ 3/\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
+    SQUARE + "f /1 /2 /3\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
+    SQUARE + "f 1/1/1/1 2 3\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
+    SQUARE + "f 1 2 x\n": "line 6, column 7: the point of a corner must be a whole number",
+    SQUARE + "f 1 2 3.0\n": "line 6, column 7: the point of a corner must be a whole number",
+    SQUARE + "f 1 2 1_0\n": "line 6, column 7: the point of a corner must be a whole number",
     "v 0 0\n": "line 1: v has x y z, got 2 numbers",
     "v 0 0 0 1 1 1 1 1\n": "line 1: v has x y z, got 8 numbers",
-    "v 0 0 nan\n": "line 1: v must be a number, got 'nan'",
-    "v 0 0 0\nv 1 inf 0\n": "line 2: v must be a number, got 'inf'",
-    "v 1e400 0 0\n": "line 1: v must be a number that a float64 can hold, got '1e400'",
-    "v 0 -2e15 0\n": "line 1: v must be in [-1e+15, 1e+15], got -2000000000000000",
-    "v 0 1_0 0\n": "line 1: v must be a number, got '1_0'",
-    "v 0 0 0x1\n": "line 1: v must be a number, got '0x1'",
+    "v 0 0 nan\n": "line 1, column 7: v must be a number",
+    "v 0 0 0\nv 1 inf 0\n": "line 2, column 5: v must be a number",
+    "v 1e400 0 0\n": "line 1, column 3: v must be a number that a float64 can hold",
+    "v 0 -2e15 0\n": "line 1, column 5: v must be in [-1e+15, 1e+15]",
+    "v 0 1_0 0\n": "line 1, column 5: v must be a number",
+    "v 0 0 0x1\n": "line 1, column 7: v must be a number",
     "v 0,0,0\n": "line 1: v has x y z, got 1 number",
     "vt\n": "line 1: vt has u v, got 0 numbers",
     "vn 0 1\n": "line 1: vn has x y z, got 2 numbers",
-    "v 0 0 0\nsp 0,0,0 1 255,0,0\n": "line 2: a line begins with v, vt, vn, f or another word of .obj, got 'sp'",
-    "V 0 0 0\n": "line 1: a line begins with v, vt, vn, f or another word of .obj, got 'V'",
-    "curv 0 1 2\n": "line 1: a line begins with v, vt, vn, f or another word of .obj, got 'curv'",
-    "\x89PNG\n": "line 1: a line begins with v, vt, vn, f or another word of .obj, got '\\x89PNG'",
+    "v 0 0 0\nsp 0,0,0 1 255,0,0\n": "line 2, column 1: a line begins with v, vt, vn, f or another word of .obj",
+    "V 0 0 0\n": "line 1, column 1: a line begins with v, vt, vn, f or another word of .obj",
+    "curv 0 1 2\n": "line 1, column 1: a line begins with v, vt, vn, f or another word of .obj",
+    "\x89PNG\n": "line 1, column 1: a line begins with v, vt, vn, f or another word of .obj",
     "v 0 0 \\\n0 \\\n# x\nv 1 2\n": "line 4: v has x y z, got 2 numbers",
 }
 
@@ -56,7 +56,7 @@ def test_a_broken_file_is_refused(text: str, message: str) -> None:
 
 
 def test_binary_data_is_refused() -> None:
-    with pytest.raises(ObjError, match=r"^line 1: a line begins with"):
+    with pytest.raises(ObjError, match=r"^line 1, column 1: a line begins with"):
         obj.parse(bytes(range(256)))
 
 
@@ -99,12 +99,7 @@ def test_a_file_of_too_many_lines_is_refused_before_they_are_read(monkeypatch: p
         obj.parse((triangle + "#\n" * 97).encode())
 
 
-def test_a_number_of_a_million_digits_gives_a_short_message() -> None:
-    with pytest.raises(ObjError, match="got 1000000 characters"):
-        obj.parse(b"v 0 0 " + b"1" * 1_000_000)
-
-
 def test_a_number_that_is_too_long_is_refused_whatever_its_value() -> None:
     number = b"0." + b"1" * 300
-    with pytest.raises(ObjError, match=r"^line 5: v must be a number, got 302 characters"):
+    with pytest.raises(ObjError, match=r"^line 5, column 7: v must be a number$"):
         obj.parse(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 0 0 " + number + b"\n")

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from minirt.fields import Triple, spelled
+from minirt.fields import FARTHEST, Triple, spelled
 from minirt.kernel import interpreted
 from minirt.kernel.frame import ray_direction
 from minirt.kernel.pixels import to_byte_range
@@ -164,7 +164,8 @@ def bounding_ball(scene: Scene) -> tuple[Triple, float]:
 
 
 def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> list[Camera]:
-    """Return cameras all around a ball that see it whole, those near to where the camera is first."""
+    """Return cameras all around a ball that see it whole, those near to where the camera is first, and none beyond the
+    range of coordinates."""
     fov = camera.fov if NARROWEST <= camera.fov <= WIDEST else USUAL
     half = tan(radians(fov) / 2) * min(1.0, aspect)
     distance = MARGIN * radius / sin(atan2(half, 1.0))
@@ -176,6 +177,8 @@ def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> 
         for azimuth in (start + turn for turn in turns):
             towards = cos(elevation) * sin(azimuth), sin(elevation), cos(elevation) * cos(azimuth)
             eye = tuple(rounded(a + distance * b, radius) for a, b in zip(centre, towards, strict=True))
+            if max(map(abs, eye)) > FARTHEST:
+                continue
             direction = tuple(round(-b, PLACES) for b in towards)
             cameras.append(camera.replace(position=eye, direction=direction, fov=fov, roll=0.0))
     return cameras

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from minirt.errors import RenderError
+from minirt.errors import check_whole
 from minirt.helpers.system import renew_after_fork
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import ray_direction
@@ -39,8 +39,7 @@ def camera_rays(scene: Scene | Camera, width: int, height: int) -> tuple[NDArray
         hits = minirt.trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3))
     """
     check_scene(scene, "camera_rays")
-    if width < 1 or height < 1:
-        raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
+    width, height = check_whole("width", width, 1), check_whole("height", height, 1)
     camera = scene if isinstance(scene, Camera) else scene.camera
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     y, x = np.mgrid[0:height, 0:width] + 0.5
