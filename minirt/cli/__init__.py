@@ -24,7 +24,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     prepare_streams()
     if argv is None:  # a program of its own
         hide_warnings()
-        leave_blas_single_threaded()
+        # Threads of numpy would spin for 20 to 40 ms of the start, and the program multiplies only small matrices.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         return run(argument_parser(), argv)
     except BrokenPipeError:  # the reader of standard output has closed it
@@ -46,14 +47,6 @@ def failed(message: object) -> int:
     """Print an error, and return the exit status."""
     tell(f"Error\n{message}")
     return FAILED
-
-
-def leave_blas_single_threaded() -> None:
-    """Let numpy's OpenBLAS start no threads, unless the user asks for some; to be called before numpy is imported.
-
-    They would spin for 20 to 40 ms of the start, and the program multiplies only small matrices.
-    """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def run(parser: Arguments, argv: Sequence[str] | None) -> int:

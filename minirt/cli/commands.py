@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES
 from minirt.cli.output import say
-from minirt.errors import FileError, MlxError, ReplayError
+from minirt.errors import MlxError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 
@@ -118,7 +118,8 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     width, height = options.size or size_of(scene)
     if options.output:
         check_output(options.output, width, height)
-    lines = read_lines(options.replay)
+    text = file_io.read(options.replay, MAX_RECORDING).decode(errors="replace")
+    lines = text.replace("\r\n", "\n").split("\n")
     settings: dict[str, Any] = {
         "file": options.replay,
         "renderer": renderer(options.threads, options.precision, options.depth, options.dither),
@@ -138,13 +139,3 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
         without_scene = argparse.Namespace(**vars(options) | {"metadata": False})
         write(Image.from_bgra(pixels), options.output, scene, without_scene)
     return OK
-
-
-def read_lines(path: str) -> list[str]:
-    """Return the lines of a file of recorded keys; ReplayError when it cannot be read."""
-    try:
-        return file_io.read(path, MAX_RECORDING).decode().replace("\r\n", "\n").split("\n")
-    except FileError as error:
-        raise ReplayError(str(error)) from None
-    except UnicodeDecodeError as error:
-        raise ReplayError(f"{path}: cannot be read: {error}") from None

@@ -17,7 +17,7 @@ from minirt.helpers import file_io
 from minirt.helpers.progress import progress
 
 if TYPE_CHECKING:
-    from minirt.scene import Reading, Scene
+    from minirt.scene import Scene
 
 DEMO_PICTURE = "miniRT-demo.png"  # of a program without arguments, where no window can be opened
 STANDARD_INPUT = "standard input"
@@ -26,27 +26,26 @@ PLACE = "{name}"  # in an output, stands for the name of the scene's file withou
 
 def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     """Load the scene; print its notices, one for each tolerated mistake, to `stream`."""
-    from minirt.scene import load
-
-    if options.example:
-        from minirt.example_scenes import example
-
-        return with_handedness(example(options.example), options)
+    from minirt.example_scenes import example
     from minirt.helpers.progress import State
+    from minirt.scene import Reading, load, parse
 
     path = options.scene[0]
     with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
-        scene, notices = (
-            read_standard_input(options) if path == "-" else load(path, options.lenient, options.left_handed)
-        )
-    for notice in notices:
+        if options.example:
+            reading = Reading(example(options.example), ())
+        elif path == "-":  # whose pictures and meshes are looked for in the current folder
+            reading = parse(standard_input(), STANDARD_INPUT, options.lenient)
+        else:
+            reading = load(path, options.lenient)
+    for notice in reading.notices:
         tell(f"notice: {notice}", stream)
-    return scene
+    scene = reading.scene
+    return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene
 
 
-def read_standard_input(options: argparse.Namespace) -> Reading:
-    """Parse standard input; pictures and meshes are looked for in the current folder. SceneError."""
-    from minirt.scene import Reading, parse
+def standard_input() -> bytes:
+    """Read standard input. SceneError."""
     from minirt.scene.files import MAX_BYTES, file_error
 
     try:
@@ -56,13 +55,7 @@ def read_standard_input(options: argparse.Namespace) -> Reading:
         raise file_error(STANDARD_INPUT, f"cannot be read: {reason or 'it is closed'}") from None
     if len(data) > MAX_BYTES:
         raise file_error(STANDARD_INPUT, f"larger than {MAX_BYTES // 2**20} MiB")
-    scene, notices = parse(data, STANDARD_INPUT, options.lenient)
-    return Reading(with_handedness(scene, options), notices)
-
-
-def with_handedness(scene: Scene, options: argparse.Namespace) -> Scene:
-    """Return the scene, mirrored if the options ask for it."""
-    return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene
+    return data
 
 
 def with_camera_options(scene: Scene, options: argparse.Namespace) -> Scene:

@@ -9,6 +9,7 @@ import argparse
 import os
 import shlex
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -67,11 +68,10 @@ def configuration_path(named: str | None) -> Path | None:
     """Return the path of the file to read: the one that is `named`, or the user's own if there is one."""
     if named is not None:
         return Path(named) if named else None
-    try:
+    with suppress(OSError, RuntimeError):  # RuntimeError: nobody's home
         path = default_path()
         return path if path.is_file() else None
-    except (OSError, RuntimeError):  # RuntimeError: nobody's home
-        return None
+    return None
 
 
 def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, object]:
@@ -85,16 +85,16 @@ def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, obje
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise FileError(path, f"is not TOML: {error}") from None
     actions = actions_of(parser, CONFIGURABLE)
-    for name in table:
-        if name.replace("-", "_") not in actions:
+    defaults = {}
+    for written, value in table.items():
+        name = written.replace("-", "_")
+        if name not in actions:
             known = [each.replace("_", "-") for each in actions]
-            raise FileError(path, f"no option '{name[:40]}' that has a default{suggestion(name, known)}")
-    defaults = {name.replace("-", "_"): value for name, value in table.items()}
-    for name, value in defaults.items():
+            raise FileError(path, f"no option '{written[:40]}' that has a default{suggestion(written, known)}")
         try:
             defaults[name] = value_of(actions[name], value)
         except ValueError as error:
-            raise FileError(path, f"{name.replace('_', '-')} {error}") from None
+            raise FileError(path, f"{written} {error}") from None
     return defaults
 
 

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import sqrt
 from operator import itemgetter
-from typing import NamedTuple
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from minirt import __version__
 from minirt.formats import tiff
@@ -83,7 +81,7 @@ class Band(NamedTuple):
 class Made(NamedTuple):
     """Result of rendering a band."""
 
-    parts: tuple[np.ndarray | bytes, ...]  # levels, and light if asked for; or compressed strips of a TIFF file
+    parts: tuple[Any, ...]  # arrays of levels, and light if asked for; or compressed strips of a TIFF file
     reached: Outcome | None
     not_finite: int = 0  # rays
 
@@ -99,12 +97,9 @@ def render_band(band: Band) -> Made:
 
 def image_of(band: Band, made: Made) -> Image:
     """Return the picture of what was made of a band."""
-    levels, *light = made.parts
-    assert isinstance(levels, np.ndarray)
-    if not light:
-        return Image(levels, None, made.reached, band.scene.camera.tone)
-    assert isinstance(light[0], np.ndarray)
-    return LinearImage(levels, light[0], made.reached, band.scene.camera.tone)
+    kind = LinearImage if len(made.parts) > 1 else Image
+    levels, light = (*made.parts, None)[:2]
+    return kind(levels, light, made.reached, band.scene.camera.tone)
 
 
 def rows_of(region: Region) -> list[Region]:

@@ -141,12 +141,3 @@ def test_without_dask_an_address_is_an_error(folder: Path) -> None:
     (folder / "distributed.py").write_text("raise ImportError")
     ended = program(folder, "ball.rt", "-o", "a.tif", "--cluster", "tcp://127.0.0.1:1")
     assert (ended.status, "pip install 'minirt[cluster]'" in ended.err) == (1, True)
-
-
-def test_a_picture_cannot_ask_for_a_size_beyond_the_limit(run: Run, folder: Path) -> None:
-    """Its settings may come from anybody."""
-    image = minirt.render(minirt.load("ball.rt"), 8, 6)
-    texts = {"miniRT scene": (folder / "ball.rt").read_text(), "miniRT settings": "--size 900000000x900000000"}
-    image.save("wild.png", texts=texts)
-    assert run("wild.png", "-o", "a.png").status == 0
-    assert minirt.load("a.png")

@@ -98,12 +98,3 @@ def test_names_may_have_characters_that_the_terminal_lacks(folder: Path, name: s
         ended = program(folder, "", *arguments, **settings)
         assert (ended.status, ended.err) == (0, "")
         os.remove(f"{name}/x.png")  # noqa: PTH107
-
-
-@pytest.mark.parametrize(
-    "goal", [("--error", "1e300"), ("--error", "1e-300", "--time", "1e-300"), ("--error", "5e-324", "--time", "1e-9")]
-)
-def test_extreme_goals_of_auto_sampling_are_no_errors(folder: Path, goal: tuple[str, ...]) -> None:
-    ended = program(folder, "", "ball.rt", "-o", "x.png", "--size", "8x8", "--samples", "auto", *goal)
-    assert ended.status == 0
-    assert (folder / "x.png").exists()

@@ -66,13 +66,6 @@ def test_tone_dithering_and_16_bits_are_those_of_the_picture(tmp_path: Path) -> 
     assert np.array_equal(tifffile.imread(tmp_path / "b.tif"), minirt.render(scene, *SIZE).deep)
 
 
-def test_files_of_a_scene_are_found_by_processes(tmp_path: Path) -> None:
-    scene = with_files(tmp_path / "home")
-    with ProcessPoolExecutor(1) as pool:
-        minirt.render_to(tmp_path / "a.tif", scene, 40, 50, executor=pool)
-    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(scene, 40, 50).array)
-
-
 def test_a_region_has_the_pixels_of_the_picture(tmp_path: Path) -> None:
     minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, region=(37, 21, 300, 370))
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture()[21:391, 37:337])
@@ -207,10 +200,12 @@ def test_wrong_arguments_are_refused(path: str, how: dict[str, Any], message: st
 
 
 def test_sizes_are_checked(tmp_path: Path) -> None:
-    with pytest.raises(RenderError, match="must be a whole number of at least 1"):
-        minirt.render_to(tmp_path / "a.tif", BALL, 0, 5)
-    with pytest.raises(RenderError, match="at most 2,147,483,647 pixels"):
-        minirt.render_to(tmp_path / "a.tif", BALL, 2**31, 5)
+    for size, message in (
+        ((0, 5), "must be a whole number of at least 1"),
+        ((2**31, 5), "at most 2,147,483,647 pixels"),
+    ):
+        with pytest.raises(RenderError, match=message):
+            minirt.render_to(tmp_path / "a.tif", BALL, *size)
 
 
 # Films and sweeps: pictures of many scenes in order, the same whoever renders them.
@@ -284,12 +279,6 @@ def test_scenes_that_differ_in_the_camera_alone_are_packed_once() -> None:
     )
     assert first is second
     assert third is not first
-
-
-def test_each_frame_reaches_an_error() -> None:
-    for image in minirt.render_all(sweep(2), 160, 90, samples="auto", error=0.01):
-        assert image.reached
-        assert image.reached.is_reached
 
 
 def test_wrong_scenes_and_sizes_of_frames_are_refused() -> None:
