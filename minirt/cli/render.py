@@ -76,24 +76,18 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
         yield client
 
 
-def is_long(job: Job, options: argparse.Namespace, count: int = 1) -> bool:
-    """Whether `count` pictures are so much work that it is kept when it is interrupted. Samples that depend on those
-    before cannot be gone on with."""
-    *_, width, height = job.region
-    samples = job.settings.samples
-    rays = 0 if samples == "auto" else width * height * samples * count
-    return options.output != "-" and bool(options.resume or rays >= LONG)
-
-
 @contextmanager
 def kept_work(
-    job: Job, options: argparse.Namespace, what: str, count: int = 1, has_parts: bool = True
+    job: Job, options: argparse.Namespace, share: Share, what: str, count: int = 1, has_parts: bool = True
 ) -> Iterator[Journal | None]:
     """Keep what the block puts into the journal of the output, until the block ends without an error.
 
-    `what` names the records, such as `5 bands`; short work is not kept.
+    Short work is not kept, and neither are samples that depend on those before. `what` names the `count` pictures or
+    the bands of one.
     """
-    if not is_long(job, options, count):
+    *_, width, height = job.region
+    rays = 0 if job.settings.samples == "auto" else width * height * job.settings.samples * count
+    if options.output == "-" or not (options.resume or rays >= LONG):
         if options.output != "-":
             delete(path_for(options.output))
         yield None
@@ -110,7 +104,7 @@ def kept_work(
             import shlex
 
             command = shlex.join([*(each for each in options.command if each != "--resume"), "--resume"])
-            tell(f"{len(journal.places)} of {what} are kept; miniRT {command} goes on")
+            tell(f"{len(journal.places)} of {share.total} {what} are kept; miniRT {command} goes on")
         raise
     journal.remove()
 
@@ -149,7 +143,6 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
         settings.renderer.prepare(scene)
         tell(f"kernel ready after {perf_counter() - start:.2f} s")
         start = perf_counter()
-    bands = job.cut(bool(executor), is_long(job, options))
     share = Share(job, executor)
 
     def state() -> State:
@@ -159,7 +152,8 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
             return share.state(options.output)
         return State("sampling", (perf_counter() - start) / settings.time if settings.time else None)
 
-    with kept_work(job, options, f"{len(bands)} bands of the picture") as journal:
+    with kept_work(job, options, share, "bands of the picture") as journal:
+        bands = job.cut(bool(executor), journal is not None)
         with progress(state):
             image, not_finite = picture_of(job, bands, executor, journal, share.note)
         tell_outcome(image.reached)
@@ -199,8 +193,8 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None)
     def state() -> State:
         return share.state(f"picture {min(wanted.start + share.done, wanted[-1])} of {options.turntable}")
 
-    what = f"{len(wanted)} pictures of the film"
-    with kept_work(job, options, what, len(wanted), has_parts=is_film(options)) as journal, progress(state):
+    kept = kept_work(job, options, share, "pictures of the film", len(wanted), has_parts=is_film(options))
+    with kept as journal, progress(state):
         if is_film(options):
             save_movie(images(journal), options.output, quality=options.quality)
         else:
