@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import os
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Iterator, Sized
-from functools import partial
+from collections.abc import Iterable, Sized
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, TypeAlias
+from typing import TYPE_CHECKING
 
 from minirt.errors import RenderError
-from minirt.formats.table import FORMATS, check_quality, format_of
+from minirt.formats.table import FORMATS, check_quality, encoding, format_of
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, in_notebooks
 
 if TYPE_CHECKING:
-    from minirt.formats.films import Film
     from minirt.rendering.image import Image
-
-Recording: TypeAlias = Callable[[Callable[["Image"], None]], object]  # gives pictures to a function
 
 FPS = 25.0  # frames per second
 INLINE = 32 * 2**20  # bytes of the largest film that a notebook shows: it becomes a part of the notebook
@@ -55,88 +51,54 @@ def save_movie(
     total = len(pictures) if isinstance(pictures, Sized) else None
     number = 0  # of pictures that are in the film
 
-    def counted() -> Iterator[Image]:
-        nonlocal number
-        for picture in pictures:
-            yield picture
-            number += 1
-
     def state() -> State:
         return State(f"picture {number + 1}" + (f" of {total}" if total else ""), number / total if total else None)
 
     with in_notebooks(state):
-        if FORMATS[format_of(path)].is_film:
-            return SavedMovie([record_movie(partial(each_of, counted()), path, fps, quality=quality)])
         check_quality(format_of(path), quality)
-        return SavedMovie(save_numbered(counted(), Path(path), quality))
-
-
-def record_movie(
-    record: Recording, path: str | os.PathLike[str], fps: float = FPS, *, quality: int | None = None
-) -> Path:
-    """Write a film in one file of pictures that `record` makes: it is called with a function that takes each of them.
-
-    The other arguments, errors and the result are those of `save_movie`.
-    """
-    target, name = Path(path), format_of(path)
-    check_quality(name, quality)
-    try:
-        file_io.write(target, lambda file: write_film(record, file, name, fps, quality))
-    except OSError as error:
-        raise RenderError(f"{target}: cannot write: {error.strerror or error}") from None
-    return target
-
-
-def each_of(pictures: Iterable[Image], add: Callable[[Image], None]) -> None:
-    """Give pictures to a function, one after the other."""
-    for picture in pictures:
-        add(picture)
-
-
-def save_numbered(pictures: Iterable[Image], target: Path, quality: int | None = None) -> list[Path]:
-    """Write a file for each picture, and return their paths; RenderError without pictures."""
-    written = []
-    for number, picture in enumerate(pictures, 1):
-        file = numbered(target, number)
-        picture.save(file, quality=quality)
-        written.append(file)
-    if not written:
+        film = Film(path, fps, quality) if FORMATS[format_of(path)].is_film else None
+        for picture in pictures:
+            if film:
+                film.add(picture)
+            else:
+                picture.save(numbered(path, number + 1), quality=quality)
+            number += 1
+    if not number:
         raise RenderError("a movie needs a picture")
-    return written
+    return SavedMovie([film.save()] if film else [numbered(path, each) for each in range(1, number + 1)])
 
 
-def numbered(target: Path, number: int) -> Path:
-    """Return the path of a picture of a film."""
-    return target.with_name(f"{target.stem}-{number:04}{target.suffix}")
+class Film:
+    """A film in one file, to which pictures are added one after the other; the arguments are those of `save_movie`."""
 
+    def __init__(self, path: str | os.PathLike[str], fps: float = FPS, quality: int | None = None) -> None:
+        from minirt.formats.films import CODECS, QUALITY, LoopFilm, VideoFilm
 
-def write_film(record: Recording, out: BinaryIO, name: str, fps: float, quality: int | None = None) -> None:
-    """Write the pictures that `record` makes to a file that can seek; of a loop all are in memory at once.
+        self.path, self.name = Path(path), format_of(path)
+        with file_io.told_errors(path):
+            file_io.probe(path)
+        self.film = (VideoFilm if self.name in CODECS else LoopFilm)(self.name, fps, quality or QUALITY)
+        self.sizes: set[tuple[int, int]] = set()
 
-    RenderError without pictures, or when the format cannot hold them; OSError when the file cannot be written.
-    """
-    from minirt.formats.films import new_film
-
-    film: Film | None = None
-    sizes: set[tuple[int, int]] = set()
-
-    def add(picture: Image) -> None:
-        nonlocal film
-        film = film or new_film(out, name, fps, quality)
-        sizes.add((picture.array.shape[1], picture.array.shape[0]))
-        if len(sizes) > 1:
-            different = " and ".join(f"{width}x{height}" for width, height in sorted(sizes))
+    def add(self, picture: Image) -> None:
+        """Add a picture; RenderError where the film cannot hold it."""
+        self.sizes.add((picture.array.shape[1], picture.array.shape[0]))
+        if len(self.sizes) > 1:
+            different = " and ".join(f"{width}x{height}" for width, height in sorted(self.sizes))
             raise RenderError(f"the pictures of a film have one size, got {different}")
-        try:
-            film.add(picture.array)
-        except (ValueError, KeyError, OverflowError) as error:
-            raise RenderError(f"cannot write this film as {name}: {error}") from None
+        with encoding("film", self.name):
+            self.film.add(picture.array)
 
-    try:
-        record(add)
-        if film is None:
-            raise RenderError("a movie needs a picture")
-        film.end()
-    finally:
-        if film:
-            film.close()
+    def save(self) -> Path:
+        """Write a film that has pictures, and return its path; RenderError when that fails."""
+        with encoding("film", self.name):
+            data = self.film.data()
+        with file_io.told_errors(self.path):
+            file_io.write(self.path, data)
+        return self.path
+
+
+def numbered(path: str | os.PathLike[str], number: int) -> Path:
+    """Return the path of a picture of a film."""
+    target = Path(path)
+    return target.with_name(f"{target.stem}-{number:04}{target.suffix}")

@@ -181,14 +181,6 @@ def test_an_error_at_a_write_is_told_and_leaves_old_or_new_files(
     assert capfd.readouterr() == ("", ""), "libraries print nothing of their own"
 
 
-@pytest.mark.parametrize("name", [name for name in ("MP4 film", "WEBM film") if name in WRITERS])
-def test_no_error_at_any_write_makes_pyav_print_a_traceback(
-    name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert tried_errors(WRITERS[name], tmp_path, 100, CODES) > SOME
-    assert capfd.readouterr() == ("", "")
-
-
 @every_writer
 def test_short_writes_are_gone_on_with(writer: Writer, tmp_path: Path) -> None:
     whole = written(writer, tmp_path / "whole")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES
@@ -108,7 +107,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
     from minirt.cli.files import check_output, is_film
     from minirt.cli.render import write
-    from minirt.movie import record_movie
+    from minirt.movie import Film
     from minirt.rendering.image import Image
     from minirt.rendering.renderer import renderer
     from minirt.scene import size_of
@@ -131,8 +130,9 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     }
     with progress(lambda: State(f"playing {options.replay}")):
         if is_film(options):
-            play_film = partial(record, scene, lines, **settings)
-            record_movie(play_film, options.output, FPS, quality=options.quality)
+            film = Film(options.output, FPS, options.quality)
+            record(scene, lines, film.add, **settings)
+            film.save()
             return OK
         pixels = play(scene, lines, **settings)
     if options.output:  # which carries no scene: keys have edited it

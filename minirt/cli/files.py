@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -119,7 +118,5 @@ def check_output(output: str, width: int, height: int) -> None:
     if output == "-":
         return
     check_size(output, format_of(output), width, height)
-    try:
+    with file_io.told_errors(output):
         file_io.probe(output)
-    except OSError as error:
-        raise RenderError(f"{os.fspath(output)}: cannot write: {error.strerror or error}") from None

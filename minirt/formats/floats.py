@@ -134,3 +134,6 @@ def encode_pfm(light: np.ndarray) -> bytes:
     """Return the file of light, (h, w, 3)."""
     height, width = light.shape[:2]
     return f"PF\n{width} {height}\n{LITTLE_ENDIAN}\n".encode() + light[::-1].astype("<f4").tobytes()
+
+
+ENCODERS = {"EXR": encode_exr, "HDR": encode_hdr, "PFM": encode_pfm}

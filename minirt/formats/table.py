@@ -7,6 +7,8 @@ Only formats that hold the colours of a picture of any size are in it. Pillow al
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,7 +29,7 @@ class Format(NamedTuple):
     is_lossy: bool = False  # whether it has a quality from 1 to 100
     is_film: bool = False  # whether it can hold several pictures in one file
     is_still: bool = True  # whether it can hold a single picture
-    memory: int = 9  # bytes a pixel while a picture is rendered and written with the default bits, as measured
+    memory: int = 12  # bytes a pixel while a picture is rendered and written with the default bits, as measured
 
 
 FORMATS = {  # by Pillow's name, where Pillow writes the format
@@ -125,3 +127,12 @@ def check_quality(name: str, quality: int | None) -> None:
         raise RenderError(f"{name} has no quality: it keeps all pixels as they are")
     if not 1 <= quality <= 100:
         raise RenderError(f"the quality is a number from 1 to 100, got {quality}")
+
+
+@contextmanager
+def encoding(what: str, name: str) -> Iterator[None]:
+    """Raise the errors of Pillow and PyAV as RenderError: a format cannot hold `what`, a picture or a film."""
+    try:
+        yield
+    except (OSError, ValueError, KeyError, OverflowError) as error:
+        raise RenderError(f"cannot write this {what} as {name}: {error}") from None

@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from minirt.errors import FileError
+from minirt.errors import FileError, RenderError
 
 if sys.platform != "win32":
     import fcntl
@@ -56,6 +56,15 @@ def probe(path: str | os.PathLike[str]) -> None:
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
     if not os.access(target.parent, os.W_OK | os.X_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+
+@contextmanager
+def told_errors(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Raise the system's errors in the block as RenderError: a picture or a film cannot be written to a file."""
+    try:
+        yield
+    except OSError as error:
+        raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 
 
 def create(path: str | os.PathLike[str], data: bytes) -> None:

@@ -11,14 +11,14 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, BinaryIO, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from minirt.errors import RenderError
 from minirt.formats import png
 from minirt.formats.png import NO_TEXTS
-from minirt.formats.table import FLOAT, check_bits, check_quality, format_of
+from minirt.formats.table import FLOAT, check_bits, check_quality, encoding, format_of
 from minirt.helpers import file_io
 
 if TYPE_CHECKING:
@@ -89,43 +89,21 @@ class Image:
         `bits` a channel are 8 or 16 for PNG and TIFF; `quality`, from 1 to 100, is for lossy formats. A PNG file
         carries `texts`, by their keywords.
         """
-        buffer = io.BytesIO()
-        self.write(buffer, name, bits, quality, texts)
-        return buffer.getvalue()
-
-    def write(
-        self,
-        file: BinaryIO,
-        name: str,
-        bits: int | None,
-        quality: int | None,
-        texts: Mapping[str, str],
-    ) -> None:
-        """Write the bytes of a file in a format, part by part where the format allows it; OSError when that fails, and
-        RenderError when the format cannot hold the picture. The arguments are those of `save`."""
-        bits = check_bits(name, bits)
-        check_quality(name, quality)
-        try:
-            if name == "PNG":
-                file.writelines(png.parts(self.array if bits == 8 else self.deep, texts))
-            elif bits != 8:
-                file.write(self.encode_by_own(name))
-            else:
-                options = {} if quality is None else {"quality": quality}
-                self.pil.save(cast("Any", PlainFile(file)), "PNG" if name == "APNG" else name, **options)
-        except (OSError, ValueError, KeyError, OverflowError) as error:
-            if isinstance(error, OSError) and error.errno:
-                raise
-            raise RenderError(f"cannot write this picture as {name}: {error}") from None
-
-    def encode_by_own(self, name: str) -> bytes:
-        """Return the bytes of a format that Pillow lacks."""
         from minirt.formats import floats, tiff
 
-        if name == "TIFF":
-            return tiff.encode(self.deep)
-        encode = {"EXR": floats.encode_exr, "HDR": floats.encode_hdr, "PFM": floats.encode_pfm}[name]
-        return encode(self.light(f"{FLOAT} bits"))
+        bits = check_bits(name, bits)
+        check_quality(name, quality)
+        with encoding("picture", name):
+            if name == "PNG":
+                return png.encode(self.array if bits == 8 else self.deep, texts)
+            if name == "TIFF" and bits != 8:
+                return tiff.encode(self.deep)
+            if bits == FLOAT:
+                return floats.ENCODERS[name](self.light(f"{FLOAT} bits"))
+            buffer = io.BytesIO()
+            options = {} if quality is None else {"quality": quality}
+            self.pil.save(buffer, "PNG" if name == "APNG" else name, **options)
+            return buffer.getvalue()
 
     def save(
         self,
@@ -139,11 +117,9 @@ class Image:
 
         The arguments are those of `encode`.
         """
-        name = format_of(path)
-        try:
-            file_io.write(path, lambda file: self.write(file, name, bits, quality, texts))
-        except OSError as error:
-            raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
+        data = self.encode(format_of(path), bits=bits, quality=quality, texts=texts)
+        with file_io.told_errors(path):
+            file_io.write(path, data)
 
     def _repr_png_(self) -> bytes:
         """Return the picture as PNG; notebooks call this."""
@@ -158,14 +134,6 @@ class Image:
     def __repr__(self) -> str:
         height, width = self.array.shape[:2]
         return f"<Image of {width}x{height} pixels{'' if self.linear is None else ', with linear light'}>"
-
-
-class PlainFile:
-    """A file without a descriptor: Pillow would write to that by itself, and not tell why it failed."""
-
-    def __init__(self, file: BinaryIO) -> None:
-        self.write, self.flush = file.write, file.flush
-        self.seek, self.tell = file.seek, file.tell
 
 
 def blocks_of_rows(array: np.ndarray) -> Iterator[slice]:
