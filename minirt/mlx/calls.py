@@ -145,54 +145,35 @@ class Calls:
 
     def mlx_png_file_to_image(self, mlx_ptr: WindowHost, filename: FileName) -> ImageAndSize:
         """Return (image, width, height) of a picture file of any format that Pillow reads."""
-        return self._mlx_image_of(lambda: _read_picture(filename))
+        return self._mlx_image_of(filename, lambda: _read_picture(filename))
 
     def mlx_xpm_file_to_image(self, mlx_ptr: WindowHost, filename: FileName) -> ImageAndSize:
         """Return (image, width, height) of an XPM file."""
-        return self._mlx_image_of(lambda: _read_xpm_file(filename))
+        return self._mlx_image_of(filename, lambda: _read_xpm(Path(filename).read_bytes()))
 
     def mlx_xpm_to_image(self, mlx_ptr: WindowHost, xpm_data: Sequence[str]) -> ImageAndSize:
         """Return (image, width, height) of the strings of an XPM file."""
         strings = (text.encode("latin-1", "replace") for text in xpm_data)
-        return self._mlx_image_of(lambda: _read_xpm(strings, "the strings"))
+        return self._mlx_image_of("the strings of an XPM file", lambda: _read_xpm(strings))
 
-    def _mlx_image_of(self, read: Callable[[], NDArray[np.uint8]]) -> ImageAndSize:
-        """Return the image that `read` makes with its size, or (None, 0, 0)."""
+    def _mlx_image_of(self, name: FileName, read: Callable[[], NDArray[np.uint8]]) -> ImageAndSize:
+        """Return the image that `read` makes, in BGRA, with its size, or (None, 0, 0)."""
         try:
             image = Image(read())
-        except MlxError as error:
-            return self._mlx_failed(error), 0, 0
+        except Exception as error:  # decoders have errors of many kinds
+            return self._mlx_failed(MlxError(f"{name} cannot be read as a picture: {error}")), 0, 0
         return image, image.width, image.height
 
 
 def _read_picture(filename: FileName) -> NDArray[np.uint8]:
-    """Read a picture file as BGRA. Raises MlxError."""
     from PIL import Image as Pillow
 
-    try:
-        with Pillow.open(filename) as picture:
-            rgba = np.asarray(picture.convert("RGBA"))
-    except (OSError, ValueError, SyntaxError, Pillow.DecompressionBombError) as error:
-        raise MlxError(f"{filename} cannot be read as a picture: {error}") from error
-    return np.ascontiguousarray(rgba[..., [2, 1, 0, 3]])
+    with Pillow.open(filename) as picture:
+        return np.ascontiguousarray(np.asarray(picture.convert("RGBA"))[..., [2, 1, 0, 3]])
 
 
-def _read_xpm_file(filename: FileName) -> NDArray[np.uint8]:
-    """Read an XPM file as BGRA. Raises MlxError."""
-    from minirt.formats.xpm import strings_of
+def _read_xpm(source: bytes | Iterator[bytes]) -> NDArray[np.uint8]:
+    from minirt.formats.xpm import read_header, read_pixels, strings_of
 
-    try:
-        data = Path(filename).read_bytes()
-    except (OSError, ValueError) as error:
-        raise MlxError(f"{filename} cannot be read: {error}") from error
-    return _read_xpm(strings_of(data), str(filename))
-
-
-def _read_xpm(strings: Iterator[bytes], name: str) -> NDArray[np.uint8]:
-    """Read the strings of an XPM file as BGRA. Raises MlxError."""
-    from minirt.formats.xpm import XpmError, read_header, read_pixels
-
-    try:
-        return read_pixels(strings, read_header(strings))
-    except XpmError as error:
-        raise MlxError(f"{name} cannot be read as an XPM picture: {error}") from error
+    strings = strings_of(source) if isinstance(source, bytes) else source
+    return read_pixels(strings, read_header(strings))

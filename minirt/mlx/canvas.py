@@ -111,11 +111,6 @@ def stretch(pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.ui
     return stretched
 
 
-def bgra(color: int) -> tuple[int, int, int, int]:
-    """Split 0xAARRGGBB into the four bytes of a pixel: blue, green, red, alpha."""
-    return color & 0xFF, color >> 8 & 0xFF, color >> 16 & 0xFF, color >> 24 & 0xFF
-
-
 def blend(below: Words, source: Words) -> None:
     """Blend a picture into another of the same shape (h, w), in place. The result is opaque."""
     rows = max(1, BLOCK // max(1, source.shape[1]))

@@ -1,4 +1,4 @@
-"""Key codes: X11's keysyms, as MiniLibX passes them to hooks."""
+"""What events are about: keys, by X11's keysyms as MiniLibX passes them to hooks, buttons and pointer shapes."""
 
 from __future__ import annotations
 
@@ -17,112 +17,33 @@ class Key(IntEnum):
     EXCLAMATION = 0x21
     HASH = 0x23
     APOSTROPHE = 0x27
-    ASTERISK = 0x2A
-    PLUS = 0x2B
-    COMMA = 0x2C
-    MINUS = 0x2D
-    PERIOD = 0x2E
-    SLASH = 0x2F
-    DIGIT_0 = 0x30
-    DIGIT_1 = 0x31
-    DIGIT_2 = 0x32
-    DIGIT_3 = 0x33
-    DIGIT_4 = 0x34
-    DIGIT_5 = 0x35
-    DIGIT_6 = 0x36
-    DIGIT_7 = 0x37
-    DIGIT_8 = 0x38
-    DIGIT_9 = 0x39
-    COLON = 0x3A
-    SEMICOLON = 0x3B
-    LESS = 0x3C
-    EQUAL = 0x3D
-    GREATER = 0x3E
-    QUESTION = 0x3F
-    BRACKET_LEFT = 0x5B
-    BACKSLASH = 0x5C
-    BRACKET_RIGHT = 0x5D
-    UNDERSCORE = 0x5F
-    GRAVE = 0x60
-    A = 0x61
-    B = 0x62
-    C = 0x63
-    D = 0x64
-    E = 0x65
-    F = 0x66
-    G = 0x67
-    H = 0x68
-    I = 0x69  # noqa: E741
-    J = 0x6A
-    K = 0x6B
-    L = 0x6C
-    M = 0x6D
-    N = 0x6E
-    O = 0x6F  # noqa: E741
-    P = 0x70
-    Q = 0x71
-    R = 0x72
-    S = 0x73
-    T = 0x74
-    U = 0x75
-    V = 0x76
-    W = 0x77
-    X = 0x78
-    Y = 0x79
-    Z = 0x7A
-    BACKSPACE = 0xFF08
-    TAB = 0xFF09
+    ASTERISK, PLUS, COMMA, MINUS, PERIOD, SLASH = range(0x2A, 0x30)
+    DIGIT_0, DIGIT_1, DIGIT_2, DIGIT_3, DIGIT_4, DIGIT_5, DIGIT_6, DIGIT_7, DIGIT_8, DIGIT_9 = range(0x30, 0x3A)
+    COLON, SEMICOLON, LESS, EQUAL, GREATER, QUESTION = range(0x3A, 0x40)
+    BRACKET_LEFT, BACKSLASH, BRACKET_RIGHT = range(0x5B, 0x5E)
+    UNDERSCORE, GRAVE = range(0x5F, 0x61)
+    A, B, C, D, E, F, G, H, I, J, K, L, M, N, O, P, Q, R, S, T, U, V, W, X, Y, Z = range(0x61, 0x7B)  # noqa: E741
+    BACKSPACE, TAB = range(0xFF08, 0xFF0A)
     RETURN = 0xFF0D
     PAUSE = 0xFF13
     ESCAPE = 0xFF1B
-    HOME = 0xFF50
-    LEFT = 0xFF51
-    UP = 0xFF52
-    RIGHT = 0xFF53
-    DOWN = 0xFF54
-    PAGE_UP = 0xFF55
-    PAGE_DOWN = 0xFF56
-    END = 0xFF57
+    HOME, LEFT, UP, RIGHT, DOWN, PAGE_UP, PAGE_DOWN, END = range(0xFF50, 0xFF58)
     INSERT = 0xFF63
     KEYPAD_ENTER = 0xFF8D
-    KEYPAD_HOME = 0xFF95  # the keys of the keypad with these names print digits only with Num Lock
-    KEYPAD_LEFT = 0xFF96
-    KEYPAD_UP = 0xFF97
-    KEYPAD_RIGHT = 0xFF98
-    KEYPAD_DOWN = 0xFF99
-    KEYPAD_PAGE_UP = 0xFF9A
-    KEYPAD_PAGE_DOWN = 0xFF9B
-    KEYPAD_END = 0xFF9C
-    KEYPAD_BEGIN = 0xFF9D
-    KEYPAD_INSERT = 0xFF9E
-    KEYPAD_DELETE = 0xFF9F
-    KEYPAD_MULTIPLY = 0xFFAA
-    KEYPAD_ADD = 0xFFAB
+    # The keys of the keypad with these names print digits only with Num Lock.
+    KEYPAD_HOME, KEYPAD_LEFT, KEYPAD_UP, KEYPAD_RIGHT, KEYPAD_DOWN, KEYPAD_PAGE_UP = range(0xFF95, 0xFF9B)
+    KEYPAD_PAGE_DOWN, KEYPAD_END, KEYPAD_BEGIN, KEYPAD_INSERT, KEYPAD_DELETE = range(0xFF9B, 0xFFA0)
+    KEYPAD_MULTIPLY, KEYPAD_ADD = range(0xFFAA, 0xFFAC)
     KEYPAD_SUBTRACT = 0xFFAD
     KEYPAD_DIVIDE = 0xFFAF
-    F1 = 0xFFBE
-    F2 = 0xFFBF
-    F3 = 0xFFC0
-    F4 = 0xFFC1
-    F5 = 0xFFC2
-    F6 = 0xFFC3
-    F7 = 0xFFC4
-    F8 = 0xFFC5
-    F9 = 0xFFC6
-    F10 = 0xFFC7
-    F11 = 0xFFC8
-    F12 = 0xFFC9
-    SHIFT_L = 0xFFE1
-    SHIFT_R = 0xFFE2
-    CONTROL_L = 0xFFE3
-    CONTROL_R = 0xFFE4
-    ALT_L = 0xFFE9
-    ALT_R = 0xFFEA
-    SUPER_L = 0xFFEB  # the Windows key
-    SUPER_R = 0xFFEC
-    COMMAND_L = 0xFFED  # macOS
-    COMMAND_R = 0xFFEE
+    F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12 = range(0xFFBE, 0xFFCA)
+    SHIFT_L, SHIFT_R, CONTROL_L, CONTROL_R = range(0xFFE1, 0xFFE5)
+    ALT_L, ALT_R, SUPER_L, SUPER_R = range(0xFFE9, 0xFFED)  # SUPER is the Windows key
+    COMMAND_L, COMMAND_R = range(0xFFED, 0xFFEF)  # macOS
     DELETE = 0xFFFF
+
+
+KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
 
 
 class Modifier(IntFlag):
@@ -136,16 +57,8 @@ class Modifier(IntFlag):
     ACCEL = COMMAND if sys.platform == "darwin" else CTRL  # the modifier of this platform's shortcuts
 
 
-MODIFIER_KEYS: dict[int, Modifier] = {
-    Key.SHIFT_L: Modifier.SHIFT,
-    Key.SHIFT_R: Modifier.SHIFT,
-    Key.CONTROL_L: Modifier.CTRL,
-    Key.CONTROL_R: Modifier.CTRL,
-    Key.ALT_L: Modifier.ALT,
-    Key.ALT_R: Modifier.ALT,
-    Key.COMMAND_L: Modifier.COMMAND,
-    Key.COMMAND_R: Modifier.COMMAND,
-}
+NAMES = {"SHIFT": Modifier.SHIFT, "CONTROL": Modifier.CTRL, "ALT": Modifier.ALT, "COMMAND": Modifier.COMMAND}
+MODIFIER_KEYS: dict[int, Modifier] = {Key[f"{name}_{side}"]: NAMES[name] for name in NAMES for side in "LR"}
 
 
 class Event(IntEnum):

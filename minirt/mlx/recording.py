@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from minirt.errors import Problem, ReplayError, did_you_mean, quoted
-from minirt.mlx.events import Button, Key
+from minirt.mlx.events import KEYS, Button, Key
 
 if TYPE_CHECKING:
     from minirt.mlx.memory import Memory
@@ -27,7 +27,6 @@ SIZE = re.compile(r"([0-9]{1,5})x([0-9]{1,5})")
 MAX_PIXELS = 32767
 MAX_SECONDS = 100_000
 MAX_COUNT = 1000  # steps of the wheel, windows
-KEYS = {"".join(map(str.capitalize, key.name.split("_"))): int(key) for key in Key}  # PageUp, A, F1
 MODIFIERS = {"Ctrl": Key.CONTROL_L, "Shift": Key.SHIFT_L, "Alt": Key.ALT_L, "Super": Key.SUPER_L}
 BUTTONS = {"left": Button.LEFT, "middle": Button.MIDDLE, "right": Button.RIGHT}
 DIRECTIONS = {"up": 1, "down": -1}

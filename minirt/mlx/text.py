@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from minirt.mlx.canvas import bgra
+from minirt.mlx.canvas import blend
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,7 +37,7 @@ def draw_text(
 
     text: newlines start lines.
     pitch: width of each character in pixels, as of a typewriter; 0 is the font's own.
-    pixels: (h, w, 4) uint8, BGRA, written in place; text outside is clipped.
+    pixels: (h, w, 4) uint8, BGRA, written in place and opaque there; text outside is clipped.
     background: 0xAARRGGBB, blended by its alpha below the text and `padding` pixels around it.
     """
     width, height = measure(text, size, pitch)
@@ -59,12 +59,10 @@ def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8
     """Blend a colour into the pixels at x, y by its coverage, 0 to 255, clipped at the borders."""
     height, width = pixels.shape[:2]
     left, top = max(0, -x), max(0, -y)
-    ink = coverage[top : max(0, height - y), left : max(0, width - x)].astype(np.uint16)
-    below = pixels[y + top : y + top + ink.shape[0], x + left : x + left + ink.shape[1]]
-    paper = 255 - ink
-    for channel, value in enumerate(bgra(color)[:3]):  # one after the other: 9 times as fast as all three at once
-        mixed = below[..., channel] * paper + ink * np.uint16(value) + np.uint16(128)
-        below[..., channel] = (mixed + (mixed >> 8)) >> 8  # division by 255, rounded
+    ink = coverage[top : max(0, height - y), left : max(0, width - x)].astype(np.uint32)
+    below = pixels.view("<u4")[y + top : y + top + ink.shape[0], x + left : x + left + ink.shape[1], 0]
+    if ink.size:
+        blend(below, ink << np.uint32(24) | np.uint32(color & 0xFFFFFF))
 
 
 @lru_cache(maxsize=1024)
@@ -93,7 +91,6 @@ def _width(line: str, size: int, pitch: int) -> int:
     return pitch * len(line) if pitch else int(np.ceil(_font(size).getlength(line)))
 
 
-@lru_cache(maxsize=64)
 def _line_height(size: int) -> int:
     """Height of a line in pixels."""
     return sum(_font(size).getmetrics())

@@ -19,8 +19,8 @@ from itertools import groupby
 from typing import Final, NamedTuple
 
 from minirt.mlx import Button, Key, Modifier
+from minirt.mlx.events import KEYS
 
-KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
 PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
 MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
 PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}

@@ -24,10 +24,11 @@ from minirt.materials.pictures import SIDE
 from minirt.meshes import obj, obj_lines
 from minirt.meshes.obj_lines import Counts, ObjError
 from minirt.meshes.triangles import Triangles
+from minirt.mlx.events import KEYS
 from minirt.mlx.memory import Memory
 from minirt.mlx.recording import add_recording
 from minirt.viewer.app.replay import play
-from minirt.viewer.bindings import BINDINGS, KEYS, MOUSE
+from minirt.viewer.bindings import BINDINGS, MOUSE
 from tests.fuzz.mutations import Fuzzer, flip, mutated
 from tests.viewer.fake import TEXT, FakeRenderer, scene
 from tests.viewer.monkey import lines

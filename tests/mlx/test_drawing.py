@@ -30,17 +30,17 @@ def test_text_stays_within_the_measured_size() -> None:
     text = "Sphere |gjQ|\nsecond line"
     assert draw_text(pixels, 20, 30, text, 0xFF8000, size=20) == measure(text, 20)
     width, height = measure(text, 20)
-    drawn = pixels.max(axis=2) > 0
+    drawn = pixels[..., :3].max(axis=2) > 0
     assert drawn[30 : 30 + height, 20 : 20 + width].sum() == drawn.sum() > 300
     assert height == 2 * measure("x", 20)[1]
-    assert pixels.max(axis=(0, 1)).tolist() == [0, 0x80, 0xFF, 0]  # blue, green, red; alpha is left alone
+    assert pixels.max(axis=(0, 1)).tolist() == [0, 0x80, 0xFF, 0xFF]  # blue, green, red
 
 
 def test_text_has_the_pitch_of_the_wrapper() -> None:
     """Programs centre and align text with 10 pixels a character."""
     pixels = np.zeros((30, 300, 4), np.uint8)
     assert draw_text(pixels, 0, 5, "iWiMi i", 0xFFFFFF, pitch=10) == (70, measure("x")[1])
-    drawn = pixels.any(axis=(0, 2))
+    drawn = pixels[..., :3].any(axis=(0, 2))
     cells = drawn[:70].reshape(7, 10)
     assert cells[[0, 2, 4, 6]].tolist() == [cells[0].tolist()] * 4, "each character has its cell"
     assert cells[0, 3:7].any()
@@ -65,7 +65,7 @@ def test_background_is_blended_by_its_alpha() -> None:
     width, height = draw_text(pixels, 10, 10, " ", 0xFFFFFF, background=0x80000064, padding=3)
     box = np.zeros((60, 100), bool)
     box[7 : 13 + height, 7 : 13 + width] = True
-    assert np.unique(pixels[box], axis=0).tolist() == [[150, 100, 100, 200]]
+    assert np.unique(pixels[box], axis=0).tolist() == [[150, 100, 100, 255]]
     assert (pixels[~box] == 200).all()
 
 
