@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import product
 from math import cos, hypot, radians, sin
 
 from minirt.errors import FieldError
 from minirt.fields.field import Repair
-from minirt.fields.scalars import number, spelled
-from minirt.fields.triples import Three, Triple, reads
+from minirt.fields.scalars import Scalar, number, spelled
+from minirt.fields.triples import Three, Triple
 from minirt.records import record
 
 SLACK = 1e-3  # by which the length of a direction may differ from 1 without a notice
@@ -23,17 +24,19 @@ ROUNDS = 8  # of rounding and scaling in turn; two or three are enough
 class Direction(Three):
     """A direction with components in [-1, 1]; kept at unit length."""
 
+    component = Scalar(doc="a component", low=-1.0, high=1.0)
+
     instead: Triple = (0.0, 1.0, 0.0)  # the direction that a lenient reader takes for 0,0,0
     may_be_zero: bool = False  # whether every reader takes it, as in the example that the subject prints
 
     def check(self, value: Triple) -> Triple:
-        self.within(value, -1.0, 1.0)
-        if not any(value):
+        checked = super().check(value)
+        if not any(checked):
             raise FieldError("must not be 0,0,0: it points nowhere")
-        return unit(value)
+        return unit(checked)
 
-    def check_all(self, values: Sequence[Triple]) -> Sequence[Triple] | None:
-        return None if any(map(self.remark, values)) else list(map(self.check, values))
+    def column(self, texts: Sequence[str]) -> Sequence[Triple | None]:
+        return [None if each is None or self.remark(each) else unit(each) for each in super().column(texts)]
 
     def remark(self, value: Triple) -> str:
         length = math.hypot(*value)
@@ -43,7 +46,7 @@ class Direction(Three):
         return ",".join(map(plain_decimal, shortest(value)))
 
     def repair(self, text: str) -> Repair | None:
-        if reads(self.parse, text):
+        with suppress(FieldError):
             instead = self.format(self.instead)
             return None if any(self.parse(text)) else Repair(instead, f"takes {instead}", self.may_be_zero)
         repair = super().repair(text)  # a fourth component of 0 makes a direction in homogeneous coordinates
@@ -53,10 +56,6 @@ class Direction(Three):
     def notation(self) -> str:
         components = ",".join(self.name[:1] + axis for axis in "xyz")
         return f"{self.keys[0]}:{components}" if self.keyed else components
-
-    @property
-    def range(self) -> str:
-        return "[-1, 1]"
 
 
 def unit(vector: Triple) -> Triple:
@@ -115,10 +114,11 @@ def neighbours(part: float) -> list[float]:
 def plain_decimal(value: float) -> str:
     """Format a number without an exponent, unless it is smaller than `LEAST`."""
     text = spelled(value)
-    if "e-" not in text or abs(value) < LEAST:
+    if "e" not in text or abs(value) < LEAST:
         return text
-    digits, _, places = text.removeprefix("-").partition("e-")
-    return f"{'-' * (value < 0)}0.{'0' * (int(places) - 1)}{digits.replace('.', '')}"
+    from decimal import Decimal
+
+    return f"{Decimal(text):f}"
 
 
 def upright(x: float, y: float, z: float) -> tuple[Triple, Triple]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import copysign
+from typing import ClassVar
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
@@ -37,17 +38,6 @@ def whole(text: str) -> int:
     return int(text)
 
 
-def numbers(texts: Iterable[str]) -> list[float]:
-    """Parse many numbers that match PLAIN, several times as fast. ValueError if one is no number; one may be
-    infinite."""
-    return [float(text) + 0.0 for text in texts]  # -0 becomes 0
-
-
-def wholes(texts: Iterable[str]) -> list[int]:
-    """Parse many whole numbers that match PLAIN; ValueError if one is none."""
-    return list(map(int, texts))
-
-
 def found(text: str) -> str:
     """The part of a message that quotes a wrong number, with the reason if it cannot be seen."""
     if len(text) > LONGEST:
@@ -71,33 +61,28 @@ def clamp(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
 
 
+def scaled(sizes: Sequence[float], factor: float) -> list[float]:
+    """Multiply sizes by a factor, but no farther than one of them becomes `LEAST_LENGTH` or `FARTHEST`."""
+    factor = clamp(factor, min(1.0, LEAST_LENGTH / min(sizes)), max(1.0, FARTHEST / max(sizes)))
+    return [min(size * factor, FARTHEST) for size in sizes]
+
+
 @record(kw_only=True)
 class Scalar(Field):
-    """One number in an interval."""
+    """A number in [low, high]."""
 
     plain = PLAIN
+    kind: ClassVar[type[float]] = float  # reads each number that matches PLAIN
+
+    low: float = -FARTHEST
+    high: float = FARTHEST
+    ends: str = ""  # notice about the values `low` and `high` themselves, if there is one
 
     def parse(self, text: str) -> float:
         return number(text)
 
     def format(self, value: float) -> str:
         return spelled(value)
-
-    def parse_all(self, texts: Sequence[str]) -> Sequence[float]:
-        return numbers(texts)
-
-    def check_all(self, values: Sequence[float]) -> Sequence[float] | None:
-        least, greatest = min(values), max(values)  # if they are in range, all are
-        return None if any(self.remark(self.check(end)) for end in (least, greatest)) else values
-
-
-@record(kw_only=True)
-class Real(Scalar):
-    """A number in [low, high]."""
-
-    low: float = -FARTHEST
-    high: float = FARTHEST
-    ends: str = ""  # notice about the values `low` and `high` themselves, if there is one
 
     def check(self, value: float) -> float:
         if not self.low <= value <= self.high:
@@ -107,12 +92,27 @@ class Real(Scalar):
     def remark(self, value: float) -> str:
         return f"{spelled(value)} {self.ends}" if self.ends and value in (self.low, self.high) else ""
 
-    def nudge(self, value: float, steps: float) -> float:
-        return clamp(value + steps * self.step, self.low, self.high)
+    def column(self, texts: Sequence[str]) -> Sequence[float | None]:
+        kind = self.kind
+        try:
+            values = [kind(text) + 0 for text in texts]  # -0 becomes 0
+            if not any(self.remark(self.check(end)) for end in (min(values), max(values))):
+                return values  # if the least and the greatest are in range, all are
+        except ValueError:
+            pass
+        return super().column(texts)
 
     @property
     def range(self) -> str:
-        return f"[{spelled(self.low)}, {spelled(self.high)}]"
+        return f"[{self.low:.9g}, {self.high:.9g}]"
+
+
+@record(kw_only=True)
+class Real(Scalar):
+    """A number in [low, high], to which a key press adds `step`."""
+
+    def nudge(self, value: float, steps: float) -> float:
+        return clamp(value + steps * self.step, self.low, self.high)
 
 
 @record(kw_only=True)
@@ -139,9 +139,7 @@ class Length(Scalar):
         return float(value)
 
     def nudge(self, value: float, steps: float) -> float:
-        least = min(value, LEAST_LENGTH)
-        factor = self.step ** clamp(steps, -10_000, 10_000)
-        return clamp(value * factor, least, FARTHEST)
+        return scaled([value], self.step ** clamp(steps, -10_000, 10_000))[0]
 
     @property
     def range(self) -> str:
@@ -163,26 +161,16 @@ class Factor(Real):
 class Whole(Scalar):
     """A whole number in [low, high]."""
 
-    low: int
-    high: int
+    kind = int
 
     def parse(self, text: str) -> int:
         return whole(text)
 
-    def format(self, value: float) -> str:
-        return str(value)
-
-    def parse_all(self, texts: Sequence[str]) -> Sequence[int]:
-        return wholes(texts)
-
-    def check(self, value: int) -> int:
-        if not (self.low <= value <= self.high and value == int(value)):
-            raise FieldError(f"must be a whole number in {self.range}, got {value}")
+    def check(self, value: float) -> int:
+        super().check(value)
+        if value != int(value):
+            raise FieldError(f"must be a whole number, got {value}")
         return int(value)
-
-    @property
-    def range(self) -> str:
-        return f"[{self.low}, {self.high}]"
 
 
 @record(kw_only=True)

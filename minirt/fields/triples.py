@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from contextlib import suppress
+from typing import Any, ClassVar
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field, PictureFile, Repair, file_name
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, PLAIN, clamp, number, numbers, spelled, whole, wholes
+from minirt.fields.scalars import PLAIN, Length, Scalar, Whole, clamp, number, scaled
 from minirt.records import record
 
 Triple = tuple[float, float, float]
@@ -16,69 +17,52 @@ Triple = tuple[float, float, float]
 
 @record(kw_only=True)
 class Three(Field):
-    """Three components with commas between them, called `names` in messages."""
+    """Three components with commas between them, called `names` in messages, each a number of its own."""
 
     width = 3
     plain = ",".join([PLAIN] * width)
+    component: ClassVar[Scalar] = Scalar(doc="a component")
 
     names: str = "x,y,z"
-
-    def component(self, text: str) -> float:
-        return number(text)
 
     def parse(self, text: str) -> Triple:
         parts = text.split(",")
         if len(parts) != 3:
             extra = 3 if len(parts) > 3 else None
             raise FieldError(f"must be {self.names}, three numbers with commas between them, got {quoted(text)}", extra)
-        part = 0
-        try:
-            x = self.component(parts[0])
-            part = 1
-            y = self.component(parts[1])
-            part = 2
-            return x, y, self.component(parts[2])
-        except FieldError as error:
-            raise FieldError(f"{self.names[2 * part]} {error}", part) from None
+        return self.of_each(self.component.parse, parts)
 
-    def parse_all(self, texts: Sequence[str]) -> Sequence[Triple]:
-        components = self.components(",".join(texts).split(","))
-        return list(zip(components[::3], components[1::3], components[2::3], strict=True))
-
-    def check_all(self, values: Sequence[Triple]) -> Sequence[Triple] | None:
-        columns = list(zip(*values, strict=True))
-        self.check(tuple(map(min, columns)))  # if the least and the greatest components are in range, all are
-        self.check(tuple(map(max, columns)))
-        return values
-
-    def components(self, texts: Sequence[str]) -> Sequence[float]:
-        """`component` of many texts at once; ValueError if one is wrong."""
-        return numbers(texts)
-
-    def format(self, value: Triple) -> str:
-        return ",".join(map(spelled, value))
-
-    def within(self, value: Triple, low: float, high: float) -> None:
-        """Raise FieldError unless `value` is three numbers in [low, high]."""
-        try:
-            x, y, z = value
-            if low <= x <= high and low <= y <= high and low <= z <= high:
-                return
-        except (TypeError, ValueError):
-            raise FieldError(f"must be {self.names}, three numbers, got {value!r}") from None
-        part = next(part for part, component in enumerate(value) if not low <= component <= high)
-        raise FieldError(f"{self.names[2 * part]} must be in {self.range}, got {spelled(value[part])}", part)
+    def of_each(self, function: Callable[[Any], Any], parts: Sequence[Any]) -> Triple:
+        """The results of a function of each component; FieldError, which names the component."""
+        results = []
+        for part, component in enumerate(parts):
+            try:
+                results.append(function(component))
+            except FieldError as error:
+                raise FieldError(f"{self.names[2 * part]} {error}", part) from None
+        x, y, z = results
+        return x, y, z
 
     def check(self, value: Triple) -> Triple:
-        self.within(value, -FARTHEST, FARTHEST)
-        x, y, z = value
-        return float(x), float(y), float(z)
+        with suppress(TypeError):
+            if len(value) == 3:
+                return self.of_each(self.component.check, value)
+        raise FieldError(f"must be {self.names}, three numbers, got {value!r}")
+
+    def column(self, texts: Sequence[str]) -> Sequence[Triple | None]:
+        numbers: Sequence[Any] = self.component.column(",".join(texts).split(","))
+        triples = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
+        return [None if None in triple else triple for triple in triples] if None in numbers else triples
+
+    def format(self, value: Triple) -> str:
+        return ",".join(map(self.component.format, value))
 
     def repair(self, text: str) -> Repair | None:
         head, _, tail = text.rpartition(",")
-        if text.count(",") != 3 or not reads(number, tail):
-            return None
-        return Repair(head, "drops the fourth component")
+        with suppress(FieldError):
+            number(tail)
+            return Repair(head, "drops the fourth component") if text.count(",") == 3 else None
+        return None
 
     @property
     def notation(self) -> str:
@@ -86,7 +70,7 @@ class Three(Field):
 
     @property
     def range(self) -> str:
-        return f"[-{FARTHEST:g}, {FARTHEST:g}]"
+        return self.component.range
 
 
 @record(kw_only=True)
@@ -100,76 +84,36 @@ class Point(Three):
 class Lengths(Three):
     """Three sizes greater than 0; a key press multiplies all of them by `step`."""
 
+    component = Length(doc="a size")
+
     unit: str = "scene unit"
     step: float = 1.05
 
-    def check(self, value: Triple) -> Triple:
-        checked = super().check(value)
-        part = next((part for part, size in enumerate(value) if not size > 0), None)
-        if part is not None:
-            raise FieldError(f"{self.names[2 * part]} must be > 0, got {spelled(value[part])}", part)
-        return checked
-
     def nudge(self, value: Triple, steps: float) -> Triple:
-        factor = self.step ** clamp(steps, -10_000, 10_000)
-        least, greatest = min(value), max(value)
-        factor = clamp(factor, min(1.0, LEAST_LENGTH / least), max(1.0, FARTHEST / greatest))
-        x, y, z = (min(size * factor, FARTHEST) for size in value)
+        x, y, z = scaled(value, self.step ** clamp(steps, -10_000, 10_000))
         return x, y, z
-
-    @property
-    def range(self) -> str:
-        return "> 0"
 
 
 @record(kw_only=True)
 class Colour(Three):
     """Red, green and blue, whole numbers from 0 to 255; a key press changes all three."""
 
+    component = Whole(doc="a channel", low=0, high=255)
+
     names: str = "R,G,B"
     step: float = 8.0
     initial: Any = (200, 200, 200)
 
-    def component(self, text: str) -> int:
-        return whole(text)
-
-    def components(self, texts: Sequence[str]) -> Sequence[int]:
-        return wholes(texts)
-
-    def format(self, value: Triple) -> str:
-        return ",".join(str(int(component)) for component in value)
-
-    def check(self, value: Triple) -> tuple[int, int, int]:
-        self.within(value, 0, 255)
-        for part, component in enumerate(value):
-            if component != int(component):
-                raise FieldError(f"{'RGB'[part]} must be a whole number, got {component}", part)
-        red, green, blue = value
-        return int(red), int(green), int(blue)
-
     def repair(self, text: str) -> Repair | None:
-        parts = text.split(",")
-        if len(parts) != 3 or not all(reads(number, part) for part in parts):
-            return None
-        rounded = ",".join(str(math.floor(number(part) + 0.5)) for part in parts)
-        return None if rounded == text else Repair(rounded, f"rounds it to {rounded}")
+        with suppress(FieldError):
+            parts = list(map(number, text.split(",")))
+            rounded = ",".join(str(math.floor(part + 0.5)) for part in parts)
+            return Repair(rounded, f"rounds it to {rounded}") if len(parts) == 3 and rounded != text else None
+        return None
 
     def nudge(self, value: Triple, steps: float) -> tuple[int, int, int]:
         red, green, blue = (int(clamp(round(component + steps * self.step), 0, 255)) for component in value)
         return red, green, blue
-
-    @property
-    def range(self) -> str:
-        return "[0, 255]"
-
-
-def reads(parse: Callable[[str], Any], text: str) -> bool:
-    """Whether `parse` accepts `text`."""
-    try:
-        parse(text)
-    except FieldError:
-        return False
-    return True
 
 
 @record(kw_only=True)

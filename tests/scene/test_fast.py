@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from minirt.errors import SceneError
 from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Three, Whole, whole
-from minirt.fields.scalars import LONGEST, NUMBER, PLAIN, WHOLE, numbers, wholes
+from minirt.fields.scalars import LONGEST, NUMBER, PLAIN, WHOLE, Scalar
 from minirt.records import record
 from minirt.scene import describe, element_reader, fast, parse, parser
 from minirt.scene.lines import Log, line_from
@@ -133,12 +133,12 @@ def test_the_description_of_an_element_without_attributes_is_plain(elements: lis
 @example("1.")
 @example("E")
 def test_numbers_of_plain_characters_are_those_of_python(text: str) -> None:
-    for read, pattern in ((numbers, NUMBER), (wholes, WHOLE)):
+    for read, pattern in ((float, NUMBER), (int, WHOLE)):
         if pattern.fullmatch(text):
-            assert read([text]) == [float(text)]
+            assert read(text) == float(text)
         else:
             with pytest.raises(ValueError, match=r"could not convert|invalid literal"):
-                read([text])
+                read(text)
 
 
 FIELDS: list[Field] = [
@@ -192,20 +192,25 @@ def test_a_file_of_plain_lines_only_is_not_called_empty() -> None:
     assert [problem.message[:13] for problem in problems(SPHERE)] == ["no ambient li", "no camera: a "]
 
 
-def unchecked(field: Any, values: Any) -> Any:
-    """Stand in for `check_all`: accept all values."""
-    return values
+def unscaled(field: Any, texts: Any) -> Any:
+    """Stand in for `Direction.column`: take directions as they are written."""
+    return Three.column(field, texts)
+
+
+def without_remark(field: Any, texts: Any) -> Any:
+    """Stand in for `Direction.column`: scale all directions, and forget the remark."""
+    return [each and field.check(each) for each in Three.column(field, texts)]
 
 
 @pytest.mark.parametrize(
     ("cls", "name", "wrong", "line"),
     [
-        (Length, "check_all", unchecked, "sp 0,0,0 -1 1,2,3"),
-        (Three, "check_all", unchecked, "sp 0,0,0 1 1,2,300"),
-        (Direction, "check_all", unchecked, "pl 0,0,0 0,0.9995,0 1,2,3"),
-        (Direction, "check_all", lambda field, values: list(map(field.check, values)), "pl 0,0,0 0,0.5,0 1,2,3"),
-        (Three, "components", lambda _field, texts: list(map(float, texts)), "sp -0,0,0 1 1,2,3"),
-        (Colour, "components", lambda _field, texts: list(map(float, texts)), "sp 0,0,0 1 1,2,3"),
+        (Scalar, "column", lambda field, texts: [field.kind(text) + 0 for text in texts], "sp 0,0,0 -1 1,2,3"),
+        (Scalar, "column", lambda field, texts: [field.kind(text) + 0 for text in texts], "sp 0,0,0 1 1,2,300"),
+        (Scalar, "column", lambda field, texts: list(map(field.kind, texts)), "sp -0,0,0 1 1,2,3"),
+        (Scalar, "column", lambda _field, texts: [float(text) + 0 for text in texts], "sp 0,0,0 1 1,2,3"),
+        (Direction, "column", unscaled, "pl 0,0,0 0,0.9995,0 1,2,3"),
+        (Direction, "column", without_remark, "pl 0,0,0 0,0.5,0 1,2,3"),
         (Field, "quiet", lambda field, text: field.parse(text), "sp 0,0,0 0 1,2,3"),
     ],
 )
