@@ -39,6 +39,18 @@ def fields_of(record: type[Record]) -> tuple[Field, ...]:
 
 
 @cached_per_kind
+def positional_fields(record: type[Record]) -> tuple[Field, ...]:
+    """The fields of a record that have no key."""
+    return tuple(field for field in fields_of(record) if not field.keyed)
+
+
+@cached_per_kind
+def fields_by_key(record: type[Record]) -> dict[str, Field]:
+    """The attributes of a record by all of their keys."""
+    return {key: field for field in fields_of(record) if field.keyed for key in field.keys}
+
+
+@cached_per_kind
 def pattern(element: type[Element]) -> str:
     """The format of an element's line, without attributes shared by all of a sort: `C x,y,z dx,dy,dz fov
     [roll:degree]`."""

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from minirt.scene import format_table
 from minirt.viewer import keys_markdown
+from tests.format_table import format_table
 from tests.manual_page import PAGE, manual_page
 from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT, SCENES

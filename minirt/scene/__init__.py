@@ -4,6 +4,6 @@ from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import FurtherLight, Lamp, Light, ParallelLight, SpotLight
 from minirt.scene.pages import Item
 from minirt.scene.parser import Reading, load, loads, parse
-from minirt.scene.registry import format_table
-from minirt.scene.scene import DEFAULT_SIZE, Scene, check_scene, dump, dumps, save, size_of
+from minirt.scene.scene import DEFAULT_SIZE, Scene, check_scene, dumps, size_of
+from minirt.scene.scene import dumps as dump
 from minirt.scene.writer import describe

@@ -6,13 +6,15 @@ It works in four steps: split the line into words, identify the element, assign 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from minirt.element import Element, cached_per_kind, fields_of, pattern
+from minirt.element import Element, fields_by_key, pattern, positional_fields
 from minirt.errors import FieldError, FileError, quoted
-from minirt.fields import Colour, Field, MeshFile
+from minirt.fields import Colour, Field, MeshFile, PictureFile
 from minirt.fields.scalars import code_point_name
-from minirt.scene.lines import Line, Log, Word, first_unprintable, join_at_commas, split_at_blanks
+from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
 from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, SPELLINGS, hint, nearest_element, nearest_key
 
 SLASHES = re.compile(r"(?<![^ \t])//")
@@ -22,12 +24,18 @@ HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
 
 
 class Slot(NamedTuple):
-    """A field and the word that holds its value."""
+    """A field of a kind of element, and the word that holds its value."""
 
+    kind: type[Element]
     field: Field
     word: Word
     start: int = 0  # index of the value in the word, behind `key:`
     bare: bool = False  # whether the word is the key alone
+
+    @property
+    def title(self) -> str:
+        """Name of the field in messages."""
+        return f"{self.kind.title} {self.field.title}"
 
     @property
     def text(self) -> str:
@@ -39,22 +47,6 @@ class Slot(NamedTuple):
         return self.word.span(part, self.start)
 
 
-class FieldTable(NamedTuple):
-    """The fields of a kind of element, positional and keyed."""
-
-    positional: tuple[Field, ...]
-    keyed: dict[str, Field]  # by every key, aliases included
-    required: int  # number of positional fields that must be given
-
-
-@cached_per_kind
-def field_table(kind: type[Element]) -> FieldTable:
-    """Return the fields of a kind of element."""
-    positional = tuple(field for field in fields_of(kind) if not field.keyed)
-    keyed = {key: field for field in fields_of(kind) if field.keyed for key in field.keys}
-    return FieldTable(positional, keyed, sum(field.required for field in positional))
-
-
 def is_attribute(raw: str, keyed: dict[str, Field]) -> bool:
     """Whether a word is `key:value`, or a key that may stand alone."""
     return bool(KEY.match(raw)) or (raw in keyed and bool(keyed[raw].bare))
@@ -62,52 +54,48 @@ def is_attribute(raw: str, keyed: dict[str, Field]) -> bool:
 
 def split_line(line: Line, log: Log) -> list[Word] | None:
     """Return the words of a line, none for a comment or a blank line; None after an error."""
-    body = line.text[: line.end]
-    if "\r" in line.text or not body.replace("\t", " ").isprintable():
-        index = first_unprintable(line)
+    hidden = first_unprintable(line)
+    if hidden >= 0:
         message = "a carriage return ends a line only together with a line feed"
-        if line.text[index] != "\r":
-            message = f"only spaces and tabs separate fields, got {code_point_name(line.text[index])}"
-        log.error(line, index + 1, message)
+        if line.text[hidden] != "\r":
+            message = f"only spaces and tabs separate fields, got {code_point_name(line.text[hidden])}"
+        log.error(line, hidden + 1, message)
         return None
+    body = line.text[: line.end]
     slashes = SLASHES.search(body) if "//" in body else None
     if slashes:
-        if not log.tolerate(
-            line, slashes.start() + 1, "a comment begins with '#', got '//'", "takes '//', too", length=2
-        ):
+        message = "a comment begins with '#', got '//'"
+        if not log.tolerate(line, slashes.start() + 1, message, "takes '//', too", length=2):
             return None
         body = body[: slashes.start()]
-    words = split_at_blanks(body)
-    blank = COMMA_AND_BLANK.search(body, words[1].column - 1) if len(words) > 1 else None
-    if blank:
-        joined = join_at_commas(words, body)
-        message = "no blanks may stand around a comma"
-        if len(joined) < len(words) and not log.tolerate(line, blank.start() + 1, message, "leaves them out", length=2):
-            return None
-        return joined
+    words = words_of(body)
+    spread = next((word for word in words if word.text != word.raw), None)
+    blank = COMMA_AND_BLANK.search(body, spread.column - 1) if spread else None
+    message = "no blanks may stand around a comma"
+    if blank and not log.tolerate(line, blank.start() + 1, message, "leaves them out", length=2):
+        return None
     return words
 
 
-def identify(word: Word, line: Line, log: Log) -> str | None:
-    """Return the identifier that `word` is or is an alias of; None, with an error and a hint, for neither."""
+def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
+    """Return the element whose identifier `word` is; None, with an error and a hint, for none."""
     code = word.raw
     if code in SPELLINGS:
-        return SPELLINGS[code].code
+        return SPELLINGS[code]
     glued = GLUED.match(code)
     if glued and glued[1] in SPELLINGS:
         log.error(line, word.column + len(glued[1]), f"a blank is missing after '{glued[1]}'")
-    elif NUMERIC.match(code):
-        known = ", ".join(ELEMENTS)
-        log.error(line, word.column, f"a line begins with one of {known}, got {quoted(code)}", len(code))
-    else:
-        guess = nearest_element(code)
-        log.error(line, word.column, f"unknown element {quoted(code)}{hint(guess)}", len(code))
+        return None
+    message = f"unknown element {quoted(code)}{hint(nearest_element(code))}"
+    if NUMERIC.match(code):
+        message = f"a line begins with one of {', '.join(ELEMENTS)}, got {quoted(code)}"
+    log.error(line, word.column, message, len(code))
     return None
 
 
-def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: Log) -> list[Slot] | None:
-    """Assign the words of a line to the fields of an element; None, with an error, for too few or too many."""
-    positional, keyed, required = field_table(kind)
+def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: Log) -> list[Slot]:
+    """Assign the words of a line to the fields of an element; to none, with an error, for too few or too many."""
+    positional, keyed = positional_fields(kind), fields_by_key(kind)
     values = line_words[1:]
     first = next((index for index, word in enumerate(values) if is_attribute(word.raw, keyed)), len(values))
     values, attributes = values[:first], values[first:]
@@ -116,24 +104,23 @@ def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: L
         name = f"{kind.title} {positional[len(values)].title}"
         message = f"{name} must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
         log.error(line, line.end + 1, message, len(hex_colour[0]))
-        return None
-    if len(values) < required:
-        missing = " and ".join(field.title for field in positional[len(values) : required])
-        verb = "is" if required - len(values) == 1 else "are"
-        column = line_words[len(values)].end
-        log.error(line, column, f"{kind.title} {missing} {verb} missing: expected '{pattern(kind)}'")
-        return None
-    slots = [Slot(field, word) for field, word in zip(positional, values, strict=False)]
+        return []
+    missing = [field.title for field in positional[len(values) :] if field.required]
+    if missing:
+        names = f"{kind.title} {' and '.join(missing)} {'is' if len(missing) == 1 else 'are'}"
+        log.error(line, line_words[len(values)].end, f"{names} missing: expected '{pattern(kind)}'")
+        return []
+    slots = [Slot(kind, field, word) for field, word in zip(positional, values, strict=False)]
     if len(values) > len(positional):
         report_extra_word(kind, slots, values[len(positional)], line, log)
-        return None
-    return slots + attribute_slots(kind, attributes, line, log) if attributes else slots
+        return []
+    return slots + attribute_slots(kind, attributes, line, log)
 
 
 def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line: Line, log: Log) -> None:
     """Report the first wrong field of a line with too many words, or else the word `extra`."""
     before = len(log.errors)
-    parse_slots(kind, slots, line, log)
+    parse_slots(slots, line, log)
     del log.errors[before + 1 :]  # later fields may be off by one
     if len(log.errors) == before:
         why = " (one element a line)" if extra.raw in SPELLINGS else expectation(kind, extra.raw)
@@ -142,14 +129,14 @@ def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line:
 
 def expectation(kind: type[Element], word: str) -> str:
     """Return the end of the message about an extra word: a similar attribute, or the pattern of the line."""
-    keyed = field_table(kind).keyed
+    keyed = fields_by_key(kind)
     guess = nearest_key(word, list(keyed))
     return hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
 
 
 def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log: Log) -> list[Slot]:
     """Assign the words `key:value` to fields; wrong words are reported and left out."""
-    keyed = field_table(kind).keyed
+    keyed = fields_by_key(kind)
     slots: dict[str, Slot] = {}
     for word in attributes:
         match = KEY.match(word.raw)
@@ -162,29 +149,28 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
         elif field.name in slots:
             log.error(line, word.column, f"{kind.title} has '{field.keys[0]}' twice", len(key))
         else:
-            slots[field.name] = Slot(field, word, match.end() if match else 0, bare=match is None)
+            slots[field.name] = Slot(kind, field, word, match.end() if match else 0, bare=match is None)
     return list(slots.values())
 
 
 def unknown_key_message(kind: type[Element], key: str) -> str:
     """Return the message about a key that the element does not have: the elements that have it, or a similar key."""
-    keys_by_title = {other.title: field_table(other).keyed for other in ELEMENTS.values()}
+    keys_by_title = {other.title: fields_by_key(other) for other in ELEMENTS.values()}
     owners = dict.fromkeys(keys[key].sort or title for title, keys in keys_by_title.items() if key in keys)
     if owners:
         return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
-    own = field_table(kind).keyed
+    own = fields_by_key(kind)
     guess = nearest_key(key, list(own)) or nearest_key(key, [name for keys in keys_by_title.values() for name in keys])
     names = dict.fromkeys(field.keys[0] for field in own.values())
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
 
 
-def parse_slots(kind: type[Element], slots: list[Slot], line: Line, log: Log) -> dict[str, Any] | None:
-    """Parse the values of the fields, by name; None when one is wrong."""
-    values = {slot.field.name: parse_slot(slot, kind, line, log) for slot in slots}
-    return None if None in values.values() else values
+def parse_slots(slots: list[Slot], line: Line, log: Log) -> dict[str, Any]:
+    """Parse the values of the fields, by name; one that is wrong is None, with an error."""
+    return {slot.field.name: parse_slot(slot, line, log) for slot in slots}
 
 
-def parse_slot(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
+def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
     """Parse the value of a field; None, with an error, when it is wrong and not tolerated."""
     field, word, text = slot.field, slot.word, slot.text
     try:
@@ -193,7 +179,7 @@ def parse_slot(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
         remark = field.remark(value)
     except FieldError as error:
         column, length = slot.span(error.part)
-        message = f"{kind.title} {field.title} {error}"
+        message = f"{slot.title} {error}"
         # The last of four components with blanks between them may be the next field.
         tolerated = field.mend(text) if word.raw == word.text or text.count(",") == 2 else None
         if tolerated is None:
@@ -202,32 +188,29 @@ def parse_slot(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
         return tolerated[0] if log.tolerate(line, column, message, *tolerated[1:], length=length) else None
     if remark:
         column, length = slot.span(None)
-        log.notice(line, column, f"{kind.title} {field.title} {remark}", length)
-    return load_files(slot, checked, kind, line, log)
+        log.notice(line, column, f"{slot.title} {remark}", length)
+    return value_with_files(slot, checked, line, log) if log.folder else checked
 
 
-def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log) -> Any:
-    """Load the mesh that a value names, and try its pictures; None, with an error, when a file cannot be used."""
-    if log.folder is None:
-        return value
-    errors = len(log.errors)
+def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
+    """Load the mesh that a value names, and try its pictures; an error for each file that cannot be used."""
     if isinstance(value, MeshFile):
         from minirt.meshes import load_mesh  # imports numpy, which few scenes need this early
 
-        try:
-            return MeshFile(value.name, load_mesh(log.folder / value.name))
-        except FileError as error:
-            column, length = slot.span(None)
-            message = f"must be a mesh file, got {quoted(value.name)}: {error.reason}"
-            log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
-            return None
+        return MeshFile(value.name, load_file(load_mesh, PictureFile(value.name), "mesh", slot, line, log))
     for file in slot.field.pictures(value):
         from minirt.materials import pictures
 
-        try:
-            pictures.reader(file.heights, file.sky)(log.folder / file.name)
-        except FileError as error:
-            column, length = slot.span(file.part)
-            message = f"must be a picture file, got {quoted(file.name)}: {error.reason}"
-            log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
-    return value if len(log.errors) == errors else None
+        load_file(pictures.reader(file.heights, file.sky), file, "picture", slot, line, log)
+    return value
+
+
+def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: Slot, line: Line, log: Log) -> Any:
+    """Read a file that a value names; None, with an error, when it cannot be used."""
+    try:
+        return read((log.folder or Path()) / file.name)
+    except FileError as error:
+        column, length = slot.span(file.part)
+        message = f"{slot.title} must be a {sort} file, got {quoted(file.name)}: {error.reason}"
+        log.error(line, column, message, length)
+        return None

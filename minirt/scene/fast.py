@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from functools import cache
 
-from minirt.element import Element, fields_of
+from minirt.element import Element, positional_fields
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS
 
@@ -25,13 +25,13 @@ def frequent_kinds() -> dict[str, type[Element]]:
     return {
         code: kind
         for code, kind in ELEMENTS.items()
-        if not kind.once and all(field.plain for field in fields_of(kind) if not field.keyed)
+        if not kind.once and all(field.plain for field in positional_fields(kind))
     }
 
 
 def line_pattern(kind: type[Element]) -> str:
     """Return the pattern of a kind's plain lines, blanks around excluded, as a group named by its identifier."""
-    fields = "".join(f"[ \\t]+{field.plain}" for field in fields_of(kind) if not field.keyed)
+    fields = "".join(f"[ \\t]+{field.plain}" for field in positional_fields(kind))
     return f"(?P<{kind.code}>(?:{'|'.join((kind.code, *kind.aliases))}){fields})"
 
 
@@ -74,7 +74,7 @@ def read_kind(kind: type[Element], texts: list[str], sources: list[str]) -> Sequ
 
     `texts` are the lines in `sources` without their comments and the blanks around.
     """
-    positional = [field for field in fields_of(kind) if not field.keyed]
+    positional = positional_fields(kind)
     words, width = " ".join(texts).split(), 1 + len(positional)
     columns = {field.name: field.column(words[column::width]) for column, field in enumerate(positional, 1)}
     rows = zip(*columns.values(), strict=True)

@@ -111,9 +111,7 @@ def read(path: str | os.PathLike[str]) -> bytes:
     if not is_picture(path):
         check_name(path)
     try:
-        if is_picture(path):
-            return read_from_picture(path, MAX_BYTES)
-        return file_io.read(path, MAX_BYTES)
+        return read_from_picture(path, MAX_BYTES) if is_picture(path) else file_io.read(path, MAX_BYTES)
     except FileError as error:
         raise file_error(path, error.reason) from None
 
@@ -138,9 +136,7 @@ def decode(data: bytes, file: str) -> str:
 
 def byte_error(data: bytes, index: int, file: str, message: str) -> SceneError:
     """Return an error about the byte at `index`, with its line and column."""
-    begin = data.rfind(b"\n", 0, index) + 1
-    end = data.find(b"\n", index)
-    line = data[begin : end if end >= 0 else len(data)]
-    column = len(data[begin:index].decode("utf-8-sig" if begin == 0 else "utf-8", "replace")) + 1
-    text = line.decode("utf-8-sig" if begin == 0 else "utf-8", "replace")
-    return SceneError((Problem(file, data.count(b"\n", 0, index) + 1, column, text, message),))
+    begin, end = data.rfind(b"\n", 0, index) + 1, data.find(b"\n", index)
+    parts = data[begin:index], data[begin : end if end >= 0 else len(data)]
+    before, line = (part.decode("utf-8" if begin else "utf-8-sig", "replace") for part in parts)
+    return SceneError((Problem(file, data.count(b"\n", 0, index) + 1, len(before) + 1, line, message),))

@@ -6,7 +6,7 @@ A light source gives a surface its colour times its brightness times the cosine 
 from __future__ import annotations
 
 from math import cos, radians
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from minirt.element import Element
 from minirt.fields import Colour, Direction, Length, Point, Real, Triple, declare
@@ -21,20 +21,12 @@ ALL_DIRECTIONS = (0.0, 0.0, 0.0, -2.0, 1.0)  # the cone of a light that shines i
 STEEPEST = 1e30  # the steepness of a spot whose rim has no width
 
 
-@record()
 class Lamp(Element):
     """Base class of light sources: each has a brightness and a colour."""
 
-    if TYPE_CHECKING:  # its kinds declare them as fields
-
-        @property
-        def brightness(self) -> float: ...
-
-        @property
-        def colour(self) -> Triple: ...
-
-        @property
-        def size(self) -> float | None: ...
+    brightness: float
+    colour: Triple
+    size: float | None
 
     # What the kernel reads of it: see `minirt.kernel.shading.lights`.
 

@@ -6,7 +6,7 @@ Blanks (spaces and tabs, nothing else) separate words. A `#` begins a comment wh
 from __future__ import annotations
 
 import re
-from itertools import compress, count, islice
+from itertools import chain, compress, count, islice
 from operator import not_
 from pathlib import Path
 from typing import NamedTuple
@@ -17,7 +17,8 @@ BOM = "\ufeff"  # byte order mark
 MAX_ERRORS = 1000  # in one file; a file with more is not a scene
 MAX_NOTICES = 1000
 MAX_WORDS = 100  # of a line; more than any element has
-WORD = re.compile(r"[^ \t]+")
+WORD = re.compile(r"[ \t]*+([^ \t]++)")
+JOINED = re.compile(r"([^ \t]++(?:(?:[ \t]++(?=,)|(?<=,)[ \t]++)[^ \t]++)*+)")  # with blanks around commas
 
 
 class Line(NamedTuple):
@@ -67,31 +68,24 @@ def line_from(number: int, source: str) -> Line:
 
 
 def first_unprintable(line: Line) -> int:
-    """Return the index of the first carriage return, or of the first character before the comment that cannot be seen.
+    """Return the index of the first carriage return, or of the first character before the comment that cannot be seen;
+    -1 where there is none.
 
     Tabs are seen. No loop in Python looks at each character.
     """
-    carriage_return = line.text.find("\r")
     body = line.text[: line.end].replace("\t", " ")
-    hidden = next(compress(count(), map(not_, map(str.isprintable, body))), carriage_return)
-    return hidden if carriage_return < 0 else min(hidden, carriage_return)
+    if "\r" not in line.text and body.isprintable():
+        return -1
+    return next(compress(count(), map(not_, map(str.isprintable, body))), line.text.find("\r"))
 
 
-def split_at_blanks(body: str) -> list[Word]:
-    """Return the words of a line without its comment, `MAX_WORDS` at most."""
-    return [Word(match.start() + 1, match.group()) for match in islice(WORD.finditer(body), MAX_WORDS)]
-
-
-def join_at_commas(words: list[Word], body: str) -> list[Word]:
-    """Join words that meet at a comma; the identifier, the first word, stays alone."""
-    joined = words[:1]
-    for word in words[1:]:
-        last = joined[-1]
-        if len(joined) > 1 and (word.raw.startswith(",") or last.raw.endswith(",")):
-            joined[-1] = Word(last.column, body[last.column - 1 : word.end - 1])
-        else:
-            joined.append(word)
-    return joined
+def words_of(body: str) -> list[Word]:
+    """Return the words of a line without its comment, `MAX_WORDS` at most. Those that meet at a comma are one, but for
+    the identifier, the first word."""
+    first = WORD.match(body)
+    following = JOINED.finditer(body, first.end()) if first else ()
+    found = islice(chain([first] if first else [], following), MAX_WORDS)
+    return [Word(match.start(1) + 1, match[1]) for match in found]
 
 
 class Log:
@@ -105,11 +99,6 @@ class Log:
         self.lenient = lenient
         self.errors: list[Problem] = []
         self.notices: list[Problem] = []
-
-    @property
-    def full(self) -> bool:
-        """Whether there are so many errors that reading stops."""
-        return len(self.errors) >= MAX_ERRORS
 
     def error(self, line: Line, column: int, message: str, length: int = 1) -> None:
         """Add an error; a file with errors is refused."""

@@ -30,7 +30,9 @@ class Page:
     def of(self, sort: type[Any]) -> tuple[Any, ...]:
         """Return the items that are instances of a type, subclasses included."""
         if sort not in self._cache:
-            self._cache[sort] = self._find(sort)
+            matching = {kind for kind in self.kinds if issubclass(kind, sort)}
+            found = (item for item in self.items if type(item) in matching) if matching else ()
+            self._cache[sort] = self.items if matching == self.kinds else tuple(found)
         items: tuple[Any, ...] = self._cache[sort]
         return items
 
@@ -40,13 +42,6 @@ class Page:
             self._cache[query] = query(self.items)
         answer: Answer = self._cache[query]
         return answer
-
-    def _find(self, sort: type[Any]) -> tuple[Any, ...]:
-        """Search the items for instances of a type."""
-        matching = {kind for kind in self.kinds if issubclass(kind, sort)}
-        if matching == self.kinds:
-            return self.items
-        return tuple(item for item in self.items if type(item) in matching) if matching else ()
 
 
 def split_into_pages(items: tuple[Item, ...]) -> Iterator[Page]:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
-from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
+from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient
 from minirt.scene.lights import FurtherLight, Light
-from minirt.scene.lines import Line, Log, Word, line_from
+from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
 from minirt.scene.scene import Scene
@@ -74,22 +74,16 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
     for start in range(0, len(sources), BLOCK):
         block = sources[start : start + BLOCK]
-        plain = fast.read(block, len(sources))
-        if set(map(type, plain)) == {str}:
-            items += block
-            continue
-        for number, (source, read) in enumerate(zip(block, plain, strict=True), start + 1):
-            if read is not None:
-                if not isinstance(read, str):
-                    seen.setdefault(read.code, number)
-                items.append(read)
-                continue
-            line = line_from(number, source)
-            item = read_line(line, seen, log)
+        for number, (source, plain) in enumerate(zip(block, fast.read(block, len(sources)), strict=True), start + 1):
+            item = plain
+            if isinstance(plain, Element):
+                seen.setdefault(plain.code, number)
+            elif plain is None:
+                item = read_line(line_from(number, source), seen, log)
             if item is not None:
                 items.append(item)
-            if log.full:
-                log.error(line, 1, "too many errors: the rest of the file is not read")
+            elif len(log.errors) >= MAX_ERRORS:
+                log.error(line_from(number, source), 1, "too many errors: the rest of the file is not read")
                 return items
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
@@ -101,37 +95,33 @@ def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
     words = split_line(line, log)
     if words == []:
         return line.source
-    code = identify(words[0], line, log) if words else None
-    if words is None or code is None:
+    kind = identify(words[0], line, log) if words else None
+    if not words or not kind:
         seen.setdefault(nearest_element((line.text.split() or [""])[0]), line.number)
         return None
-    return read_element(code, words, seen.setdefault(code, line.number), line, log)
+    return read_element(kind, words, seen.setdefault(kind.code, line.number), line, log)
 
 
-def read_element(code: str, words: list[Word], first: int, line: Line, log: Log) -> Element | None:
+def read_element(kind: type[Element], words: list[Word], first: int, line: Line, log: Log) -> Element | None:
     """Read the element of a line; None after an error. `first` is the first line with the same identifier."""
-    kind = ELEMENTS[code]
     errors = len(log.errors)
     if kind.once and first != line.number:
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
+        column, length = words[0].span(None)
         if kind is not Light:
-            log.error(line, words[0].column, message, len(code))
-        elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", length=len(code)):
+            log.error(line, column, message, length)
+        elif log.tolerate(line, column, message, f"reads it as '{FurtherLight.code}'", length=length):
             kind = FurtherLight
     slots = assign_words(kind, words, line, log)
-    values = parse_slots(kind, slots, line, log) if slots else None
-    return assemble(kind, slots, values, line, log) if slots and values and len(log.errors) == errors else None
-
-
-def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> Element | None:
-    """Make the element of the values; None, with an error, when they do not go together."""
+    values = parse_slots(slots, line, log)
+    if len(log.errors) > errors:
+        return None
     (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
     conflict = element.conflict()
     if conflict is None:
         return element
     name, message = conflict
-    slot = next(slot for slot in slots if slot.field.name == name)
-    column, length = slot.span(None)
+    column, length = next(slot for slot in slots if slot.field.name == name).span(None)
     log.error(line, column, f"{kind.title} {name} {message}", length)
     return None
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
 from operator import indexOf
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from minirt.element import Element
 from minirt.errors import check_whole
+from minirt.records import Immutable
 from minirt.scene import writer
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
@@ -21,24 +21,11 @@ from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
 if TYPE_CHECKING:
+    from minirt import shapes
     from minirt.scene.lights import FurtherLight, ParallelLight, SpotLight
-    from minirt.shapes import (
-        Box,
-        Cone,
-        Cylinder,
-        Disc,
-        Ellipsoid,
-        Hyperboloid,
-        Mesh,
-        Paraboloid,
-        Plane,
-        Sphere,
-        Square,
-        Torus,
-        Triangle,
-    )
 
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
+Kind = TypeVar("Kind", bound=Element)
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 
 
@@ -53,23 +40,32 @@ class Plurals:
         further_lights: tuple[FurtherLight, ...]
         parallel_lights: tuple[ParallelLight, ...]
         spot_lights: tuple[SpotLight, ...]
-        spheres: tuple[Sphere, ...]
-        planes: tuple[Plane, ...]
-        cylinders: tuple[Cylinder, ...]
-        cones: tuple[Cone, ...]
-        paraboloids: tuple[Paraboloid, ...]
-        hyperboloids: tuple[Hyperboloid, ...]
-        triangles: tuple[Triangle, ...]
-        squares: tuple[Square, ...]
-        discs: tuple[Disc, ...]
-        boxes: tuple[Box, ...]
-        tori: tuple[Torus, ...]
-        ellipsoids: tuple[Ellipsoid, ...]
-        meshes: tuple[Mesh, ...]
+        spheres: tuple[shapes.Sphere, ...]
+        planes: tuple[shapes.Plane, ...]
+        cylinders: tuple[shapes.Cylinder, ...]
+        cones: tuple[shapes.Cone, ...]
+        paraboloids: tuple[shapes.Paraboloid, ...]
+        hyperboloids: tuple[shapes.Hyperboloid, ...]
+        triangles: tuple[shapes.Triangle, ...]
+        squares: tuple[shapes.Square, ...]
+        discs: tuple[shapes.Disc, ...]
+        boxes: tuple[shapes.Box, ...]
+        tori: tuple[shapes.Torus, ...]
+        ellipsoids: tuple[shapes.Ellipsoid, ...]
+        meshes: tuple[shapes.Mesh, ...]
 
 
-@dataclass(frozen=True, init=False, eq=False)
-class Scene(Plurals):
+def first(kind: type[Kind], doc: str) -> cached_property[Kind | None]:
+    """Return a property of a scene: its first element of a kind, if it has one."""
+
+    def find(scene: Scene) -> Kind | None:
+        return next(iter(scene.of(kind)), None)
+
+    find.__doc__ = doc
+    return cached_property(find)
+
+
+class Scene(Immutable, Plurals):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
     `scene.spheres`, `scene.planes` and so on are the elements of one kind. ValueError without exactly one camera, or
@@ -77,7 +73,7 @@ class Scene(Plurals):
     """
 
     file: Path | None  # from which it was read
-    pages: tuple[Page, ...] = field(repr=False)
+    pages: tuple[Page, ...]
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
         self._set_pages(tuple(split_into_pages(tuple(items))), file)
@@ -126,20 +122,9 @@ class Scene(Plurals):
         camera: Camera = self.of(Camera)[0]
         return camera
 
-    @cached_property
-    def ambient(self) -> Ambient | None:
-        """The ambient light, if the file has one."""
-        return next(iter(self.of(Ambient)), None)
-
-    @cached_property
-    def background(self) -> Background | None:
-        """The background of rays that hit nothing; None is black."""
-        return next(iter(self.of(Background)), None)
-
-    @cached_property
-    def resolution(self) -> Resolution | None:
-        """The size of the picture, if the file has one."""
-        return next(iter(self.of(Resolution)), None)
+    ambient = first(Ambient, "The ambient light, if the file has one.")
+    background = first(Background, "The background of rays that hit nothing; None is black.")
+    resolution = first(Resolution, "The size of the picture, if the file has one.")
 
     def beside(self, name: str) -> Path:
         """Return the path of a file that an element names, relative to the folder of the scene file."""
@@ -237,11 +222,6 @@ class Scene(Plurals):
         return self
 
 
-def dump(scene: Scene) -> str:
-    """Return the text of a scene file."""
-    return writer.text_of(scene.pages)
-
-
 def check_scene(scene: object, function: str) -> None:
     """TypeError, which says how to load a scene, where a function got the name of its file."""
     if isinstance(scene, (str, os.PathLike)):
@@ -256,15 +236,7 @@ def dumps(scene: Scene) -> str:
     print(minirt.dumps(scene))
     """
     check_scene(scene, "dumps")
-    return dump(scene)
-
-
-def save(scene: Scene, path: str | os.PathLike[str]) -> None:
-    """Write a scene file as a whole or not at all; SceneError when that fails.
-
-    An existing file keeps its permissions, and a symbolic link stays one.
-    """
-    writer.write(scene.pages, path)
+    return writer.text_of(scene.pages)
 
 
 def size_of(scene: Scene) -> tuple[int, int]:

@@ -15,7 +15,7 @@ from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
 from minirt.scene.pages import Item, Page
-from minirt.scene.registry import ELEMENTS, SPELLINGS
+from minirt.scene.registry import SPELLINGS
 
 
 def describe(element: Element) -> str:
@@ -37,11 +37,11 @@ def line_of(element: Element) -> str:
     line = line_from(1, element.source)
     log = Log("", lenient=True)
     words = split_line(line, log) if not {"\n", "\0"} & set(line.source) else None
-    code = identify(words[0], line, log) if words else None
+    written = identify(words[0], line, log) if words else None
     # A lenient reader makes a FurtherLight, a subclass of Light, of a second `L`.
-    slots = assign_words(kind, words, line, log) if words and code and isinstance(element, ELEMENTS[code]) else None
-    values = parse_slots(kind, slots, line, log) if slots else None
-    if not words or not slots or not values or log.errors:
+    slots = assign_words(kind, words, line, log) if words and written and issubclass(kind, written) else []
+    values = parse_slots(slots, line, log)
+    if not words or not values or log.errors:
         return describe(element)
     if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
         return line.source
@@ -53,49 +53,39 @@ def rewrite(text: str, element: Element, words: list[Word], slots: list[Slot], v
     """Rewrite the line `text`, whose `slots` hold `values`, with the values of the element."""
     absent = [field for field in fields_of(type(element)) if field.name not in values]
     added = [field for field in absent if getattr(element, field.name) != field.default]
-    # From right to left, so that the columns of the words still to be rewritten stay valid.
-    for field in reversed(added):
-        if field.keyed:
-            text = insert(text, words[-1].end, field_text(field, element))
-    by_column = sorted(slots, key=lambda slot: slot.word.column, reverse=True)
-    for slot in by_column:
-        if slot.field.keyed:
-            text = rewrite_slot(text, slot, element, values)
-    if not all(field.keyed for field in added):
-        last = max(slot.word.end for slot in slots if not slot.field.keyed)
-        text = insert(text, last, " ".join(field_text(field, element) for field in absent if not field.keyed))
-    for slot in by_column:
-        if not slot.field.keyed:
-            text = rewrite_slot(text, slot, element, values)
-    code = words[0].raw if SPELLINGS[words[0].raw] is type(element) else element.code
-    return replace_span(text, words[0].column, words[0].end, code)
+    # Columns at which a part begins and ends, and what takes its place: nothing for None.
+    edits: list[tuple[int, int, str | None]] = []
+    for keyed in (True, False):
+        if any(field.keyed == keyed for field in added):
+            new = [field_text(field, element) for field in (added if keyed else absent) if field.keyed == keyed]
+            end = words[-1].end if keyed else max(slot.word.end for slot in slots if not slot.field.keyed)
+            edits.append((end, end, " ".join(new)))
+    for slot in slots:
+        value = getattr(element, slot.field.name)
+        if value is None or (slot.bare and value != values[slot.field.name]):
+            edits.append((slot.word.column, slot.word.end, None if value is None else field_text(slot.field, element)))
+        elif value != values[slot.field.name]:
+            edits.append((slot.word.column + slot.start, slot.word.end, slot.field.format(value)))
+    if SPELLINGS[words[0].raw] is not type(element):
+        edits.append((words[0].column, words[0].end, element.code))
+    for start, end, replacement in sorted(edits, key=lambda edit: edit[0], reverse=True):  # so columns stay valid
+        text = edited(text, start, end, replacement)
+    return text
 
 
-def insert(text: str, column: int, new: str) -> str:
-    """Insert a blank and `new` at `column`."""
-    return f"{text[: column - 1]} {new}{text[column - 1 :]}"
-
-
-def rewrite_slot(text: str, slot: Slot, element: Element, values: dict[str, Any]) -> str:
-    """Rewrite a slot when the element's value differs from that of `values`; delete it when the value is None."""
-    value = getattr(element, slot.field.name)
-    if value == values[slot.field.name]:
-        return text
-    if value is None:
-        return text[: slot.word.column - 1].rstrip(" \t") + text[slot.word.end - 1 :]
-    if slot.bare:
-        return replace_span(text, slot.word.column, slot.word.end, field_text(slot.field, element))
-    return replace_span(text, slot.word.column + slot.start, slot.word.end, slot.field.format(value))
-
-
-def replace_span(text: str, start: int, end: int, new: str) -> str:
-    """Replace the text from column `start` to `end` by `new`; after several spaces the next word keeps its column."""
-    rest = text[end - 1 :]
+def edited(text: str, start: int, end: int, new: str | None) -> str:
+    """Replace the text from column `start` to `end` by `new`, insert it behind a blank where they are equal, or delete
+    it with the blanks before; after several spaces the word behind it keeps its column."""
+    before, rest = text[: start - 1], text[end - 1 :]
+    if new is None:
+        return before.rstrip(" \t") + rest
+    if start == end:
+        return f"{before} {new}{rest}"
     following = rest.lstrip(" ")
     gap = len(rest) - len(following)
     if gap > 1 and following:
         gap = max(1, gap - (len(new) - (end - start)))
-    return text[: start - 1] + new + " " * gap + following
+    return before + new + " " * gap + following
 
 
 def text_of(pages: tuple[Page, ...]) -> str:

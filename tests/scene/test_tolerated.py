@@ -114,7 +114,7 @@ def test_the_field_of_view_of_0_and_180_is_read_with_a_notice() -> None:
 
 def test_a_notice_about_a_keyed_field_stands_under_its_value() -> None:
     log, field = Log("test.rt", lenient=False), Real(doc="", low=0, high=1, ends="is an end", name="share", keyed=True)
-    assert parse_slot(Slot(field, Word(4, "share:1"), 6), Sphere, Line(1, "", "sp share:1"), log) == 1
+    assert parse_slot(Slot(Sphere, field, Word(4, "share:1"), 6), Line(1, "", "sp share:1"), log) == 1
     (notice,) = log.notices
     assert (notice.column, notice.length, notice.message) == (10, 1, "sphere share 1 is an end")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from minirt.errors import SceneError
 from minirt.rendering.queries.pick import surface_point
-from minirt.scene import describe, load, parse, save
+from minirt.scene import describe, load, parse
 from minirt.scene.files import check_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import platform_spelling
@@ -94,7 +94,7 @@ def save_scene(session: Session) -> None:
     check_name(session.path)
     copy = back_up(session.path) if session.file.changed else None
     linked = has_other_links(session.path)
-    save(session.state.scene, session.path)
+    session.state.scene.save(session.path)
     session.file.accept(signature(session.path))
     session.saved = session.state.scene
     session.screen.banner = ""
