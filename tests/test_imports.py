@@ -33,7 +33,7 @@ MAY: dict[str, set[str]] = {
     "cluster": LOW - {"lanes", "shapes", "materials", "records", "fields"}
     | {"__init__", "helpers", "formats", "kernel", "meshes", "rendering", "scene"},
     "movie": {"errors", "helpers", "rendering", "formats"},
-    "mlx": {"errors", "formats"},
+    "mlx": {"errors", "formats", "helpers"},
     "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "rendering", "scene"},
     "notebook": {"helpers", "errors", "scene", "mlx", "rendering", "viewer"},
     "report": LOW | {"__init__", "helpers", "kernel", "rendering", "scene"},

@@ -20,15 +20,16 @@ from minirt.errors import MlxError, ReplayError
 from minirt.mlx import recording
 from minirt.mlx.api import Mlx
 from minirt.mlx.arguments import MaybeNone, integer
-from minirt.mlx.backend import ADVICE
+from minirt.mlx.display import ADVICE
 from minirt.mlx.memory import Headless
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from minirt.mlx.arguments import Integer
-    from minirt.mlx.backend import Backend
-    from minirt.mlx.window import Window, WindowHost
+    from minirt.mlx.display import Display
+    from minirt.mlx.hooks import Host
+    from minirt.mlx.window import Window
 
 
 FAILED = 1  # exit status
@@ -104,7 +105,7 @@ def _run(program: Path, arguments: list[str]) -> Any:
     return 0
 
 
-def install(backend: Backend | None, *, strict: bool) -> None:
+def install(backend: Display | None, *, strict: bool) -> None:
     """Make `from mlx import Mlx` import our class, with this back end and option, even if the wrapper is installed."""
 
     class WrapperMlx(Mlx):
@@ -112,7 +113,7 @@ def install(backend: Backend | None, *, strict: bool) -> None:
             super().__init__(backend, strict=strict)
 
         def mlx_string_put(
-            self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
+            self, mlx_ptr: Host, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
         ) -> int:
             """Draw text in a colour 0xBBGGRR: in text, and only there, the wrapper's shader takes blue for red."""
             word = integer(color)

@@ -13,23 +13,26 @@ Handles, which are numbers in the wrapper, are objects here, and numbers, too: `
 from __future__ import annotations
 
 import os
+from signal import SIGINT, SIGTERM
 from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
-from minirt.mlx.arguments import MaybeNone, bound, integer, set_hook
-from minirt.mlx.backend import ADVICE, Display
+from minirt.helpers.signals import signal_handlers
+from minirt.mlx.arguments import MaybeNone, integer
 from minirt.mlx.calls import Calls
+from minirt.mlx.display import ADVICE
 from minirt.mlx.events import Event
+from minirt.mlx.hooks import set_hook
 from minirt.mlx.text import draw_text
 from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from minirt.mlx.arguments import Hook, Image, Integer
-    from minirt.mlx.backend import Backend
+    from minirt.mlx.arguments import Image, Integer
+    from minirt.mlx.display import Display
     from minirt.mlx.events import Cursor, Modifier
-    from minirt.mlx.window import WindowHost
+    from minirt.mlx.hooks import Hook, Host
 
 PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre and align text by it
 
@@ -46,9 +49,8 @@ class Mlx(Calls):
     def mlx_init(self) -> Display | MaybeNone:
         """Open the display; None if there is none."""
         try:
-            backend = self._mlx_backend or _pyglet_backend()
-            display = Display(backend, self._mlx_options)
-            backend.open(display)
+            display = self._mlx_backend or _pyglet_display()
+            display.open(self._mlx_options)
         except MlxError as error:
             return self._mlx_failed(error)
         return display
@@ -68,12 +70,11 @@ class Mlx(Calls):
         try:
             if columns < 1 or rows < 1:
                 raise MlxError(f"a window of {columns}x{rows} pixels cannot be opened")
-            window = Window(mlx_ptr, columns, rows, title, resizable)
-            mlx_ptr.backend.open_window(window)
+            window = mlx_ptr.window_type(mlx_ptr, columns, rows, title, resizable)
         except MlxError as error:
             return self._mlx_failed(error)
         mlx_ptr.windows.append(window)
-        mlx_ptr.show(window)
+        window.show()
         return window
 
     def mlx_destroy_window(self, mlx_ptr: Display, win_ptr: Window) -> int:
@@ -83,12 +84,12 @@ class Mlx(Calls):
 
     # --- drawing on a window, which is shown at the end of the loop's turn; `mlx_ptr` is unused, as in MiniLibX ---
 
-    def mlx_clear_window(self, mlx_ptr: WindowHost, win_ptr: Window) -> int:
+    def mlx_clear_window(self, mlx_ptr: Host, win_ptr: Window) -> int:
         """Fill the window with black."""
         win_ptr.canvas.clear()
         return 0
 
-    def mlx_pixel_put(self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer) -> int:
+    def mlx_pixel_put(self, mlx_ptr: Host, win_ptr: Window, x: Integer, y: Integer, color: Integer) -> int:
         """Blend one pixel into the window. Of several at one place without other drawing between, the last counts."""
         try:
             win_ptr.canvas.point(x, y, color)
@@ -97,7 +98,7 @@ class Mlx(Calls):
         return 0
 
     def mlx_string_put(
-        self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
+        self, mlx_ptr: Host, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
     ) -> int:
         """Draw opaque text of 0xRRGGBB with its top left corner at x, y; a character takes 10x20 pixels."""
         canvas, left, top = win_ptr.canvas, integer(x), integer(y)
@@ -114,20 +115,20 @@ class Mlx(Calls):
     def mlx_mouse_move(self, mlx_ptr: Window | Display, x: Integer, y: Integer) -> int:
         """Move the pointer to x, y of a window or of the first window of a display."""
         window, left, top = _window_of(mlx_ptr), integer(x), integer(y)
-        window.display.backend.move_pointer(window, left, top)
+        window.move_pointer(left, top)
         window.place_pointer(left, top)
         return 0
 
     def mlx_mouse_hide(self, mlx_ptr: Display) -> int:
         """Hide the pointer over all open windows."""
         for window in mlx_ptr.windows:
-            mlx_ptr.backend.show_pointer(window, False)
+            window.show_pointer(False)
         return 0
 
     def mlx_mouse_show(self, mlx_ptr: Display) -> int:
         """Show the pointer over all open windows."""
         for window in mlx_ptr.windows:
-            mlx_ptr.backend.show_pointer(window, True)
+            window.show_pointer(True)
         return 0
 
     def mlx_do_key_autorepeaton(self, mlx_ptr: Display) -> int:
@@ -142,14 +143,13 @@ class Mlx(Calls):
 
     def mlx_get_screen_size(self, mlx_ptr: Display) -> tuple[int, int, int]:
         """Return (0, width, height) of the screen in pixels."""
-        return 0, *mlx_ptr.backend.screen_size()
+        return 0, *mlx_ptr.screen_size()
 
     # --- extensions that a viewer needs, named as in MLX42 where MLX42 has them ---
 
     def mlx_resize_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(width, height, param) once for all resizes that came together."""
-        win_ptr.resize_hook = bound(callback, param)
-        return 0
+        return set_hook(win_ptr.hooks, "resize", callback, param)
 
     def mlx_close_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(param) for the close button; the window stays until it is destroyed."""
@@ -157,18 +157,15 @@ class Mlx(Calls):
 
     def mlx_text_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(text, param) for typed text, in the keyboard's layout; repeats while a key is held."""
-        win_ptr.text_hook = bound(callback, param)
-        return 0
+        return set_hook(win_ptr.hooks, "text", callback, param)
 
     def mlx_drop_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(file, param) for each file that is dropped on the window."""
-        win_ptr.drop_hook = bound(callback, param)
-        return 0
+        return set_hook(win_ptr.hooks, "drop", callback, param)
 
     def mlx_lost_hook(self, mlx_ptr: Display, callback: Hook | None, param: object = None) -> int:
         """Call callback(param) when the connection to the screen is lost. The program ends after it, with status 1."""
-        mlx_ptr.lost_hook = bound(callback, param)
-        return 0
+        return set_hook(mlx_ptr.hooks, "lost", callback, param)
 
     def mlx_get_modifiers(self, win_ptr: Window) -> Modifier:
         """Return the held modifiers, as of the event that a hook is called for."""
@@ -184,25 +181,25 @@ class Mlx(Calls):
 
     def mlx_set_window_title(self, win_ptr: Window, title: str) -> int:
         win_ptr.title = title
-        win_ptr.display.backend.set_title(win_ptr)
+        win_ptr.set_title()
         return 0
 
     def mlx_set_window_icon(self, win_ptr: Window, images: Sequence[Image]) -> int:
         """Set the icon of a window: the same picture in several sizes."""
         win_ptr.icons = tuple(images)
-        win_ptr.display.backend.set_icons(win_ptr)
+        win_ptr.set_icons()
         return 0
 
     def mlx_set_cursor(self, win_ptr: Window, cursor: Cursor) -> int:
         """Give the pointer a shape over the window."""
         if cursor is not win_ptr.cursor:
             win_ptr.cursor = cursor
-            win_ptr.display.backend.set_cursor(win_ptr)
+            win_ptr.set_cursor()
         return 0
 
     def mlx_set_fullscreen(self, win_ptr: Window, on: bool) -> int:
         """Enter or leave full screen before the next turn; a resize follows."""
-        win_ptr.display.backend.set_fullscreen(win_ptr, on)
+        win_ptr.set_fullscreen(on)
         return 0
 
     def mlx_wake(self, mlx_ptr: Display) -> int:
@@ -212,18 +209,17 @@ class Mlx(Calls):
 
     def mlx_wake_hook(self, mlx_ptr: Display, callback: Hook | None, param: object = None) -> int:
         """Call callback(param) after `mlx_wake`."""
-        mlx_ptr.wake_hook = bound(callback, param)
-        return 0
+        return set_hook(mlx_ptr.hooks, "wake", callback, param)
 
     def mlx_time(self, mlx_ptr: Display) -> float:
         """Return the seconds of a clock, which is simulated without a screen."""
-        return mlx_ptr.backend.time()
+        return mlx_ptr.time()
 
     def mlx_get_clipboard(self, win_ptr: Window) -> str:
-        return win_ptr.display.backend.clipboard(win_ptr)
+        return win_ptr.get_clipboard()
 
     def mlx_set_clipboard(self, win_ptr: Window, text: str) -> int:
-        win_ptr.display.backend.set_clipboard(win_ptr, text)
+        win_ptr.set_clipboard(text)
         return 0
 
 
@@ -232,15 +228,13 @@ def _window_of(handle: Window | Display) -> Window:
     return handle if isinstance(handle, Window) else handle.windows[0]
 
 
-def _pyglet_backend() -> Backend:
-    """Make the back end on a real screen, imported only now because its import opens the display."""
-    from minirt.mlx.on_pyglet.interrupt import signal_handlers_preserved
-
+def _pyglet_display() -> Display:
+    """Make the display of a real screen, imported only now because its import opens the display."""
     try:
-        with signal_handlers_preserved():
-            from minirt.mlx.on_pyglet.loop import PygletBackend
+        with signal_handlers(SIGINT, SIGTERM):  # which the import changes on macOS
+            from minirt.mlx.on_pyglet.loop import PygletDisplay
     except Exception as error:  # any error of the window system means that there is no window
         missing = type(error).__name__ == "NoSuchDisplayException" and not os.environ.get("DISPLAY")
         reason = "there is no display" if missing else str(error) or type(error).__name__
         raise MlxError(f"no window can be opened ({reason}); {ADVICE}") from error
-    return PygletBackend()
+    return PygletDisplay()

@@ -1,10 +1,9 @@
-"""Arguments of MiniLibX's functions: integers, hooks, handles, images, and the options of the whole."""
+"""Arguments of MiniLibX's functions: integers, handles, images, and the options of the whole."""
 
 from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
@@ -17,8 +16,9 @@ Integer: TypeAlias = int | Any  # also an integer of ctypes or numpy
 MaybeNone: TypeAlias = Any  # `Image | MaybeNone`: None after a failure, unless `Options.strict` is set
 
 
+@dataclass
 class Options:
-    """The defaults of Mlx are what the official wrapper does.
+    """The defaults are what the official wrapper does.
 
     alpha: images and pixels are blended by their alpha; False copies them and ignores it, as the C library does.
     strict: failures and exceptions of hooks raise; False reports them on standard error, and the program goes on.
@@ -27,31 +27,15 @@ class Options:
     application: name by which the desktop knows the windows (X11's WM_CLASS); empty for their first title.
     """
 
-    def __init__(self, alpha: bool, strict: bool, symbols: bool) -> None:
-        self.alpha = alpha
-        self.strict = strict
-        self.symbols = symbols
-        self.application = ""
+    alpha: bool = True
+    strict: bool = False
+    symbols: bool = False
+    application: str = ""
 
 
 def integer(value: Integer) -> int:
     """Convert an integer of Python, ctypes or numpy. Raises TypeError for anything else, such as 1.0."""
     return operator.index(getattr(value, "value", value))
-
-
-Hook: TypeAlias = Callable[..., object]  # its last argument is the parameter given with it
-BoundHook: TypeAlias = tuple[Hook, object]  # a hook and its parameter
-
-
-def bound(callback: Hook | None, param: object) -> BoundHook | None:
-    """Return the hook with its parameter, or None for none."""
-    return (callback, param) if callback else None
-
-
-def set_hook(hooks: dict[int, BoundHook | None], event: int, callback: Hook | None, param: object) -> int:
-    """Set the one hook of an event, or remove it; return 0 as MiniLibX does."""
-    hooks[event] = bound(callback, param)
-    return 0
 
 
 _numbers = itertools.count(1 << 40, 64)  # as great as addresses: no colour and no position equals a handle

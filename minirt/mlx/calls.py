@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from minirt.errors import MlxError
-from minirt.mlx.arguments import Image, MaybeNone, Options, bound, integer, set_hook
+from minirt.mlx.arguments import Image, MaybeNone, Options, integer
 from minirt.mlx.events import Event
+from minirt.mlx.hooks import set_hook
 from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
@@ -19,9 +20,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from minirt.mlx.arguments import Hook, Integer
-    from minirt.mlx.backend import Backend, Display
-    from minirt.mlx.window import WindowHost
+    from minirt.mlx.arguments import Integer
+    from minirt.mlx.display import Display
+    from minirt.mlx.hooks import Hook, Host
 
     FileName = str | PathLike[str]
     ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure
@@ -41,7 +42,7 @@ class Calls:
     SYNC_WIN_COMPLETED = 3
 
     def __init__(
-        self, backend: Backend | None = None, *, alpha: bool = True, strict: bool = False, symbols: bool = False
+        self, backend: Display | None = None, *, alpha: bool = True, strict: bool = False, symbols: bool = False
     ) -> None:
         self._mlx_backend = backend
         self._mlx_options = Options(alpha, strict, symbols)
@@ -55,11 +56,8 @@ class Calls:
         application: str | None = None,
     ) -> int:
         """Change options, `alpha` and `application` for windows that are opened later; None leaves one as it is."""
-        options = self._mlx_options
-        options.alpha = options.alpha if alpha is None else alpha
-        options.strict = options.strict if strict is None else strict
-        options.symbols = options.symbols if symbols is None else symbols
-        options.application = options.application if application is None else application
+        given = {"alpha": alpha, "strict": strict, "symbols": symbols, "application": application}
+        vars(self._mlx_options).update((name, value) for name, value in given.items() if value is not None)
         return 0
 
     def _mlx_failed(self, error: MlxError) -> MaybeNone:
@@ -89,8 +87,7 @@ class Calls:
 
     def mlx_loop_hook(self, mlx_ptr: Display, callback: Hook | None, param: object) -> int:
         """Call callback(param) about 60 times a second; with None the loop sleeps until an event."""
-        mlx_ptr.loop_hook = bound(callback, param)
-        return 0
+        return set_hook(mlx_ptr.hooks, "loop", callback, param)
 
     def mlx_loop(self, mlx_ptr: Display) -> int:
         """Run until `mlx_loop_exit` or until no window is left. Ctrl+C raises KeyboardInterrupt.
@@ -110,18 +107,18 @@ class Calls:
     def mlx_do_sync(self, mlx_ptr: Display) -> int:
         """Show all windows as they are drawn now."""
         for window in mlx_ptr.windows:
-            mlx_ptr.show(window)
+            window.show()
         return 0
 
     def mlx_sync(self, mlx_ptr: Display, cmd: Integer, img_or_win_ptr: Image | Window) -> int:
         """Show a window now, or later if it is hidden. `cmd` is one of SYNC_…; images are always writable."""
         if isinstance(img_or_win_ptr, Window) and img_or_win_ptr.is_open and img_or_win_ptr.visible:
-            mlx_ptr.show(img_or_win_ptr)
+            img_or_win_ptr.show()
         return 0
 
     # --- images ---
 
-    def mlx_new_image(self, mlx_ptr: WindowHost, width: Integer, height: Integer) -> Image | MaybeNone:
+    def mlx_new_image(self, mlx_ptr: Host, width: Integer, height: Integer) -> Image | MaybeNone:
         """Return an image that is all transparent, or None for a size below 1 or above 32767 pixels."""
         columns, rows = integer(width), integer(height)
         if not (0 < columns <= GREATEST and 0 < rows <= GREATEST):
@@ -132,26 +129,24 @@ class Calls:
         """Return (bytes, bits per pixel, bytes per row, 0). The bytes of a pixel are blue, green, red, alpha."""
         return img_ptr.pixels.reshape(-1).data, 32, 4 * img_ptr.width, 0
 
-    def mlx_put_image_to_window(
-        self, mlx_ptr: WindowHost, win_ptr: Window, img_ptr: Image, x: Integer, y: Integer
-    ) -> int:
+    def mlx_put_image_to_window(self, mlx_ptr: Host, win_ptr: Window, img_ptr: Image, x: Integer, y: Integer) -> int:
         """Blend the image, as it is now, into the window with its top left corner at x, y; alpha 255 is opaque."""
         win_ptr.canvas.put(img_ptr.pixels, integer(x), integer(y))
         return 0
 
-    def mlx_destroy_image(self, mlx_ptr: WindowHost, img_ptr: Image) -> int:
+    def mlx_destroy_image(self, mlx_ptr: Host, img_ptr: Image) -> int:
         """Do nothing: Python frees an image without references."""
         return 0
 
-    def mlx_png_file_to_image(self, mlx_ptr: WindowHost, filename: FileName) -> ImageAndSize:
+    def mlx_png_file_to_image(self, mlx_ptr: Host, filename: FileName) -> ImageAndSize:
         """Return (image, width, height) of a picture file of any format that Pillow reads."""
         return self._mlx_image_of(filename, lambda: _read_picture(filename))
 
-    def mlx_xpm_file_to_image(self, mlx_ptr: WindowHost, filename: FileName) -> ImageAndSize:
+    def mlx_xpm_file_to_image(self, mlx_ptr: Host, filename: FileName) -> ImageAndSize:
         """Return (image, width, height) of an XPM file."""
         return self._mlx_image_of(filename, lambda: _read_xpm(Path(filename).read_bytes()))
 
-    def mlx_xpm_to_image(self, mlx_ptr: WindowHost, xpm_data: Sequence[str]) -> ImageAndSize:
+    def mlx_xpm_to_image(self, mlx_ptr: Host, xpm_data: Sequence[str]) -> ImageAndSize:
         """Return (image, width, height) of the strings of an XPM file."""
         strings = (text.encode("latin-1", "replace") for text in xpm_data)
         return self._mlx_image_of("the strings of an XPM file", lambda: _read_xpm(strings))

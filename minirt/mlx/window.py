@@ -1,9 +1,10 @@
-"""Window: its size, canvas, keyboard and hooks, and the events that a back end reports to it."""
+"""Window: its size, canvas, keyboard and hooks, the events that a back end reports to it, and what it lets one do."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from minirt.mlx.arguments import Handle
 from minirt.mlx.canvas import Canvas
@@ -12,7 +13,8 @@ from minirt.mlx.events import MODIFIER_KEYS, Button, Cursor, Event, Modifier
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from minirt.mlx.arguments import BoundHook, Image, Options
+    from minirt.mlx.arguments import Image, Options
+    from minirt.mlx.hooks import Hooks, Host
 
 
 REPEAT_DELAY = 0.5  # seconds until a held key repeats
@@ -96,66 +98,34 @@ class Keyboard:
         return modifiers
 
 
-class WindowControls(Protocol):
-    """Requests about one window that the back end carries out; `minirt.mlx.backend.Backend` describes them."""
-
-    def set_title(self, window: Window) -> None: ...
-
-    def set_fullscreen(self, window: Window, on: bool) -> None: ...
-
-    def move_pointer(self, window: Window, x: int, y: int) -> None: ...
-
-    def set_cursor(self, window: Window) -> None: ...
-
-    def set_icons(self, window: Window) -> None: ...
-
-    def clipboard(self, window: Window) -> str: ...
-
-    def set_clipboard(self, window: Window, text: str) -> None: ...
-
-
-class WindowHost(Protocol):
-    """The part of a display that its windows use."""
-
-    @property
-    def backend(self) -> WindowControls: ...
-
-    @property
-    def options(self) -> Options: ...
-
-    def call(self, hook: BoundHook | None, *arguments: object) -> None: ...
-
-
 @dataclass(eq=False, repr=False)
-class Window(Handle):
+class Window(Handle, ABC):
     """An open window. The size of a resizable window is that of its frame buffer.
 
     A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched
     and mouse positions are scaled back to that size.
     """
 
-    display: WindowHost
+    display: Host
     width: int  # the size of the surface for the next drawing call; the canvas follows then
     height: int
     title: str
     resizable: bool
-    hooks: dict[int, BoundHook | None] = field(default_factory=dict)
-    text_hook: BoundHook | None = None
-    resize_hook: BoundHook | None = None
-    drop_hook: BoundHook | None = None
+    hooks: Hooks = field(default_factory=dict)
     is_open: bool = True
     pointer: tuple[int, int] = (0, 0)
     cursor: Cursor = Cursor.ARROW
     icons: tuple[Image, ...] = ()
     scale: float = 1.0  # of its screen: 2 where dots are half as large as usual
 
-    # Between the window and its back end:
+    # Between the window and its display:
     visible: bool = True
     stale: bool = True  # the screen does not show the canvas any more
     resized: bool = False  # a resize is not reported to the program yet
     announced: bool = False  # the first MAP_NOTIFY was delivered
 
     def __post_init__(self) -> None:
+        """Open the window, and set the size that a resizable one really got. Raises MlxError."""
         self._canvas = self._new_canvas()
         self.keyboard = Keyboard(self.deliver, self.display.options)
 
@@ -175,23 +145,64 @@ class Window(Handle):
     def _new_canvas(self) -> Canvas:
         return Canvas(self.width, self.height, alpha=self.display.options.alpha)
 
-    def deliver(self, event: Event, *arguments: int) -> None:
+    def show(self) -> None:
+        """Bring the canvas to the screen now."""
+        self.stale = False
+        self.blit()
+
+    def deliver(self, event: Event | str, *arguments: int) -> None:
         """Call the hook on `event`, if there is one, with plain integers: programs print them."""
         if self.is_open:
-            self.display.call(self.hooks.get(event), *map(int, arguments))
+            self.display.call(self.hooks, event, *map(int, arguments))
+
+    # --- what a back end does; what is not abstract may be missing where the platform has no such thing ---
+
+    @abstractmethod
+    def blit(self) -> None:
+        """Bring `shown` to the screen now, stretched to the window (nearest pixel) if the sizes differ."""
+
+    def close(self) -> None:
+        """Take the window from the screen. Never called inside a hook."""
+
+    @abstractmethod
+    def set_fullscreen(self, on: bool) -> None:
+        """Cover the screen, or return to the size before; the new size is reported as a resize."""
+
+    def set_title(self) -> None:
+        """Show `title`."""
+
+    def set_icons(self) -> None:
+        """Show one of `icons` where the desktop shows an icon of the window."""
+
+    def set_cursor(self) -> None:
+        """Give the pointer the shape of `cursor`."""
+
+    def show_pointer(self, on: bool) -> None:
+        """Show or hide the pointer over the window."""
+
+    def move_pointer(self, x: int, y: int) -> None:
+        """Move the pointer to x, y from the window's top left corner."""
+
+    def get_clipboard(self) -> str:
+        """The text on the clipboard, or an empty string; that of this program alone if the platform has none."""
+        return self.display.clipboard
+
+    def set_clipboard(self, text: str) -> None:
+        """Put text on the clipboard."""
+        self.display.clipboard = text
 
     # --- events, as back ends report them; keys go to `keyboard` ---
 
     def on_text(self, text: str) -> None:
         """Report typed text; control characters are ignored."""
         if self.is_open and text.isprintable():
-            self.display.call(self.text_hook, text)
+            self.display.call(self.hooks, "text", text)
 
     def on_drop(self, files: Iterable[str]) -> None:
         """Report files that were dropped on the window, one by one."""
         for file in files:
             if self.is_open:
-                self.display.call(self.drop_hook, file)
+                self.display.call(self.hooks, "drop", file)
 
     def place_pointer(self, x: int, y: int) -> None:
         """Note the pointer's position from the top left corner, clamped to the window, without an event."""

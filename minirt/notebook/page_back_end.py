@@ -1,117 +1,98 @@
-"""PageBackend: one window in a page of a browser, which sends events and gets frames."""
+"""PageDisplay: one window in a page of a browser, which sends events and gets frames."""
 
 from __future__ import annotations
 
 import io
 import threading
-from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minirt.errors import MlxError
-from minirt.mlx.backend import TICK, Backend
-
-if TYPE_CHECKING:
-    from minirt.mlx.backend import Display
-    from minirt.mlx.window import Window
-
+from minirt.mlx.display import TICK, Display
+from minirt.mlx.window import Window
 
 SCREEN = (3840, 2160)  # pixels: the largest window
 Message = dict[str, Any]
 
 
-class PageBackend(Backend):
-    """A back end whose loop runs in a thread of its own. Any thread may call `do`, `acknowledge` and `restart`.
+class PageWindow(Window):
+    """The window in the page."""
+
+    display: PageDisplay
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.display.windows:
+            raise MlxError("a page of a notebook has one window")
+
+    def blit(self) -> None:
+        self.shown.take_changes()
+        self.stale = not self.display.frames.offer(self.shown.pixels, self.display.time())
+
+    def set_fullscreen(self, on: bool) -> None:
+        """Let the page fill the screen; the window keeps its size, and the page stretches its frames."""
+        self.display.send({"kind": "full screen", "on": on}, b"")
+
+    def show_pointer(self, on: bool) -> None:
+        self.display.send({"kind": "pointer", "cursor": self.cursor.value if on else "none"}, b"")
+
+    def set_cursor(self) -> None:
+        self.show_pointer(True)
+
+    def set_clipboard(self, text: str) -> None:
+        super().set_clipboard(text)
+        self.display.send({"kind": "copy", "text": text}, b"")
+
+
+class PageDisplay(Display):
+    """A back end whose loop runs in a thread of its own.
 
     send: sends a message, and bytes with it, to the page.
     """
 
+    window_type = PageWindow
+
     def __init__(self, send: Callable[[Message, bytes], object]) -> None:
-        self._send = send
+        super().__init__()
+        self.send = send
         self.frames = FrameStream(lambda number, data: send({"kind": "frame", "number": number}, data))
-        self._actions: deque[Callable[[], object]] = deque()
         self._awake = threading.Event()
         self._next_tick = 0.0
 
-    def do(self, action: Callable[[], object]) -> None:
-        """Have the loop perform an action before its next turn."""
-        self._actions.append(action)
-        self._awake.set()
-
-    def acknowledge(self, number: int) -> None:
-        """Note that the page has shown a frame, and send the one that waited for it."""
-        self.do(lambda: self.frames.acknowledge(number))
-
     def restart(self) -> None:
         """Send the frame again: a page shows the window anew."""
-        self.do(self._restart)
-
-    @property
-    def window(self) -> Window | None:
-        """The window, once it is open."""
-        return self._display.windows[0] if self._display.windows else None
-
-    def _restart(self) -> None:
         self.frames.restart()
-        for window in self._display.windows:
+        for window in self.windows:
             window.stale = True
 
-    # --- the contract of a back end ---
-
-    def open(self, display: Display) -> None:
-        self._display = display
-
-    def open_window(self, window: Window) -> None:
-        if self.window:
-            raise MlxError("a page of a notebook has one window")
-
-    def show(self, window: Window) -> None:
-        window.shown.take_changes()
-        window.stale = not self.frames.offer(window.shown.pixels, self.time())
-
     def run(self) -> None:
-        self._display.turn(tick=False)
-        while not self._display.over:
+        self.turn(tick=False)
+        while not self.over:
             self._awake.wait(self._patience())
             self._awake.clear()
-            while self._actions:
-                self._actions.popleft()()
-            self._display.turn(tick=self._is_tick_due())
-            if window := self.window:
+            self.perform_actions()
+            self.turn(tick=self._is_tick_due())
+            for window in self.windows:
                 self.frames.sharpen(window.shown.pixels, self.time())
 
-    def wake(self) -> None:
+    def wake_up(self) -> None:
         self._awake.set()
 
     def screen_size(self) -> tuple[int, int]:
         return SCREEN
 
-    def set_fullscreen(self, window: Window, on: bool) -> None:
-        """Let the page fill the screen; the window keeps its size, and the page stretches its frames."""
-        self._send({"kind": "full screen", "on": on}, b"")
-
-    def show_pointer(self, window: Window, on: bool) -> None:
-        self._send({"kind": "pointer", "cursor": window.cursor.value if on else "none"}, b"")
-
-    def set_cursor(self, window: Window) -> None:
-        self.show_pointer(window, True)
-
-    def set_clipboard(self, window: Window, text: str) -> None:
-        super().set_clipboard(window, text)
-        self._send({"kind": "copy", "text": text}, b"")
-
     def _patience(self) -> float | None:
         """Seconds until there is something to do without an event; None for ever."""
         now = self.time()
-        waits = [self.frames.patience(now), max(0.0, self._next_tick - now) if self._display.busy else None]
+        waits = [self.frames.patience(now), max(0.0, self._next_tick - now) if self.busy else None]
         return min((each for each in waits if each is not None), default=None)
 
     def _is_tick_due(self) -> bool:
         now = self.time()
-        if not self._display.busy or now < self._next_tick:
+        if not self.busy or now < self._next_tick:
             return False
         self._next_tick = now + TICK
         return True

@@ -10,7 +10,7 @@ import anywidget
 import traitlets
 
 from minirt.errors import MiniRTError
-from minirt.notebook.page_back_end import PageBackend
+from minirt.notebook.page_back_end import PageDisplay
 from minirt.notebook.page_events import deliver
 from minirt.rendering.image import Image
 from minirt.scene import size_of
@@ -54,13 +54,13 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
 
         self._assigned: Scene | None = None  # the last scene, until the session's thread shows it
         size = size or (size_of(scene) if scene.resolution else DEFAULT_SIZE)
-        self._backend = PageBackend(lambda message, data: self.send(message, [data] if data else None))
+        self._display = PageDisplay(lambda message, data: self.send(message, [data] if data else None))
         self._session = open_session(
             scene,
             scene.file or Path("scene.rt"),
             size,
             renderer(threads, precision, dither=dither),
-            Mlx(self._backend),
+            Mlx(self._display),
             keys=keys,
             samples=samples,
         )
@@ -81,7 +81,7 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
     def scene(self, scene: Scene) -> None:
         check_scene(scene, "show")
         self._assigned = scene
-        self._backend.do(lambda: self._show(scene))
+        self._display.do(lambda: self._show(scene))
 
     @property
     def picture(self) -> Image:
@@ -92,7 +92,7 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
         """End the viewer and take it from the notebook; its scene stays."""
         self._closing = True
         if hasattr(self, "_thread"):  # not after an error in `__init__`
-            self._backend.do(self._session.quit)
+            self._display.do(self._session.quit)
             if threading.current_thread() is not self._thread:
                 self._thread.join()
         super().close()
@@ -125,11 +125,11 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
 
     def _on_message(self, _widget: object, message: dict[str, Any], _buffers: object) -> None:
         """Pass a message of the page to the session's thread."""
-        backend, window = self._backend, self._session.window
+        display, window = self._display, self._session.window
         match message.get("kind"):
             case "ready":
-                backend.restart()
+                display.do(display.restart)
             case "shown":
-                backend.acknowledge(int(message["number"]))
+                display.do(lambda: display.frames.acknowledge(int(message["number"])))
             case _:
-                backend.do(lambda: deliver(window, message, backend.time()))
+                display.do(lambda: deliver(window, message, display.time()))

@@ -97,7 +97,7 @@ def several_windows_have_their_own_hooks(harness: Harness) -> None:
             user.focus(window)
             user.keys(f"+{key} -{key}")
             user.until(lambda number=number: len(harness.log) == number + 1)  # type: ignore[misc]
-        user.close_button(harness.win)
+        user.close_button()
         user.until(lambda: len(harness.log) == 3)
         user.focus(second)
         user.keys("+c -c")

@@ -181,7 +181,7 @@ def full_screen_without_a_window_manager_and_back(harness: Harness) -> None:
         user.press_to_replace_window("f")
         user.until(done)
 
-    if not isinstance(harness.mlx.backend, Memory):
+    if not isinstance(harness.mlx, Memory):
         native = importlib.import_module("minirt.mlx.on_pyglet.native")
         harness.undo.enter_context(patch.object(native, "manager_has_full_screen", lambda _: False))
     full_screen(harness, toggle)

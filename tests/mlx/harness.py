@@ -50,11 +50,11 @@ class Harness:
 
     def run(self, actions: Callable[[User], object]) -> None:
         """Run the loop while a user performs the actions, then end the loop."""
-        backend = self.mlx.backend
+        memory = self.mlx
         with self.undo:
-            if isinstance(backend, Memory):
-                actions(MemoryUser(self, backend))
-                backend.do(lambda: self.m.mlx_loop_exit(self.mlx))
+            if isinstance(memory, Memory):
+                actions(MemoryUser(self, memory))
+                memory.do(lambda: self.m.mlx_loop_exit(self.mlx))
                 self.m.mlx_loop(self.mlx)
             else:
                 ScreenUser(self).run(actions)

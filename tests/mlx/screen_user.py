@@ -189,8 +189,8 @@ class ScreenUser(Typist):
     def restore(self) -> None:
         self._desktop.restore(self._id)
 
-    def close_button(self, window: Window | None = None) -> None:
-        self._desktop.close_button(self._ids[window or self._harness.win])
+    def close_button(self) -> None:
+        self._desktop.close_button(self._id)
 
     def do(self, action: Callable[[], object]) -> None:
         action()

@@ -10,18 +10,16 @@ import pytest
 
 import minirt.mlx.memory as memory_module
 from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
-from minirt.mlx.backend import TICK
+from minirt.mlx.display import TICK
 from minirt.mlx.memory import Memory
-from tests.mlx.user import wake_thread
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
     from minirt.mlx import Window
-    from minirt.mlx.arguments import Hook
-    from minirt.mlx.backend import Display
+    from minirt.mlx.hooks import Hook
 
 
-def opened(width: int, height: int, patience: float = 30.0) -> tuple[Memory, Mlx, Display, Window]:
+def opened(width: int, height: int, patience: float = 30.0) -> tuple[Memory, Mlx, Memory, Window]:
     """Open a window of this size in memory."""
     memory = Memory(patience=patience)
     m = Mlx(memory)
@@ -108,26 +106,14 @@ def test_a_program_that_does_not_end_raises(clock: Clock, hook: Hook | None) -> 
     assert clock.now - start == pytest.approx(PATIENCE, abs=0.5)
 
 
-def test_the_script_can_wait_for_another_thread() -> None:
-    memory, m, mlx, _ = opened(10, 10, HANG_LIMIT)
-    seen: list[str] = []
-    m.mlx_wake_hook(mlx, seen.append, "woken")
-    memory.await_wake()
-    memory.do(lambda: seen.append("after"))
-    thread = wake_thread(m, mlx)
-    thread.start()
-    memory.play()
+def test_another_thread_wakes_a_loop_without_a_script() -> None:
+    _, m, mlx, _ = opened(10, 10, HANG_LIMIT)
+    m.mlx_wake_hook(mlx, lambda _: m.mlx_loop_exit(mlx))
+    thread = threading.Thread(target=m.mlx_wake, args=(mlx,))
+    m.mlx_text_hook(mlx.windows[0], lambda *_: thread.start())
+    mlx.text("a")
+    assert m.mlx_loop(mlx) == 0
     thread.join()
-    assert seen == ["woken", "after"]
-
-
-def test_waiting_for_a_wake_that_never_comes_raises(clock: Clock) -> None:
-    memory, *_ = opened(10, 10, PATIENCE)
-    memory.await_wake()
-    start = clock.now
-    with pytest.raises(MlxError, match=r"mlx_wake was not called within 20\.0 s"):
-        memory.play()
-    assert clock.now - start == pytest.approx(PATIENCE, abs=0.5)
 
 
 def test_a_window_of_fixed_size_keeps_it() -> None:

@@ -17,7 +17,7 @@ from tests.paths import PACKAGE
 
 if TYPE_CHECKING:
     from minirt.mlx import Window
-    from minirt.mlx.backend import Display
+    from minirt.mlx.display import Display
 
 # The parameters of the wrapper's methods, in its version 2.2.
 WRAPPER = {

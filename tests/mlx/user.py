@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, TypeAlias
 
-from minirt.mlx import Key, Window
+from minirt.mlx import Event, Key
 from tests.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import FrameType
 
     import numpy as np
     from numpy.typing import NDArray
 
-    from minirt.mlx import Mlx
-    from minirt.mlx.backend import Display
+    from minirt.mlx import Window
     from minirt.mlx.memory import Memory
     from tests.mlx.harness import Harness
     from tests.mlx.screen_user import ScreenUser
@@ -27,6 +24,7 @@ if TYPE_CHECKING:
 
 SHIFTED_SYMBOLS = {"equal": "plus", "slash": "question", "digit_1": "exclamation"}  # with Shift, on the layout us
 KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
+WHEEL = {4: (0, 1), 5: (0, -1), 6: (-1, 0), 7: (1, 0)}  # steps to the right and up, by the buttons of the wheel
 
 
 class Typist(ABC):
@@ -49,15 +47,16 @@ class MemoryUser(Typist):
 
     def __init__(self, harness: Harness, memory: Memory) -> None:
         self._harness, self._memory = harness, memory
+        self._win = self._focus = harness.win
         self._held: list[str] = []
-        self._focus = harness.win
         self._inside = False
+        self.do = memory.do  # calls a function at this point; calls of MiniLibX belong into hooks
 
     def press(self, key: str) -> None:
         self._held.append(key)
-        symbol = SHIFTED_SYMBOLS.get(key, key) if "shift" in self._held else key
-        self._memory.press(_code(self._reported(key)), self._focus)
-        self._type(symbol)
+        code, keyboard = _code(self._reported(key)), self._focus.keyboard
+        self.do(lambda: keyboard.press(code, self._memory.time()))
+        self._type(SHIFTED_SYMBOLS.get(key, key) if "shift" in self._held else key)
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
         """Hold a key down, which the platform repeats, until `enough` is true. The key stays down."""
@@ -69,52 +68,51 @@ class MemoryUser(Typist):
 
     def release(self, key: str) -> None:
         self._held.remove(key)
-        self._memory.release(_code(self._reported(key)), self._focus)
+        code, keyboard = _code(self._reported(key)), self._focus.keyboard
+        self.do(lambda: keyboard.release(code))
 
     def move(self, x: int, y: int) -> None:
-        self._memory.motion(x, y, self._harness.win)
+        self.do(lambda: self._win.on_motion(x, y))
 
     def click(self, x: int, y: int, button: int = 1) -> None:
-        if button in (4, 5):
-            self._memory.scroll({4: 1, 5: -1}[button], x, y, self._harness.win)
-        elif button in (6, 7):
-            self._memory.scroll(0, x, y, self._harness.win, right={6: -1, 7: 1}[button])
+        if button in WHEEL:
+            self.do(lambda: self._win.on_scroll(*WHEEL[button], x, y))
         else:
-            self._memory.click(x, y, button, self._harness.win)
+            self._memory.click(x, y, button)
 
     def drop(self, *files: str) -> None:
-        self._memory.drop(*files, window=self._harness.win)
+        self._memory.drop(*files)
 
     def enter(self) -> None:
         self._inside = True
-        self._memory.enter(True, self._harness.win)
+        self.do(lambda: self._win.deliver(Event.ENTER_NOTIFY))
 
     def leave(self) -> None:
         if self._inside:
             self._inside = False
-            self._memory.enter(False, self._harness.win)
+            self.do(lambda: self._win.deliver(Event.LEAVE_NOTIFY))
 
     def focus(self, window: Window) -> None:
-        self._memory.focus(False, self._focus)
-        self._memory.focus(True, window)
-        self._focus = window
+        before, self._focus = self._focus, window
+        self.do(lambda: before.on_focus(False))
+        self.do(lambda: window.on_focus(True))
 
     def press_to_replace_window(self, key: str) -> None:
         """Press and release a key: windows are never replaced here."""
         self.keys(f"+{key} -{key}")
 
     def resize(self, width: int, height: int) -> None:
-        self._memory.resize(width, height, self._harness.win)
+        self._memory.resize(width, height)
 
     def minimise(self) -> None:
-        self._memory.minimise(True, self._harness.win)
+        self._memory.minimise(True)
 
     def restore(self) -> None:
-        self._memory.minimise(False, self._harness.win)
-        self._memory.expose(self._harness.win)
+        self._memory.minimise(False)
+        self.do(self._win.on_expose)
 
-    def close_button(self, window: Window | None = None) -> None:
-        self._memory.close_button(window or self._harness.win)
+    def close_button(self) -> None:
+        self._memory.close_button()
 
     def until(self, condition: Callable[[], bool]) -> None:
         """Wait for the effect of an action; simulated time stands still."""
@@ -122,11 +120,7 @@ class MemoryUser(Typist):
         def check() -> None:
             assert condition(), "the effect did not come"
 
-        self._memory.do(check)
-
-    def do(self, action: Callable[[], object]) -> None:
-        """Call a function at this point; calls of MiniLibX belong into hooks."""
-        self._memory.do(action)
+        self.do(check)
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
         """Wait for an effect that takes time: this many simulated seconds."""
@@ -141,51 +135,33 @@ class MemoryUser(Typist):
         self._memory.wait(seconds)
 
     def wake(self) -> None:
-        """Call `mlx_wake` from another thread when the loop sleeps."""
-        self._memory.do(wake_thread(self._harness.m, self._harness.mlx).start)
-        self._memory.await_wake()
+        """Call `mlx_wake` from another thread."""
+
+        def wake() -> None:
+            threading.Thread(target=self._harness.m.mlx_wake, args=(self._memory,)).start()
+            until(lambda: self._memory.woken, "mlx_wake")
+
+        self.do(wake)
 
     def log_picture(self, name: str, read: Callable[[NDArray[np.uint8]], object]) -> None:
         """Log the value of `read` for the picture that the window shows: (h, w, 3), red first."""
-        self._memory.do(
-            lambda: self._harness.record(name, read(self._memory.screenshot(self._harness.win)[..., 2::-1]))
-        )
+        self.do(lambda: self._harness.record(name, read(self._memory.screenshot()[..., 2::-1])))
 
     def log_title(self) -> None:
-        self._memory.do(lambda: self._harness.record("title", self._harness.win.title))
+        self.do(lambda: self._harness.record("title", self._win.title))
 
     def _reported(self, key: str) -> str:
         """Return the name of what the platform reports for a key: its symbol, if the program asked for symbols."""
-        symbols = self._harness.win.display.options.symbols and "shift" in self._held
+        symbols = self._memory.options.symbols and "shift" in self._held
         return SHIFTED_SYMBOLS.get(key, key) if symbols else key
 
     def _type(self, symbol: str) -> None:
         """Type the character of a key, if it prints one."""
         if symbol not in KEYS and "ctrl" not in self._held:
-            character = chr(_code(symbol)) if _code(symbol) < 0x100 else "\t"
-            self._memory.text(character, self._focus)
+            character, window = chr(_code(symbol)) if _code(symbol) < 0x100 else "\t", self._focus
+            self.do(lambda: window.on_text(character))
 
 
 def _code(name: str) -> int:
     """Key code of a name."""
     return KEYS.get(name) or Key[name.upper()]
-
-
-def wake_thread(m: Mlx, mlx: Display) -> threading.Thread:
-    """Make a thread that calls `mlx_wake` as soon as the script in the main thread waits for it."""
-
-    def wake() -> None:
-        until(_main_thread_waits, "the step of the script that waits for mlx_wake")
-        m.mlx_wake(mlx)
-
-    return threading.Thread(target=wake)
-
-
-def _main_thread_waits() -> bool:
-    """Whether the main thread is in the wait of `Memory._await_wake`."""
-    frame: FrameType | None = sys._current_frames()[threading.main_thread().ident or 0]
-    names = []
-    while frame is not None:
-        names.append(frame.f_code.co_name)
-        frame = frame.f_back
-    return "_await_wake" in names and names[0] == "wait"

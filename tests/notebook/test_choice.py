@@ -9,7 +9,7 @@ import pytest
 
 import minirt
 from minirt.mlx import Mlx
-from minirt.mlx.backend import Backend
+from minirt.mlx.display import Display
 from minirt.mlx.memory import Memory
 from tests.notebook.requirements import require
 
@@ -17,7 +17,7 @@ from tests.notebook.requirements import require
 class NoScreen(Memory):
     """A back end on a machine without a screen."""
 
-    def open(self, display: object) -> None:
+    def open(self, options: object) -> None:
         raise minirt.MlxError("no screen")
 
 
@@ -68,7 +68,7 @@ def test_a_failure_of_the_session_ends_the_viewer_and_is_told(
         raise minirt.RenderError("planted")
 
     viewer = Viewer(scene, (64, 48))
-    viewer._backend.do(fail)
+    viewer._display.do(fail)
     viewer._thread.join()
     assert {"kind": "failure", "text": "The viewer has ended: planted"} in told
     viewer.close()
@@ -80,7 +80,7 @@ def test_a_notebook_without_a_screen_gets_the_widget(scene: minirt.Scene, monkey
     viewer = minirt.view(scene, (64, 48), mlx=Mlx(NoScreen()))
     try:
         assert (viewer.width, viewer.height, viewer.scene) == (64, 48, scene)
-        assert isinstance(viewer._backend, Backend)
+        assert isinstance(viewer._display, Display)
     finally:
         viewer.close()
     assert not viewer._thread.is_alive()
@@ -93,13 +93,13 @@ def test_an_assigned_scene_is_the_scene_at_once(scene: minirt.Scene) -> None:
     viewer = Viewer(scene, (64, 48))
     busy, goes_on, is_shown = Event(), Event(), Event()
     try:
-        viewer._backend.do(lambda: (busy.set(), goes_on.wait()))
+        viewer._display.do(lambda: (busy.set(), goes_on.wait()))
         busy.wait()
         larger = scene.replace(scene.spheres[0], diameter=3)
         viewer.scene = larger
         assert viewer.scene is larger
         goes_on.set()
-        viewer._backend.do(is_shown.set)
+        viewer._display.do(is_shown.set)
         is_shown.wait()
         assert viewer._session.state.scene.items == larger.items
         assert viewer.scene is viewer._session.state.scene

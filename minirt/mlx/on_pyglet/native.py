@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from functools import partial
 
 from pyglet.window import key as pyglet_key
 from pyglet.window import mouse as pyglet_mouse
 
+from minirt.errors import MlxError
+from minirt.mlx.display import ADVICE
 from minirt.mlx.events import Button, Event, Key, Modifier
 from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow
 from minirt.mlx.on_pyglet.x11 import (
@@ -17,11 +19,7 @@ from minirt.mlx.on_pyglet.x11 import (
     report_key_events,
     request_full_screen,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from minirt.mlx.window import Window
+from minirt.mlx.window import Window
 
 BUTTONS = {
     pyglet_mouse.LEFT: Button.LEFT,
@@ -45,76 +43,83 @@ SYMBOLS = {
 }
 
 
-class NativeWindow:
-    """A pyglet window. `clock` gives seconds; `changed` is called after every event, since a turn of the loop has to
-    follow. Handlers return True to suppress pyglet's defaults: Escape and the close button close nothing here."""
+class NativeWindow(Window):
+    """A pyglet window, with handlers of pyglet's events under its names, after which a turn of the loop follows.
 
-    def __init__(self, window: Window, clock: Callable[[], float], changed: Callable[[], None]) -> None:
-        self._window = window
-        self._clock = clock
-        self._changed = changed
+    They return True to suppress pyglet's defaults: Escape and the close button close nothing here.
+    """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         self._wheel = [0.0, 0.0]  # fractions of steps, which touch pads send
-        self.pyglet = PygletWindow(
-            window.display.options.application,
-            window.width, window.height, caption=window.title, resizable=window.resizable,
-            file_drops=True,
-            vsync=False,  # a buffer swap of a hidden window may take a second: never wait for it
-        )  # fmt: skip
-        fix_drag_enter(self.pyglet)
         self._is_reported = False  # the key event that pyglet handles now
-        report_key_events(self.pyglet, self._on_key_event)
-        self.pyglet.push_handlers(self)
-        self._texture = CanvasTexture()
-        self.on_resize(window.width, window.height)
+        try:
+            self.pyglet = PygletWindow(
+                self.display.request_turn,
+                self.display.options.application,
+                self.width, self.height, caption=self.title, resizable=self.resizable,
+                file_drops=True,
+                vsync=False,  # a buffer swap of a hidden window may take a second: never wait for it
+            )  # fmt: skip
+            fix_drag_enter(self.pyglet)
+            report_key_events(self.pyglet, self._on_key_event)
+            # pyglet refers to methods weakly, which those of an integer cannot be.
+            names = set(dir(self)).intersection(PygletWindow.event_types)
+            self.pyglet.push_handlers(**{name: partial(getattr(self, name)) for name in names})
+            self._texture = CanvasTexture()
+            self.on_resize(self.width, self.height)
+        except Exception as error:  # any error of pyglet means that there is no window
+            raise MlxError(f"no window with OpenGL 3.3 can be opened ({error}); {ADVICE}") from error
 
-    def draw(self) -> None:
-        """Blit the canvas to the frame buffer and swap."""
+    # --- the contract of a back end ---
+
+    def blit(self) -> None:
         self.pyglet.switch_to()
         self.on_draw()
         self.pyglet.flip()
 
-    def set_fullscreen(self, on: bool) -> None:
-        """Enter or leave full screen: the window manager changes the size of the window, which stays the same one.
+    def close(self) -> None:
+        self.pyglet.close()
 
-        Without such a window manager, and for windows of fixed size, pyglet may replace the window. Then all keys are
-        released, because the new one gets no releases.
-        """
-        if self._window.resizable and not self.pyglet.fullscreen and manager_has_full_screen(self.pyglet):
-            request_full_screen(self.pyglet, on)
-            return
-        self.pyglet.set_fullscreen(on)
-        self.pyglet.set_icons(self._window.icons)
-        self._forget_keys()
-        self._window.keyboard.release_all()
-        self.on_resize(0, 0)
+    def set_fullscreen(self, on: bool) -> None:
+        self.display.do(partial(self._set_fullscreen, on))  # not allowed inside a handler of pyglet's
+
+    def set_title(self) -> None:
+        self.pyglet.set_caption(self.title)
+
+    def set_icons(self) -> None:
+        self.pyglet.set_icons(self.icons)
+
+    def set_cursor(self) -> None:
+        self.pyglet.set_cursor(self.cursor)
+
+    def show_pointer(self, on: bool) -> None:
+        self.pyglet.set_mouse_visible(on)
 
     def move_pointer(self, x: int, y: int) -> None:
-        """Move the pointer to a pixel of the window, counted from the top left corner."""
         width, height = self.pyglet.get_size()
-        window = self._window
-        self.pyglet.set_mouse_position(x * width // window.width, height - y * height // window.height)
+        self.pyglet.set_mouse_position(x * width // self.width, height - y * height // self.height)
 
-    # --- pyglet's events, under its names ---
+    def get_clipboard(self) -> str:
+        return str(self.pyglet.get_clipboard_text())
+
+    def set_clipboard(self, text: str) -> None:
+        self.pyglet.set_clipboard_text(text)
+
+    # --- pyglet's events; `on_text` is that of Window ---
 
     def on_draw(self) -> None:
-        self._texture.draw(self._window.shown, *self._framebuffer_size())
+        self._texture.draw(self.shown, *self._framebuffer_size())
 
     def on_key_press(self, symbol: int, modifiers: int) -> bool:
         if not self._is_reported:
-            self._window.keyboard.press(SYMBOLS.get(symbol, symbol), self._clock(), _modifiers(modifiers))
-            self._changed()
+            self.keyboard.press(SYMBOLS.get(symbol, symbol), self.display.time(), _modifiers(modifiers))
         return True
 
     def on_key_release(self, symbol: int, modifiers: int) -> bool:
         if not self._is_reported:
-            released = self._window.keyboard.release(SYMBOLS.get(symbol, symbol), _modifiers(modifiers))
-            self._forget_keys(released)
-            self._changed()
+            self._forget_keys(self.keyboard.release(SYMBOLS.get(symbol, symbol), _modifiers(modifiers)))
         return True
-
-    def on_text(self, text: str) -> None:
-        self._window.on_text(text)
-        self._changed()
 
     def on_mouse_press(self, x: float, y: float, button: int, modifiers: int) -> None:
         self._button(Event.BUTTON_PRESS, x, y, button, modifiers)
@@ -123,94 +128,93 @@ class NativeWindow:
         self._button(Event.BUTTON_RELEASE, x, y, button, modifiers)
 
     def on_mouse_motion(self, x: float, y: float, _dx: float, _dy: float) -> None:
-        self._window.on_motion(*self._from_top(x, y))
-        self._changed()
+        self.on_motion(*self._from_top(x, y))
 
-    def on_mouse_drag(self, x: float, y: float, dx: float, dy: float, _buttons: int, modifiers: int) -> None:
-        self._window.keyboard.modifiers = _modifiers(modifiers)
-        self.on_mouse_motion(x, y, dx, dy)
+    def on_mouse_drag(self, x: float, y: float, _dx: float, _dy: float, _buttons: int, modifiers: int) -> None:
+        self.keyboard.modifiers = _modifiers(modifiers)
+        self.on_motion(*self._from_top(x, y))
 
     def on_mouse_scroll(self, x: float, y: float, right: float, up: float) -> None:
         self._wheel = [self._wheel[0] + right, self._wheel[1] + up]
         steps = [int(amount) for amount in self._wheel]
         self._wheel = [amount - step for amount, step in zip(self._wheel, steps, strict=True)]
-        self._window.on_scroll(steps[0], steps[1], *self._from_top(x, y))
-        self._changed()
+        self.on_scroll(steps[0], steps[1], *self._from_top(x, y))
 
     def on_file_drop(self, _x: int, _y: int, paths: list[str]) -> None:
-        self._window.on_drop(paths)
-        self._changed()
+        self.on_drop(paths)
 
     def on_mouse_enter(self, x: float, y: float) -> None:
-        self._window.place_pointer(*self._from_top(x, y))
-        self._window.deliver(Event.ENTER_NOTIFY)
-        self._changed()
+        self.place_pointer(*self._from_top(x, y))
+        self.deliver(Event.ENTER_NOTIFY)
 
     def on_mouse_leave(self, _x: float, _y: float) -> None:
-        self._window.deliver(Event.LEAVE_NOTIFY)
-        self._changed()
+        self.deliver(Event.LEAVE_NOTIFY)
 
     def on_activate(self) -> None:
-        self._window.on_focus(True)
-        self._changed()
+        self.on_focus(True)
 
     def on_deactivate(self) -> None:
         self._forget_keys()
-        self._window.on_focus(False)
-        self._changed()
+        self.on_focus(False)
 
     def on_expose(self) -> None:
-        if self._window.announced:
-            self._window.on_expose()
-        self._changed()
+        if self.announced:
+            super().on_expose()
 
     def on_show(self) -> None:
-        self._window.on_visibility(True)
-        self._changed()
+        self.on_visibility(True)
 
     def on_hide(self) -> None:
-        self._window.on_visibility(False)
-        self._changed()
+        self.on_visibility(False)
 
     def on_resize(self, _width: int, _height: int) -> None:
-        self._window.scale = self._scale()
-        self._window.on_resize(*self._framebuffer_size())
-        self._changed()
-        if sys.platform in ("win32", "darwin") and self._window.announced:
-            self.draw()  # the loop stands still on these platforms while a border is dragged
+        self.scale = self._scale()
+        super().on_resize(*self._framebuffer_size())
+        if sys.platform in ("win32", "darwin") and self.announced:
+            self.blit()  # the loop stands still on these platforms while a border is dragged
 
     def on_scale(self, _scale: float, _dpi: int) -> None:
         self.on_resize(0, 0)
 
     def on_close(self) -> bool:
-        self._window.on_close_button()
-        self._changed()
+        self.on_close_button()
         return True
+
+    def _set_fullscreen(self, on: bool) -> None:
+        """Enter or leave full screen: the window manager changes the size of the window, which stays the same one.
+
+        Without such a window manager, and for windows of fixed size, pyglet may replace the window. Then all keys are
+        released, because the new one gets no releases.
+        """
+        if not self.is_open:
+            return
+        if self.resizable and not self.pyglet.fullscreen and manager_has_full_screen(self.pyglet):
+            request_full_screen(self.pyglet, on)
+            return
+        self.pyglet.set_fullscreen(on)
+        self.pyglet.set_icons(self.icons)
+        self._forget_keys()
+        self.keyboard.release_all()
+        self.on_resize(0, 0)
 
     def _on_key_event(self, event: KeyEvent | None) -> None:
         """Report a key event before pyglet handles it, if pyglet would report another key; None: it has handled it."""
-        self._is_reported = False
-        code = event and (event.letter if self._window.display.options.symbols else event.code)
-        if event and code:
-            self._is_reported = True
-            keyboard = self._window.keyboard
-            if event.pressed:
-                keyboard.press(code, self._clock(), _modifiers(event.modifiers))
-            else:
-                keyboard.release(code, _modifiers(event.modifiers))
-            self._changed()
+        code = event and (event.letter if self.display.options.symbols else event.code)
+        self._is_reported = bool(code)
+        if event and code and event.pressed:
+            self.keyboard.press(code, self.display.time(), _modifiers(event.modifiers))
+        elif event and code:
+            self.keyboard.release(code, _modifiers(event.modifiers))
 
     def _button(self, event: Event, x: float, y: float, button: int, modifiers: int) -> None:
-        self._window.keyboard.modifiers = _modifiers(modifiers)
+        self.keyboard.modifiers = _modifiers(modifiers)
         if button in BUTTONS:
-            self._window.on_button(event, BUTTONS[button], *self._from_top(x, y))
-        self._changed()
+            self.on_button(event, BUTTONS[button], *self._from_top(x, y))
 
     def _from_top(self, x: float, y: float) -> tuple[int, int]:
         """Convert from pyglet's coordinates, which start at the bottom and need not be pixels."""
         width, height = self.pyglet.get_size()
-        window = self._window
-        return int(x * window.width / width), window.height - 1 - int(y * window.height / height)
+        return int(x * self.width / width), self.height - 1 - int(y * self.height / height)
 
     def _framebuffer_size(self) -> tuple[int, int]:
         width, height = self.pyglet.get_framebuffer_size()
@@ -229,8 +233,4 @@ class NativeWindow:
 
 def _modifiers(flags: int) -> Modifier:
     """Convert pyglet's modifier flags."""
-    modifiers = Modifier.NONE
-    for flag, modifier in MODIFIERS.items():
-        if flags & flag:
-            modifiers |= modifier
-    return modifiers
+    return Modifier(sum({modifier for flag, modifier in MODIFIERS.items() if flags & flag}))

@@ -12,7 +12,7 @@ from minirt.mlx.events import Cursor
 from minirt.mlx.on_pyglet.x11 import is_x11, set_icon
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from minirt.mlx.arguments import Image
     from minirt.mlx.canvas import Box, Canvas
@@ -28,12 +28,21 @@ EXCHANGE = 50  # X11's cursor of two curved arrows, which pyglet has no name for
 
 
 class PygletWindow(pyglet.window.Window):  # type: ignore[misc]
-    """`application`: the name by which window managers know the program, whatever the caption; "": the caption."""
+    """`application`: the name by which window managers know the program, whatever the caption; "": the caption.
 
-    def __init__(self, application: str, width: int, height: int, **options: Any) -> None:
+    `changed` is called after every event.
+    """
+
+    def __init__(self, changed: Callable[[], None], application: str, width: int, height: int, **options: Any) -> None:
+        self._changed = changed
         self._application = application
         self._cursors: dict[Cursor, Any] = {}
         super().__init__(width, height, **options)
+
+    def dispatch_event(self, *event: Any) -> None:
+        """Handle an event, then tell that it came."""
+        super().dispatch_event(*event)
+        self._changed()
 
     def set_wm_class(self, name: str) -> None:
         """Set X11's WM_CLASS, which pyglet derives from the first caption."""

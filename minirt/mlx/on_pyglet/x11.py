@@ -1,4 +1,4 @@
-"""X11 that pyglet does not offer: icon and full screen of a window, keys of any keyboard, drag and drop.
+"""X11 that pyglet does not offer: icon and full screen, keys of any keyboard, drag and drop, the end of the server.
 
 Nothing here raises if a window manager ignores a request. Windows of pyglet on other systems have no `_x_display`.
 """
@@ -6,6 +6,8 @@ Nothing here raises if a window manager ignores a request. Windows of pyglet on 
 from __future__ import annotations
 
 import ctypes
+import os
+import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -187,3 +189,29 @@ def handle_drag_enter(window: Any, original: Any, event: Any) -> None:
     window._xdnd_source, window._xdnd_version = source, flags >> 24
     files = window._xdnd_atoms[FILES]
     window._xdnd_format = files if files in types else None
+
+
+# The X server was killed, or has closed the connection of this program. Xlib ends a process whose connection breaks,
+# without Python's knowledge. Its error handler is the last chance to save.
+
+
+LOST = 1  # exit status
+HANDLER = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
+INSTALLED: list[Any] = []  # handlers, which Xlib may call as long as the program runs
+
+
+def end_program_when_connection_is_lost(save: Callable[[], None]) -> None:
+    """Call `save` and end the process with status 1 when the X server is gone. No other system has such a server."""
+    if not sys.platform.startswith("linux"):
+        return
+    from pyglet.libs.x11 import xlib
+
+    def handler(_display: int) -> int:
+        try:
+            save()
+            print("Error\nthe connection to the X server is lost", file=sys.stderr, flush=True)
+        finally:
+            os._exit(LOST)
+
+    INSTALLED[:] = [HANDLER(handler)]
+    ctypes.CDLL(xlib._lib._name).XSetIOErrorHandler(INSTALLED[0])  # the same library, without pyglet's argument types

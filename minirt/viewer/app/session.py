@@ -31,7 +31,7 @@ from minirt.viewer.key_repeat import KeyRepeat
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 if TYPE_CHECKING:
-    from minirt.mlx.backend import Display
+    from minirt.mlx.display import Display
 
 Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 FINE_STEP = 0.1  # of a step, while Shift is held

@@ -37,7 +37,7 @@ def test_the_loop_sleeps_unless_a_key_is_held_or_words_wait():
     harness.finish(0.001)
     assert not harness.display.busy
     harness.memory.press(Key.D)
-    harness.memory.focus(False)
+    harness.memory.do(lambda: harness.memory.window.on_focus(False))
     harness.memory.play()
     harness.finish(0.001)
     assert not harness.display.busy
@@ -46,9 +46,9 @@ def test_the_loop_sleeps_unless_a_key_is_held_or_words_wait():
 def test_a_picture_is_shown_before_the_next_one_is_requested(monkeypatch):
     harness = SessionHarness(samples=4)
     samples_when_shown = []
-    show = harness.memory.show
+    show = harness.memory.window.show
     monkeypatch.setattr(
-        harness.memory, "show", lambda win: (samples_when_shown.append(harness.painter.samples), show(win))
+        harness.memory.window, "show", lambda: (samples_when_shown.append(harness.painter.samples), show())
     )
     harness.finish(0.001)
     harness.finish(0.001)

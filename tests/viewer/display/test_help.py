@@ -83,9 +83,8 @@ def camera(session: Session) -> Camera:
 
 
 def memory(session: Session) -> Memory:
-    backend = session.display.backend
-    assert isinstance(backend, Memory)
-    return backend
+    assert isinstance(session.display, Memory)
+    return session.display
 
 
 def centred(_: Session, after: Session) -> bool:
@@ -183,7 +182,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "save copy": ((), saved_copy),
     "screenshot": ((), saved_screenshot),
     "reload": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
-    "copy camera": ((), lambda _, after: memory(after).clipboard_text == describe(scene().camera)),
+    "copy camera": ((), lambda _, after: memory(after).clipboard == describe(scene().camera)),
     "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
     "toggle icons": ((), lambda before, after: (before.screen.marks.icons, after.screen.marks.icons) == (False, True)),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),

@@ -11,7 +11,7 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.mlx import Key
-from minirt.mlx.memory import Memory
+from minirt.mlx.memory import Memory, MemoryWindow
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
@@ -27,7 +27,7 @@ def test_the_first_picture_has_full_resolution_and_is_rendered_once():
     assert harness.painter.requests == [Job(harness.session.state.scene, *SIZE)]
     harness.finish(10.0)
     harness.memory.wait(2)
-    harness.memory.expose()
+    harness.memory.do(harness.memory.window.on_expose)
     harness.memory.motion(5, 5)
     harness.memory.minimise(True)
     harness.memory.minimise(False)
@@ -68,7 +68,7 @@ def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final():
         assert (shown[0, marked:] == colour_of(scene())).all()
         assert (shown[1:] == colour_of(scene())).all()
     harness.memory.wait(2)
-    harness.memory.expose()
+    harness.memory.do(harness.memory.window.on_expose)
     harness.tap(Key.H)
     harness.tap(Key.TAB)
     assert harness.painter.samples == [1, 4, 16]
@@ -162,12 +162,16 @@ def test_new_notes_without_a_picture_are_shown_over_the_same_picture():
     assert len(harness.painter.requests) == requests
 
 
-class SlowScreen(Memory):
-    """A back end on which showing a picture takes four tenths of the frame time."""
+class SlowWindow(MemoryWindow):
+    """A window on which showing a picture takes four tenths of the frame time."""
 
-    def show(self, window) -> None:
-        super().show(window)
-        self._now += 0.4 * FRAME_TIME
+    def blit(self) -> None:
+        super().blit()
+        self.display._now += 0.4 * FRAME_TIME
+
+
+class SlowScreen(Memory):
+    window_type = SlowWindow
 
 
 def test_a_slow_screen_leaves_less_time_for_rendering():

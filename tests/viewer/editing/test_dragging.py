@@ -168,7 +168,7 @@ def dragging() -> SessionHarness:
     "end",
     [
         lambda memory: memory.button_release(1, 40, 20),
-        lambda memory: memory.focus(False),
+        lambda memory: memory.do(lambda: memory.window.on_focus(False)),
         lambda memory: memory.resize(80, 60),
         lambda memory: memory.tap(Key.CONTROL_L, Key.Z),
         lambda memory: memory.tap(Key.DELETE),
