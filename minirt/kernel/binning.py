@@ -89,19 +89,19 @@ def projected_rectangle(
     half_y = (grid.middle_y + grid.margin) / grid.scale_y
     slant_x = sqrt(1.0 + half_x * half_x)
     slant_y = sqrt(1.0 + half_y * half_y)
-    frame = grid.frames[face]
+    frames = grid.frames
     behind = left = right = above = below = True
     beside = False
     low_x, high_x, low_y, high_y = inf, -inf, inf, -inf
     for i in range(start, end):
         px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
         radius = spheres[i, 3] + slack
-        z = frame[2, 0] * px + frame[2, 1] * py + frame[2, 2] * pz
+        z = frames[face, 2, 0] * px + frames[face, 2, 1] * py + frames[face, 2, 2] * pz
         behind &= z <= -radius
         if behind and i + 1 == end:
             return 0, 0, 0, 0
-        x = frame[0, 0] * px + frame[0, 1] * py + frame[0, 2] * pz
-        y = frame[1, 0] * px + frame[1, 1] * py + frame[1, 2] * pz
+        x = frames[face, 0, 0] * px + frames[face, 0, 1] * py + frames[face, 0, 2] * pz
+        y = frames[face, 1, 0] * px + frames[face, 1, 1] * py + frames[face, 1, 2] * pz
         left &= x + half_x * z < -slant_x * radius
         right &= x - half_x * z > slant_x * radius
         above &= y + half_y * z < -slant_y * radius

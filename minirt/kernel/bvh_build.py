@@ -281,10 +281,10 @@ def collect_children(links: Any, choices: Any, node: int, parts: Any) -> int:
 
 def write_child(nodes: Any, at: int, bounds: Any, i: int, reference: float) -> None:
     """Write a child of a wide node: box i, grown by `MARGIN`, and a reference; for i = -1 a box that no ray hits."""
-    size = 0.0
+    size, box = 0.0, max(i, 0)
     for k in range(6):
-        size = max(size, abs(bounds[i, k]))
+        size = max(size, abs(bounds[box, k]))
     for k in range(3):
-        nodes[at + k * WIDTH] = -bounds[i, k] - MARGIN * size if i >= 0 else inf
-        nodes[at + (3 + k) * WIDTH] = bounds[i, 3 + k] + MARGIN * size if i >= 0 else -inf
+        nodes[at + k * WIDTH] = -bounds[box, k] - MARGIN * size if i >= 0 else inf
+        nodes[at + (3 + k) * WIDTH] = bounds[box, 3 + k] + MARGIN * size if i >= 0 else -inf
     nodes[at + 6 * WIDTH] = reference

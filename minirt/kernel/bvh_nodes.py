@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel.trace import COINCIDENT
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, max_norm, maximum, minimum, width
+from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, max_norm, maximum, minimum, save_vec, width
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
 MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together
@@ -64,23 +64,16 @@ def store_rays(memory: Any, origin: Vec, direction: Vec) -> None:
     enter = origin + grow  # moving the ray forward moves the planes by which it enters boxes back
     leave = origin - grow
     # The distance to a plane is then one multiplication and subtraction, whose rounding is less than the slack too.
-    put_vec(memory, ENTER, Vec(enter.x * inverse.x, enter.y * inverse.y, enter.z * inverse.z))
-    put_vec(memory, LEAVE, Vec(leave.x * inverse.x, leave.y * inverse.y, leave.z * inverse.z))
-    put_vec(memory, INVERSE, inverse)
-    put_vec(memory, ORIGIN, origin)
-    put_vec(memory, DIRECTION, direction)
+    save_vec(Vec(enter.x * inverse.x, enter.y * inverse.y, enter.z * inverse.z), memory, ENTER)
+    save_vec(Vec(leave.x * inverse.x, leave.y * inverse.y, leave.z * inverse.z), memory, LEAVE)
+    save_vec(inverse, memory, INVERSE)
+    save_vec(origin, memory, ORIGIN)
+    save_vec(direction, memory, DIRECTION)
 
 
 def safe_inverse(x: Number) -> Number:
     """Return 1 / x, or a huge number with the sign of x for x = 0 and -0."""
     return 1.0 / copysign(maximum(fabs(x), TINY), x)
-
-
-def put_vec(memory: Any, at: int, v: Vec) -> None:
-    """Store the vectors of a packet, in three rows of lanes from index `at` on."""
-    put(memory, at, v.x)
-    put(memory, at + WIDTH, v.y)
-    put(memory, at + 2 * WIDTH, v.z)
 
 
 def vec_at(memory: Any, at: int, ray: int) -> Vec:
@@ -152,16 +145,6 @@ def packet_memory() -> Any:
     return np.zeros(MEMORY)
 
 
-def integer_at(memory: Any, at: int) -> int:
-    """Load an integer from the packet's memory."""
-    return int(memory[at : at + 1].view(np.int64)[0])
-
-
 def put_integer(memory: Any, at: int, n: int) -> None:
     """Store an integer in the packet's memory, in the place of a float64."""
     memory[at : at + 1].view(np.int64)[0] = n
-
-
-def put(memory: Any, at: int, x: Number) -> None:
-    """Store a number for each lane, from index `at` on."""
-    memory[at : at + WIDTH] = x

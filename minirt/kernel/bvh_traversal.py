@@ -27,15 +27,12 @@ from minirt.kernel.bvh_nodes import (
     Group,
     Tree,
     bits,
-    integer_at,
     intersect_boxes,
     leaf_number,
     least_lane,
     near_planes,
     packet_memory,
-    put,
     put_integer,
-    put_vec,
     reference_of,
     search_limit,
     store_rays,
@@ -43,9 +40,24 @@ from minirt.kernel.bvh_nodes import (
     vec_at,
 )
 from minirt.kernel.pixels import fetch_add
-from minirt.kernel.scene_arrays import by_reference, has_rows, intersect, kind_of, occludes, read, surface
+from minirt.kernel.scene_arrays import has_rows, intersect, kind_of, occludes, read, surface
 from minirt.kernel.trace import closer_hit, for_each_kind
-from minirt.lanes import Mask, Number, Vec, any, lane, load, lowest, max_norm, splat, unit, where
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    lane,
+    load,
+    load_vec,
+    lowest,
+    max_norm,
+    save,
+    save_vec,
+    splat,
+    unit,
+    where,
+)
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
@@ -89,8 +101,8 @@ def descend(nodes: Any, memory: Any, ray: int) -> int:
     node = reference_of(memory[NEXT + ray])
     planes = near_planes(vec_at(memory, INVERSE, ray))
     hit, near = intersect_boxes(nodes, node, memory, ray, planes, search_limit(memory[HIT + ray]))
-    top = integer_at(memory, TOP + ray) + STACK_LEVEL
-    put(memory, top, where(hit, tag(near, load(nodes, node + REFERENCES)), inf))
+    top = reference_of(memory[TOP + ray]) + STACK_LEVEL
+    save(where(hit, tag(near, load(nodes, node + REFERENCES)), inf), memory, top)
     pushed = int(any(hit))
     put_integer(memory, TOP + ray, top - STACK_LEVEL * (1 - pushed))
     return pushed
@@ -103,11 +115,11 @@ def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     stack is now empty.
     """
     limit = search_limit(memory[HIT + ray])
-    top = integer_at(memory, TOP + ray)
+    top = reference_of(memory[TOP + ray])
     tags = load(memory, top)
     nearest = least_lane(tags)
     others = where(tags == nearest, inf, tags)
-    put(memory, top, others)
+    save(others, memory, top)
     top = top - STACK_LEVEL * (1 - int(any(others < limit)))
     put_integer(memory, TOP + ray, top)
     memory[NEXT + ray] = nearest
@@ -138,9 +150,10 @@ def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
     store_rays(memory, origin, direction)
     no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
     best, owner, extent = for_each_kind(closest_unbounded, tree.groups, no_hit, (tree, origin, direction))
-    put_vec(memory, HIT, Vec(best, owner, extent))
+    save_vec(Vec(best, owner, extent), memory, HIT)
     traverse(closest_in_block, tree, memory, bits(active))
-    return load(memory, HIT), load(memory, HIT + WIDTH), load(memory, HIT + 2 * WIDTH)
+    hit = load_vec(memory, HIT)
+    return hit.x, hit.y, hit.z
 
 
 def closest_unbounded(group: Group, state: Hit, arguments: tuple[Tree, Vec, Vec]) -> Hit:
@@ -178,7 +191,7 @@ def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active
     memory = packet_memory()
     store_rays(memory, origin, direction)
     visible = for_each_kind(unoccluded_by_unbounded, tree.groups, active, (tree, origin, direction, distance))
-    put(memory, HIT, where(visible, distance, -inf))
+    save(where(visible, distance, -inf), memory, HIT)
     traverse(occlude_by_block, tree, memory, bits(visible))
     return load(memory, HIT) > -inf
 
@@ -220,7 +233,6 @@ def trace_rays(
     Any number of threads may do so at the same time. Reads `origins` and `directions`, (n, 3), which may have any
     length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,), except for rays without a hit.
     """
-    tree = by_reference(tree)
     count = origins.shape[0]
     memory = packet_memory()
     while True:
@@ -233,10 +245,10 @@ def trace_rays(
                 for axis in range(3):
                     memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
                     memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
-            origin, direction = vec_lanes_at(memory, ORIGIN), unit(rescale(vec_lanes_at(memory, DIRECTION)))
+            origin, direction = load_vec(memory, ORIGIN), unit(rescale(load_vec(memory, DIRECTION)))
             t, owner, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
-            put_vec(memory, ORIGIN, origin + t * direction)
-            put_vec(memory, HIT, Vec(t, owner, t))
+            save_vec(origin + t * direction, memory, ORIGIN)
+            save_vec(Vec(t, owner, t), memory, HIT)
             for ray in range(min(WIDTH, count - first)):
                 index = int(memory[HIT + WIDTH + ray])
                 if index >= 0:
@@ -246,11 +258,6 @@ def trace_rays(
                     distances[first + ray], owners[first + ray] = memory[HIT + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)
-
-
-def vec_lanes_at(memory: Any, at: int) -> Vec:
-    """Load the vectors of all rays of a packet from its memory."""
-    return Vec(load(memory, at), load(memory, at + WIDTH), load(memory, at + 2 * WIDTH))
 
 
 def store_vec(vectors: Any, i: int, v: Vec) -> None:

@@ -6,12 +6,12 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, fetch_add, store_estimate, store_packet
-from minirt.kernel.scene_arrays import SceneArrays, by_reference
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.lights import remember_sample, sampled_eye
 from minirt.kernel.shading.texturing import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.trace import is_empty
-from minirt.lanes import Number, Vec, lane, load, rarely, splat, unit, where, width
+from minirt.lanes import Number, Vec, lane, load, load_vec, rarely, splat, unit, where, width
 
 # Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
 # references with as many samples, at twice the cost of one.
@@ -27,14 +27,13 @@ def ray_direction(camera: Any, x: float, y: float) -> Vec:
 
 def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
     """Trace one sample of each pixel of the packet whose upper left pixel is x, y; `rays` are the sample's offsets."""
-    count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
     if scene.lens is not None:
         origin = sampled_eye(scene, rays)
     if scene.soft is not None:
         remember_sample(scene, memory, rays)
     corner = ray_direction(scene.camera, x + scene.camera[12], y + scene.camera[13])
-    direction = corner + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
+    direction = corner + load_vec(rays, 0)
     return incoming_radiance(scene, memory, tile, origin, unit(direction))
 
 
@@ -81,31 +80,6 @@ def frame(
     (k,) receives the squared errors of packets with references, see `squared_error`. A counter set to `CANCELLED` from
     outside ends the frame at the next packet.
     """
-    render_tiles(
-        next_row,
-        by_reference(pixels),
-        by_reference(linear),
-        rays,
-        by_reference(plan),
-        by_reference(errors),
-        by_reference(memory),
-        sums,
-        by_reference(scene),
-    )
-
-
-def render_tiles(
-    next_row: Any,
-    pixels: Any,
-    linear: Any,
-    rays: Any,
-    plan: Any,
-    errors: Any,
-    memory: Any,
-    sums: Any,
-    scene: SceneArrays,
-) -> None:
-    """Render rows of tiles: the body of `frame`, with the arrays passed by reference."""
     height, across = pixels.shape
     packet_width = width(rays) // PACKET_HEIGHT
     columns = TILE // packet_width

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Number, Vec, lane, load, minimum, rarely, save, width
+from minirt.lanes import Number, Vec, lane, load_vec, minimum, rarely, save_vec, width
 
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
@@ -23,19 +23,10 @@ def fetch_add(counter: Any, amount: int) -> int:
 
 def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
     """Add the radiance of a sample to that of the samples before it, which `sums` holds from index `start` on."""
-    count = width(sums)
     if sample > 0:
-        radiance = radiance + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
-    save_sum(radiance, sums, start)
+        radiance = radiance + load_vec(sums, start)
+    save_vec(radiance, sums, start)
     return radiance
-
-
-def save_sum(radiance: Vec, sums: Any, start: int) -> None:
-    """Store a radiance in `sums` from index `start` on."""
-    count = width(sums)
-    save(radiance.x, sums, start)
-    save(radiance.y, sums, start + count)
-    save(radiance.z, sums, start + 2 * count)
 
 
 def to_byte_range(channel: Number) -> Number:
@@ -51,7 +42,7 @@ def store_estimate(
     if estimate == 0:
         store_packet(pixels, linear, x, y, radiance)
     if rarely(item >= 0):
-        save_sum(radiance, sums, estimate * ESTIMATE)
+        save_vec(radiance, sums, estimate * ESTIMATE)
         if estimate == 2:
             errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
 
@@ -123,8 +114,9 @@ def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, cl
             return
         y = row * PACKET_HEIGHT
         above, below = lines[max(y - 1, 0)], lines[min(y + PACKET_HEIGHT, height - 1)]
-        differences_upright(above, lines[y], lines[y + 1], lines[y + 2], lines[y + 3], below, seen[0])
-        differences_beside(lines[y], lines[y + 1], lines[y + 2], lines[y + 3], seen[1])
+        packet = lines[y], lines[y + 1], lines[y + 2], lines[y + 3]
+        differences_upright(above, packet, below, seen[0], lines.shape[1])
+        differences_beside(packet, seen[1], lines.shape[1])
         for column in range(columns):
             # The last pixel of the packet before differs from the first of this one.
             found = words[1, max(column * each - 1, 0)] >> 32
@@ -139,21 +131,23 @@ def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, cl
             counts[number] += 1
 
 
-def differences_upright(above: Any, a: Any, b: Any, c: Any, d: Any, below: Any, seen: Any) -> None:
-    """Collect the bits of the differences of the lines a to d of a row of packets from those above and below them."""
-    for i in range(a.shape[0]):
+def differences_upright(above: Any, packet: tuple[Any, ...], below: Any, seen: Any, size: int) -> None:
+    """Collect the bits of the differences of the four lines of a row of packets from those above and below them."""
+    a, b, c, d = packet
+    for i in range(size):
         inner = difference(a[i], b[i]) | difference(b[i], c[i]) | difference(c[i], d[i])
         seen[i] = difference(above[i], a[i]) | inner | difference(d[i], below[i])
 
 
-def differences_beside(a: Any, b: Any, c: Any, d: Any, seen: Any) -> None:
-    """Collect the bits of the differences of the pixels of the lines a to d from those to the right of them."""
-    last = a.shape[0] - CHANNELS
+def differences_beside(packet: tuple[Any, ...], seen: Any, size: int) -> None:
+    """Collect the bits of the differences of the pixels of four lines from those to the right of them."""
+    a, b, c, d = packet
+    last = size - CHANNELS
     for i in range(last):
         k = i + CHANNELS
         upper = difference(a[i], a[k]) | difference(b[i], b[k])
         seen[i] = upper | difference(c[i], c[k]) | difference(d[i], d[k])
-    for i in range(last, a.shape[0]):
+    for i in range(last, size):
         seen[i] = 0
 
 

@@ -80,11 +80,6 @@ def has_rows(table: Any) -> bool:
     return bool(table.shape[0] > 0)
 
 
-def by_reference(arrays: Any) -> Any:
-    """Return a scene, or another tuple of arrays, unchanged. Compiled functions pass the result by address."""
-    return arrays
-
-
 def range_in_tile(group: Group, tile: int) -> tuple[int, int]:
     """Return the range in `SceneArrays.tile_shapes` of the shapes of one kind in a tile."""
     if not has_rows(group.rows):

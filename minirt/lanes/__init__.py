@@ -165,8 +165,10 @@ def width(values: Any) -> int:
     return BYTES // int(values.dtype.itemsize)
 
 
-def splat(x: float, like: Number) -> Number:
-    """Return the same number for each ray, in the precision of the lanes `like`; lanes stay as they are."""
+def splat(x: Any, like: Number) -> Any:
+    """Return the same number or Vec for each ray, in the precision of the lanes `like`; lanes stay as they are."""
+    if isinstance(x, Vec):
+        return Vec(splat(x.x, like), splat(x.y, like), splat(x.z, like))
     return np.full_like(like, x)[()]
 
 
@@ -183,6 +185,20 @@ def gather(values: Any, indices: Number) -> Number:
 def save(x: Number, values: Any, start: int) -> None:
     """Store the numbers of all rays in an array, from index `start` on."""
     values[start : start + width(values)] = x
+
+
+def load_vec(values: Any, start: int) -> Vec:
+    """Load a Vec for each ray: all x from index `start` on, then all y, then all z."""
+    count = width(values)
+    return Vec(load(values, start), load(values, start + count), load(values, start + 2 * count))
+
+
+def save_vec(v: Vec, values: Any, start: int) -> None:
+    """Store the Vecs of all rays in an array, as `load_vec` loads them."""
+    count = width(values)
+    save(v.x, values, start)
+    save(v.y, values, start + count)
+    save(v.z, values, start + 2 * count)
 
 
 def lane(x: Number, ray: int) -> float:

@@ -13,34 +13,12 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.datamodel import models
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
-from numba.extending import lower_builtin, lower_getattr_generic, register_model
+from numba.extending import lower_builtin, lower_getattr_generic
 
-from minirt import lanes
-from minirt.kernel import scene_arrays, trace
-from minirt.lanes.compiled import memory
-from minirt.lanes.compiled.types import REGISTERED, Result, register
-
-ADDRESS = ir.IntType(8).as_pointer()
-NUMBERS: dict[types.Type, int] = {}  # of types that are referred to: short, as they become parts of function names
-DATA, SHAPE = 4, 5  # positions in numba's array structure: meminfo, parent, nitems, itemsize, data, shape, strides
-
-
-class Reference(types.Type):
-    """The address of a tuple or an array in memory; tuples and arrays in it are reached by reference too."""
-
-    def __init__(self, content: types.BaseTuple | types.Array) -> None:
-        self.content = content
-        super().__init__(f"Reference{NUMBERS.setdefault(content, len(NUMBERS))}")
-
-
-@register_model(Reference)
-class ReferenceModel(models.PrimitiveModel):
-    """A reference is an address."""
-
-    def __init__(self, manager: Any, kind: Reference) -> None:
-        super().__init__(manager, kind, ADDRESS)
+from minirt.kernel import trace
+from minirt.lanes.compiled.memory import ADDRESS, SHAPE, Reference, first_of, part_of
+from minirt.lanes.compiled.types import REGISTERED, register
 
 
 def is_array(kind: Any) -> bool:
@@ -48,32 +26,15 @@ def is_array(kind: Any) -> bool:
     return isinstance(kind, Reference) and isinstance(kind.content, types.Array)
 
 
-def reference_to(kind: Any) -> Reference | None:
-    """Return the type of a reference to a tuple, or to an array whose rows lie one after the other; None for others."""
-    is_referable = isinstance(kind, types.BaseTuple) or (isinstance(kind, types.Array) and kind.layout == "C")
-    return Reference(kind) if is_referable else None
-
-
-@register(scene_arrays.by_reference, reference_to, [(types.Any,)])
-def _by_reference(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.bitcast(cgutils.alloca_once_value(builder, args[0]), ADDRESS)
-
-
-def address_of_part(context: Any, builder: ir.IRBuilder, kind: Reference, value: Any, position: int) -> Any:
-    """Return the address of an item of a tuple, or of a member of numba's array structure."""
-    whole = context.get_value_type(kind.content).as_pointer()
-    return cgutils.gep_inbounds(builder, builder.bitcast(value, whole), 0, position)
-
-
 def item_type(kind: Reference, position: int) -> types.Type:
-    """Return the type of an item of a tuple."""
+    """Return the type of an item of a tuple: of a number, or of a reference to an array or to another tuple."""
     item = kind.content[position]
-    return reference_to(item) or item
+    return Reference(item) if isinstance(item, types.BaseTuple | types.Array) else item
 
 
 def item_of(context: Any, builder: ir.IRBuilder, kind: Reference, value: Any, position: int) -> Any:
     """Return an item of a tuple: a number, or a reference."""
-    address = address_of_part(context, builder, kind, value, position)
+    address = part_of(context, builder, kind, value, position)
     is_reference = isinstance(item_type(kind, position), Reference)
     return builder.bitcast(address, ADDRESS) if is_reference else builder.load(address)
 
@@ -94,28 +55,18 @@ class ReferenceFields(AttributeTemplate):
 @lower_getattr_generic(Reference)  # type: ignore[untyped-decorator]
 def _field(context: Any, builder: ir.IRBuilder, kind: Reference, value: Any, name: str) -> Any:
     if is_array(kind):
-        return builder.load(address_of_part(context, builder, kind, value, SHAPE))
+        return builder.load(part_of(context, builder, kind, value, SHAPE))
     return item_of(context, builder, kind, value, kind.content.fields.index(name))
 
 
-@register(len, lambda table: types.intp if isinstance(table, Reference) else None, [(Reference,)])
-def _len(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return context.get_constant(types.intp, len(sig.args[0].content))
-
-
-# Arrays: reading and writing items, and operations that read whole arrays.
+# Arrays: reading and writing items.
 
 INDEXED = [(Reference, types.Integer), (Reference, types.BaseTuple)]
 
 
-def data(context: Any, builder: ir.IRBuilder, kind: Reference, value: Any) -> Any:
-    """Return the address of the first number of an array."""
-    return builder.load(address_of_part(context, builder, kind, value, DATA))
-
-
 def length(context: Any, builder: ir.IRBuilder, kind: Reference, value: Any, axis: int) -> Any:
     """Return the length of an array along an axis."""
-    shape = address_of_part(context, builder, kind, value, SHAPE)
+    shape = part_of(context, builder, kind, value, SHAPE)
     return builder.load(cgutils.gep_inbounds(builder, shape, 0, axis))
 
 
@@ -138,7 +89,7 @@ def address_of_item(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) ->
         at = builder.mul(at, length(context, builder, table, args[0], axis))
         if others:
             at = builder.add(at, others.pop(0))
-    return builder.gep(data(context, builder, table, args[0]), [at])
+    return builder.gep(first_of(context, builder, table, args[0]), [at])
 
 
 @register(operator.getitem, element_type, INDEXED)
@@ -157,23 +108,6 @@ def _set_item(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     value = context.cast(builder, args[2], sig.args[2], sig.args[0].content.dtype)
     builder.store(value, address_of_item(context, builder, sig, args))
     return context.get_dummy_value()
-
-
-def register_by_reference(function: Any, result: Result, generate: Any) -> None:
-    """Let an operation whose first argument is an array take a reference to one."""
-
-    def result_by_reference(table: Any, *others: Any) -> types.Type | None:
-        return result(table.content, *others) if is_array(table) else None
-
-    @register(function, result_by_reference, [(Reference, types.Any), (Reference, types.Any, types.Any)])
-    def _generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-        kind = sig.args[0].content
-        array = builder.load(builder.bitcast(args[0], context.get_value_type(kind).as_pointer()))
-        return generate(context, builder, signature(sig.return_type, kind, *sig.args[1:]), [array, *args[1:]])
-
-
-register_by_reference(lanes.load, memory.load_type, memory.load)
-register_by_reference(lanes.gather, memory.gather_type, memory.gather)
 
 
 # The loop over the kinds of shapes, unrolled at compile time.

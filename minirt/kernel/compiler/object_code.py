@@ -11,24 +11,26 @@ from collections.abc import Callable
 from importlib import import_module
 from operator import attrgetter
 from pkgutil import iter_modules
+from types import FunctionType
 from typing import Any
 
 from llvmlite import ir
 from numba import cfunc, from_dtype, types
+from numba.core import cgutils
 from numba.core.typing import signature
 from numba.extending import intrinsic, overload
 
 from minirt import kernel, lanes, shapes
 from minirt.kernel import scene_arrays, shading, trace
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
-from minirt.kernel.compiler.by_reference import Reference
-from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of, machine_code
+from minirt.kernel.compiler.by_reference import item_of, item_type
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.kernel.shadow_rays import unoccluded_batched, unoccluded_by_kind, unoccluded_one_by_one
+from minirt.lanes.compiled.memory import ADDRESS, Reference
 from minirt.lanes.compiled.types import REGISTERED
 
-C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
 SCALARS = {"int": types.int64, "float": types.float64}
 
 
@@ -77,17 +79,31 @@ def type_of(signature: Signature) -> Any:
 def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
     """Return the object code of a function, "module:name", for arguments of these signatures."""
     module, name = function.split(":")
-    called = getattr(import_module(module), name)
+    compiled, results = compiled_entry(getattr(import_module(module), name), signatures)
+    return ObjectCode(compiled.native_name, results, compiled._library._get_compiled_object())
+
+
+def compiled_entry(called: FunctionType, signatures: list[Signature]) -> tuple[Any, int]:
+    """Compile a function for arguments of these signatures.
+
+    Return numba's C function that calls it, and the number of integers that it returns. It takes tuples and arrays by
+    reference, see `minirt.kernel.compiler.by_reference`."""
     inline(called)
     kinds = types.Tuple([type_of(each) for each in signatures])
     results: list[Any] = []  # types of the integers that the function returns, known when it has been compiled
 
     @intrinsic  # type: ignore[untyped-decorator]
     def arguments_at(_typing: Any, address: Any) -> Any:
-        def load(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
-            return builder.load(builder.bitcast(args[0], context.get_value_type(kinds).as_pointer()))
+        whole = Reference(kinds)
 
-        return signature(kinds, address), load
+        def load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+            # A copy on the stack, which nothing else can change, is read once, as if its parts were local variables.
+            words = builder.load(builder.bitcast(args[0], context.get_value_type(kinds).as_pointer()))
+            copy = builder.bitcast(cgutils.alloca_once_value(builder, words), ADDRESS)
+            parts = [item_of(context, builder, whole, copy, position) for position in range(len(kinds))]
+            return context.make_tuple(builder, sig.return_type, parts)
+
+        return signature(types.Tuple([item_type(whole, position) for position in range(len(kinds))]), address), load
 
     @intrinsic  # type: ignore[untyped-decorator]
     def store_result(_typing: Any, address: Any, result: Any) -> Any:
@@ -107,5 +123,4 @@ def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
     def entry(address: Any) -> None:
         store_result(address, called(*arguments_at(address)))
 
-    compiled = cfunc(types.void(types.voidptr), **C_FLAGS)(entry)
-    return ObjectCode(compiled.native_name, len(results), machine_code(compiled))
+    return cfunc(types.void(types.voidptr), **FLAGS)(entry), len(results)

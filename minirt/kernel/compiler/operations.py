@@ -10,11 +10,12 @@ from numba import types
 from numba.core import cgutils
 
 from minirt.kernel import bvh_nodes, bvh_traversal, scene_arrays
-from minirt.kernel.compiler.by_reference import Reference, data, length, register_by_reference
+from minirt.kernel.compiler.by_reference import length
 from minirt.kernel.pixels import OPAQUE, PACKET_HEIGHT, fetch_add, store_block
 from minirt.kernel.shading import whitted
 from minirt.lanes.compiled import memory
-from minirt.lanes.compiled.types import Lanes, Mask, VecType, common, constant, register, splat, vec_of
+from minirt.lanes.compiled.memory import address, array_of, first_of
+from minirt.lanes.compiled.types import Lanes, VecType, common, constant, register, splat, vec_of
 
 PIXEL = ir.IntType(32)
 INTEGER = ir.IntType(64)
@@ -30,24 +31,17 @@ CACHE_LINE = 64  # bytes; aligned to it, no load of lanes touches two lines
 
 def packed_type(array: Any, number: Any, dimensions: int) -> Any:
     """Return the NamedTuple of a kind for its record array: fields of so many dimensions are Vecs of such numbers."""
-    fields = array.dtype.fields
+    fields = array_of(array).dtype.fields  # type: ignore[union-attr]
     is_vec = [len(getattr(each.type, "shape", ())) == dimensions for each in fields.values()]
     return types.NamedTuple(
         [VecType(number) if each else number for each in is_vec], scene_arrays.kind_of(fields).packed
     )
 
 
-def number_type(array: Any) -> Any:
-    """Return the type of the numbers in the fields of a record array; all are the same."""
-    kind = next(iter(array.dtype.fields.values())).type
-    return common(getattr(kind, "dtype", kind))
-
-
-def address_of_row(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    """Return the address of the first number of a row or a block."""
-    array = context.make_array(sig.args[0])(context, builder, value=args[0])
-    place = builder.gep(array.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
-    return builder.bitcast(place, context.get_value_type(number_type(sig.args[0])).as_pointer())
+def row_type(array: Any, i: Any) -> Any:
+    """Return the type of the packed shape in a row; the numbers in all fields of a row are of one type."""
+    kind = next(iter(array_of(array).dtype.fields.values())).type  # type: ignore[union-attr]
+    return packed_type(array, common(getattr(kind, "dtype", kind)), 1)
 
 
 def load_packed(context: Any, builder: ir.IRBuilder, kind: Any, first: Any, stride: int = 1, align: Any = None) -> Any:
@@ -60,88 +54,69 @@ def load_packed(context: Any, builder: ir.IRBuilder, kind: Any, first: Any, stri
     return context.make_tuple(builder, kind, parts)
 
 
-def row_type(array: Any, i: Any) -> Any:
-    """Return the type of the packed shape in a row."""
-    return packed_type(array, number_type(array), 1) if isinstance(array, types.Array) else None
+def number_of(kind: Any) -> Any:
+    """Return the type of the numbers of a packed shape."""
+    return getattr(kind[0], "number", kind[0])
 
 
-@register(scene_arrays.read, row_type, [(types.Array, types.Integer)])
+@register(scene_arrays.read, row_type)
 def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return load_packed(context, builder, sig.return_type, address_of_row(context, builder, sig, args))
+    number = context.get_value_type(number_of(sig.return_type))
+    return load_packed(context, builder, sig.return_type, address(context, builder, sig.args, args, number))
 
 
+@register(bvh_traversal.read_block, lambda blocks, i: packed_type(blocks, LANES, 2))
 def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    first = builder.bitcast(address_of_row(context, builder, sig, args), LANES_IR.as_pointer())
+    first = address(context, builder, sig.args, args, LANES_IR)
     return load_packed(context, builder, sig.return_type, first, align=8)
 
 
+@register(bvh_traversal.read_one, lambda blocks, i, lane: packed_type(blocks, types.float64, 2))
 def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    first = builder.gep(address_of_row(context, builder, sig, args), [args[2]])
+    first = builder.gep(address(context, builder, sig.args, args, ir.DoubleType()), [args[2]])
     return load_packed(context, builder, sig.return_type, first, LANES.count)
-
-
-register_by_reference(scene_arrays.read, row_type, _read)
-register_by_reference(bvh_traversal.read_block, lambda blocks, i: packed_type(blocks, LANES, 2), _read_block)
-register_by_reference(bvh_traversal.read_one, lambda blocks, i, lane: packed_type(blocks, types.float64, 2), _read_one)
 
 
 # BVH traversal: memory on the stack, and node references in the bits of distances.
 
 
-@register(bvh_nodes.packet_memory, lambda: MEMORY, [()])
+@register(bvh_nodes.packet_memory, lambda: MEMORY)
 def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     memory = cgutils.alloca_once(builder, ir.DoubleType(), size=bvh_nodes.MEMORY)
     memory.align = CACHE_LINE
     return memory
 
 
-@register(whitted.ray_stack, lambda: MEMORY, [()])
+@register(whitted.ray_stack, lambda: MEMORY)
 def _ray_stack(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.STACK_SIZE)
 
 
-def address_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any, kind: ir.Type) -> Any:
-    """Return the address of a value of some LLVM type that begins at an index of a memory."""
-    place = builder.gep(args[0], [context.cast(builder, args[1], sig.args[1], types.intp)])
-    return builder.bitcast(place, kind.as_pointer())
-
-
-@register(bvh_nodes.put, lambda memory, at, x: types.none, [(types.CPointer, types.Integer, Lanes)])
-def _put(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    builder.store(args[2], address_at(context, builder, sig, args, LANES_IR), align=8)
-    return context.get_dummy_value()
-
-
-@register(bvh_nodes.integer_at, lambda memory, at: types.int64, [(types.CPointer, types.Integer)])
-def _integer_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.load(address_at(context, builder, sig, args, INTEGER))
-
-
-@register(bvh_nodes.put_integer, lambda memory, at, n: types.none, [(types.CPointer, types.Integer, types.Integer)])
+@register(bvh_nodes.put_integer, lambda memory, at, n: types.none)
 def _put_integer(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     value = context.cast(builder, args[2], sig.args[2], types.int64)
-    builder.store(value, address_at(context, builder, sig, args, INTEGER))
+    builder.store(value, address(context, builder, sig.args, args, INTEGER))
     return context.get_dummy_value()
 
 
-@register(bvh_nodes.tag, lambda distance, references: LANES, [(Lanes, Lanes)])
+@register(bvh_nodes.tag, lambda distance, references: LANES)
 def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     distance, references = (builder.bitcast(each, INTEGERS) for each in args)
     high = builder.and_(distance, constant(distance, ~bvh_nodes.REFERENCE_BITS))
     return builder.bitcast(builder.or_(high, references), LANES_IR)
 
 
-@register(bvh_nodes.reference_of, lambda tagged: types.int64 if tagged == types.float64 else None, [(types.Float,)])
+@register(bvh_nodes.reference_of, lambda tagged: types.int64 if tagged == types.float64 else None)
 def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.sext(builder.trunc(builder.bitcast(args[0], INTEGER), ir.IntType(32)), INTEGER)
 
 
-@register(bvh_nodes.bits, lambda mask: types.int64, [(Mask,)])
+@register(bvh_nodes.bits, lambda mask: types.int64)
 def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.zext(memory.bits(builder, args[0]), INTEGER)
 
 
-@register(bvh_nodes.least_lane, lambda x: types.float64, [(Lanes,)])
+@register(bvh_nodes.least_lane, lambda x: types.float64)
 def _least_lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     kind = ir.FunctionType(INTEGER, [INTEGERS])
     name = f"llvm.vector.reduce.smin.v{LANES.count}i64"
@@ -152,11 +127,10 @@ def _least_lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
 # The frame loop: take the next row of tiles, store a packet of pixels.
 
 
-@register(fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
+@register(fetch_add, lambda counter, amount: types.int64)
 def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    counter = context.make_array(sig.args[0])(context, builder, value=args[0])
-    amount = context.cast(builder, args[1], sig.args[1], types.int64)
-    return builder.atomic_rmw("add", counter.data, amount, "monotonic")
+    counter = first_of(context, builder, sig.args[0], args[0])
+    return builder.atomic_rmw("add", counter, context.cast(builder, args[1], sig.args[1], types.int64), "monotonic")
 
 
 def no_result(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
@@ -164,9 +138,9 @@ def no_result(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
     return types.none if all(isinstance(each, Lanes) for each in levels) else None
 
 
-@register(store_block, no_result, [(Reference, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
+@register(store_block, no_result)
 def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    pixels = data(context, builder, sig.args[0], args[0])
+    pixels = first_of(context, builder, sig.args[0], args[0])
     x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
     width = length(context, builder, sig.args[0], args[0], 1)
     count = sig.args[3].count

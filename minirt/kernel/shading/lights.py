@@ -15,6 +15,7 @@ from minirt.lanes import (
     dot,
     inverse_root,
     load,
+    load_vec,
     maximum,
     minimum,
     save,
@@ -75,11 +76,9 @@ KEPT = 4  # column of the last row of `memory` from which the points in the disc
 
 def sampled_eye(scene: SceneArrays, rays: Any) -> Vec:
     """Return the eye of each ray of a packet: a point of the lens."""
-    like, count = load(rays, 0), width(rays)
-    eye = Vec(splat(scene.camera[0], like), splat(scene.camera[1], like), splat(scene.camera[2], like))
+    eye = splat(Vec(scene.camera[0], scene.camera[1], scene.camera[2]), load(rays, 0))
     if has_rows(scene.lens):
-        first = EYE * count
-        eye = eye + Vec(load(rays, first), load(rays, first + count), load(rays, first + 2 * count))
+        eye = eye + load_vec(rays, EYE * width(rays))
     return eye
 
 
@@ -99,7 +98,7 @@ def sampled_position(
     Given are those of its centre. `soft` (m, 4) has for each light: its radius; the tangent of half its angular
     diameter, for parallel light; and cosine and sine of the angle by which it turns the disc.
     """
-    position = Vec(splat(position.x, distance), splat(position.y, distance), splat(position.z, distance))
+    position = splat(position, distance)
     if has_rows(soft):
         row = memory[memory.shape[0] - 1]
         x, y = load(row, KEPT), load(row, KEPT + width(distance))

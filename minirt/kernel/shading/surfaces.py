@@ -96,7 +96,7 @@ def rate_behind(rate: Number, change: Number, leaves: Mask) -> Number:
 
 def filter_of(media: Any, index: int, like: Number) -> Vec:
     """Return the shares of light that the surface of a shape lets through, the same for all rays."""
-    return Vec(splat(media[index, 3], like), splat(media[index, 4], like), splat(media[index, 5], like))
+    return splat(Vec(media[index, 3], media[index, 4], media[index, 5]), like)
 
 
 def brightest(light: Vec) -> Number:
@@ -188,7 +188,7 @@ def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction:
     if scene.fresnel is not None and has_rows(scene.fresnel):
         fresnel = splat(scene.fresnel[index], point.x)
     if scene.fades is not None and has_rows(scene.fades):
-        fades = Vec(splat(scene.fades[index, 0], point.x), splat(scene.fades[index, 1], point.x), zero)
+        fades = splat(Vec(scene.fades[index, 0], scene.fades[index, 1], 0.0), point.x)
     if scene.media is not None and has_rows(scene.media):
         absorption, through = row_of(scene.media, index, point.x), filter_of(scene.media, index, point.x)
     return Surface(
@@ -203,14 +203,14 @@ def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[
     if number == group.number:
         shape = read(group.rows, i)
         on, out = surface(shape, point)
-        normal = Vec(splat(out.x, point.x), splat(out.y, point.x), splat(out.z, point.x))
+        normal = splat(out, point.x)
         shading_normal = shading(shape, on, normal)
     return on, normal, shading_normal
 
 
 def row_of(table: Any, index: int, like: Number) -> Vec:
     """Return the first three numbers of a row of a table, the same for all rays."""
-    return Vec(splat(table[index, 0], like), splat(table[index, 1], like), splat(table[index, 2], like))
+    return splat(Vec(table[index, 0], table[index, 1], table[index, 2]), like)
 
 
 def tint(light: Vec, colour: Vec) -> Vec:

@@ -124,8 +124,8 @@ def mapping_of_kind(group: Group, state: Mapped, arguments: tuple[int, int, Vec,
     number, i, point, normal = arguments
     if number == group.number:
         u, v, dp_du, dp_dv = mapping(read(group.rows, i), point, normal)
-        along_u = Vec(splat(dp_du.x, point.x), splat(dp_du.y, point.x), splat(dp_du.z, point.x))
-        along_v = Vec(splat(dp_dv.x, point.x), splat(dp_dv.y, point.x), splat(dp_dv.z, point.x))
+        along_u = splat(dp_du, point.x)
+        along_v = splat(dp_dv, point.x)
     return u, v, along_u, along_v
 
 

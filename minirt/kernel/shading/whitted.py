@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel import bvh_traversal
-from minirt.kernel.bvh_nodes import put, put_vec
 from minirt.kernel.scene_arrays import SceneArrays, has_rows
 from minirt.kernel.shading.shade import direct_light, own_share
 from minirt.kernel.shading.surfaces import (
@@ -40,8 +39,11 @@ from minirt.lanes import (
     dot,
     lane,
     load,
+    load_vec,
     maximum,
     rarely,
+    save,
+    save_vec,
     splat,
     sqrt,
     unit,
@@ -76,15 +78,15 @@ def push_rays(scene: SceneArrays, stack: Any, waiting: int, ray: Ray, level: int
     """Push a packet of rays, one level deeper, onto the stack, and return the new number of packets on it."""
     count = width(ray.weight)
     at = waiting * RAY_ROWS * count
-    put_vec(stack, at, ray.origin)
-    put_vec(stack, at + DIRECTION * count, ray.direction)
-    put(stack, at + WEIGHT * count, ray.weight)
-    put(stack, at + LEVEL * count, splat(level + 1.0, ray.weight))
+    save_vec(ray.origin, stack, at)
+    save_vec(ray.direction, stack, at + DIRECTION * count)
+    save(ray.weight, stack, at + WEIGHT * count)
+    save(splat(level + 1.0, ray.weight), stack, at + LEVEL * count)
     if scene.fades is not None:
-        put(stack, at + FADE * count, ray.fade)
+        save(ray.fade, stack, at + FADE * count)
     if scene.media is not None:
-        put_vec(stack, at + COLOUR * count, ray.colour)
-        put_vec(stack, at + MEDIUM * count, ray.medium)
+        save_vec(ray.colour, stack, at + COLOUR * count)
+        save_vec(ray.medium, stack, at + MEDIUM * count)
     return waiting + 1
 
 
@@ -97,15 +99,10 @@ def load_rays(scene: SceneArrays, stack: Any, number: int, zero: Number) -> tupl
     if scene.fades is not None:
         fade = load(stack, at + FADE * count)
     if scene.media is not None:
-        colour, medium = load_vec(stack, at + COLOUR * count, count), load_vec(stack, at + MEDIUM * count, count)
-    origin, direction = load_vec(stack, at, count), load_vec(stack, at + DIRECTION * count, count)
+        colour, medium = load_vec(stack, at + COLOUR * count), load_vec(stack, at + MEDIUM * count)
+    origin, direction = load_vec(stack, at), load_vec(stack, at + DIRECTION * count)
     level = int(lane(load(stack, at + LEVEL * count), 0))
     return Ray(origin, direction, load(stack, at + WEIGHT * count), fade, colour, medium), level
-
-
-def load_vec(stack: Any, at: int, count: int) -> Vec:
-    """Load vectors, of which there are `count`, from index `at` of the stack."""
-    return Vec(load(stack, at), load(stack, at + count), load(stack, at + 2 * count))
 
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from llvmlite import ir
@@ -12,29 +13,28 @@ from numba import types
 from numba.core import cgutils, config
 
 from minirt import lanes
+from minirt.lanes.compiled.operators import add, multiply
 from minirt.lanes.compiled.types import (
-    ANY,
+    I32,
     Lanes,
     Mask,
     VecType,
-    common,
     constant,
+    elementwise_type,
     is_number,
     llvm,
-    one_number,
+    number_type,
+    on_each,
     register,
-    same_numbers,
+    register_elementwise,
     single,
-    two_numbers,
     vec_of,
     vec_parts,
     widen,
 )
 
-# By the size of a number in bits: the bits of its fraction, and what is added to its exponent before it is stored.
-FRACTION_BITS = {64: 52, 32: 23}
-BIAS = {64: 1023, 32: 127}
-ROUNDOFF = {64: 2.0**-53, 32: 2.0**-24}  # unit roundoff
+# Of a number: the type of its bits, the bits of its fraction, and what is added to its exponent before it is stored.
+LAYOUTS = {ir.DoubleType(): (ir.IntType(64), 52, 1023), ir.FloatType(): (ir.IntType(32), 23, 127)}
 # 1 / sqrt(x). Normalising a vector takes a square root and a division, and both wait for the one divider of a processor
 # core. AVX-512 also has an instruction that estimates 1 / sqrt(x) to 14 bits (rsqrt14). With e = 1 - x y^2 for the
 # estimate y, the result is y / sqrt(1 - e): its binomial series y (1 + e/2 + 3/8 e^2 + 5/16 e^3 + ...) is summed until
@@ -53,7 +53,7 @@ def has_estimate() -> bool:
         return False
 
 
-def inverse_root(context: Any, builder: ir.IRBuilder, x: Any) -> Any:
+def inverse_root(builder: ir.IRBuilder, x: Any) -> Any:
     """Return 1 / sqrt(x) for positive normal numbers x."""
     if not isinstance(x.type, ir.VectorType) or not has_estimate():
         return builder.fdiv(constant(x, 1.0), llvm(builder, "sqrt", x))
@@ -77,156 +77,160 @@ def estimate(builder: ir.IRBuilder, x: Any) -> Any:
         ir.FunctionType(register, [register, register, bits]),
         f"llvm.x86.avx512.rsqrt14.{'pd' if double else 'ps'}.512",
     )
-    parts = [pick(builder, x, range(start, start + lanes)) for start in range(0, x.type.count, lanes)]
+    parts = [shuffle(builder, x, x, range(start, start + lanes)) for start in range(0, x.type.count, lanes)]
     results = [builder.call(function, [part, part, ir.Constant(bits, -1)]) for part in parts]
     while len(results) > 1:
-        results = [join(builder, *pair) for pair in zip(results[::2], results[1::2], strict=True)]
+        pairs = zip(results[::2], results[1::2], strict=True)
+        results = [shuffle(builder, a, b, range(2 * a.type.count)) for a, b in pairs]
     return results[0]
 
 
-def pick(builder: ir.IRBuilder, x: Any, lanes: range) -> Any:
-    """Return some lanes of a vector."""
-    return builder.shuffle_vector(x, x, lane_indices(lanes))
+def shuffle(builder: ir.IRBuilder, a: Any, b: Any, lanes: range) -> Any:
+    """Return some lanes of a, followed by b."""
+    return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(I32, len(lanes)), list(lanes)))
 
 
-def join(builder: ir.IRBuilder, a: Any, b: Any) -> Any:
-    """Return the lanes of a and after them the lanes of b."""
-    return builder.shuffle_vector(a, b, lane_indices(range(2 * a.type.count)))
+def select_if(symbol: str, builder: ir.IRBuilder, a: Any, b: Any) -> Any:
+    """Return a if it compares so with b, and b if not."""
+    return builder.select(builder.fcmp_ordered(symbol, a, b), a, b)
 
 
-def lane_indices(lanes: range) -> ir.Constant:
-    """Return the indices of lanes as an LLVM vector, for a shuffle."""
-    return ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), list(lanes))
-
-
-def register_intrinsic(function: Callable[..., Any], name: str, arguments: int) -> None:
-    """Register an operation that is one LLVM intrinsic."""
-
-    @register(function, one_number if arguments == 1 else two_numbers, [(ANY,) * arguments])
-    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-        return llvm(builder, name, *same_numbers(context, builder, sig, args))
-
-
-def register_selection(function: Callable[..., Any], symbol: str) -> None:
-    """Register an operation that selects a number if it compares so with another, and that other if not."""
-
-    @register(function, two_numbers, [(ANY, ANY)])
-    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-        a, b = same_numbers(context, builder, sig, args)
-        return builder.select(builder.fcmp_ordered(symbol, a, b), a, b)
-
-
-register_intrinsic(lanes.sqrt, "sqrt", 1)
-register_intrinsic(lanes.fabs, "fabs", 1)
-register_intrinsic(lanes.floor, "floor", 1)
-register_intrinsic(lanes.copysign, "copysign", 2)
-register_selection(lanes.minimum, "<")
-register_selection(lanes.maximum, ">")
-
-
-@register(lanes.inverse_root, one_number, [(ANY,)])
-def _inverse_root(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return inverse_root(context, builder, *same_numbers(context, builder, sig, args))
-
-
-def where_type(mask: types.Type, a: types.Type, b: types.Type) -> types.Type | None:
-    """Return the type of `where`: lanes if one of its arguments has lanes."""
-    if isinstance(a, VecType) and isinstance(b, VecType):
-        return VecType(where_type(mask, a.number, b.number))
-    if is_number(a) and is_number(b):
-        return mask.lanes if isinstance(mask, Mask) else common(a, b)
-    return None
-
-
-@register(lanes.where, where_type, [(ANY, ANY, ANY)])
-def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    mask, a, b = args
-    if isinstance(sig.return_type, VecType):
-        number = sig.return_type.number
-        parts = [
-            builder.select(
-                mask,
-                *(
-                    widen(context, builder, part, kind.number, number)
-                    for part, kind in zip(pair, sig.args[1:], strict=True)
-                ),
-            )
-            for pair in zip(vec_parts(builder, a), vec_parts(builder, b), strict=True)
-        ]
-        return vec_of(context, builder, sig.return_type, parts)
-    return builder.select(
-        mask,
-        *(
-            widen(context, builder, value, kind, sig.return_type)
-            for value, kind in zip((a, b), sig.args[1:], strict=True)
-        ),
-    )
-
-
-@register(lanes.width, lambda x: types.int64 if isinstance(x, (Lanes, types.Array)) else None, [(ANY,)])
-def _width(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    kind = sig.args[0]
-    return context.get_constant(types.int64, (Lanes(kind.dtype) if isinstance(kind, types.Array) else kind).count)
-
-
-@register(
-    lanes.lane,
-    lambda x, ray: x.number if isinstance(x, Lanes) and isinstance(ray, types.Integer) else None,
-    [(Lanes, types.Integer)],
-)
-def _lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.extract_element(args[0], context.cast(builder, args[1], sig.args[1], types.int32))
-
-
-def second_type(x: types.Type, like: types.Type) -> types.Type | None:
-    """Return the type of the second argument: lanes, or a single number."""
-    return like if is_number(x) and isinstance(like, (Lanes, types.Float)) else None
-
-
-@register(lanes.splat, second_type, [(ANY, ANY)])
-def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return widen(context, builder, args[0], sig.args[0], sig.return_type)
-
-
-def integer_layout(number: types.Float, like: Any) -> tuple[ir.Type, int, int]:
-    """Return the LLVM type of the bits of `like`, of numbers of a type, and their count of fraction bits and bias."""
-    integer = ir.IntType(number.bitwidth)
-    is_vector = isinstance(like.type, ir.VectorType)
-    kind = ir.VectorType(integer, like.type.count) if is_vector else integer
-    return kind, FRACTION_BITS[number.bitwidth], BIAS[number.bitwidth]
-
-
-@register(lanes.exponent, one_number, [(ANY,)])
-def _exponent(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    (x,) = same_numbers(context, builder, sig, args)
-    integers, fraction, bias = integer_layout(single(sig.return_type), x)
+def exponent(builder: ir.IRBuilder, x: Any) -> Any:
+    """Return the greatest whole number e with 2^e <= x."""
+    integers, fraction, bias = layout(x)
     stored = builder.bitcast(x, integers)
     stored = builder.lshr(stored, constant(stored, fraction))
     return builder.sitofp(builder.sub(stored, constant(stored, bias)), x.type)
 
 
-@register(lanes.two_to, one_number, [(ANY,)])
-def _two_to(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    (x,) = same_numbers(context, builder, sig, args)
-    integers, fraction, bias = integer_layout(single(sig.return_type), x)
-    bounded = llvm(builder, "maxnum", x, constant(x, float(-bias)))
-    whole = builder.fptosi(bounded, integers)
+def two_to(builder: ir.IRBuilder, x: Any) -> Any:
+    """Return 2^x for a whole number x."""
+    integers, fraction, bias = layout(x)
+    whole = builder.fptosi(llvm(builder, "maxnum", x, constant(x, float(-bias))), integers)
     stored = builder.shl(builder.add(whole, constant(whole, bias)), constant(whole, fraction))
     return builder.bitcast(stored, x.type)
 
 
-@register(lanes.unit_roundoff, single, [(ANY,)])
-def _unit_roundoff(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return context.get_constant(sig.return_type, ROUNDOFF[sig.return_type.bitwidth])
+def layout(x: Any) -> tuple[ir.Type, int, int]:
+    """Return the type of the bits of numbers, and their count of fraction bits and bias."""
+    is_vector = isinstance(x.type, ir.VectorType)
+    integer, fraction, bias = LAYOUTS[x.type.element if is_vector else x.type]
+    return (ir.VectorType(integer, x.type.count) if is_vector else integer), fraction, bias
 
 
-@register(lanes.rounded_product, two_numbers, [(ANY, ANY)])
-def _rounded_product(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    # Without the fence the flags of the kernel allow fusing the product with a sum that follows.
-    return llvm(builder, "arithmetic.fence", builder.fmul(*same_numbers(context, builder, sig, args)))
+def rounded_product(builder: ir.IRBuilder, a: Any, b: Any) -> Any:
+    """Return a b. Without the fence the flags of the kernel allow fusing the product with a sum that follows."""
+    return llvm(builder, "arithmetic.fence", builder.fmul(a, b))
 
 
-@register(lanes.product_error, two_numbers, [(ANY, ANY)])
-def _product_error(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    a, b = same_numbers(context, builder, sig, args)
+def product_error(builder: ir.IRBuilder, a: Any, b: Any) -> Any:
+    """Return the rounding error of a b."""
     return llvm(builder, "fma", a, b, builder.fneg(builder.fmul(a, b)))
+
+
+def intrinsic(name: str) -> Callable[..., Any]:
+    """Return what emits an LLVM intrinsic."""
+    return lambda builder, *numbers: llvm(builder, name, *numbers)
+
+
+for _operation, _emit in (
+    (lanes.sqrt, intrinsic("sqrt")),
+    (lanes.fabs, intrinsic("fabs")),
+    (lanes.floor, intrinsic("floor")),
+    (lanes.copysign, intrinsic("copysign")),
+    (lanes.minimum, partial(select_if, "<")),
+    (lanes.maximum, partial(select_if, ">")),
+    (lanes.inverse_root, inverse_root),
+    (lanes.exponent, exponent),
+    (lanes.two_to, two_to),
+    (lanes.rounded_product, rounded_product),
+    (lanes.product_error, product_error),
+):
+    register_elementwise(_operation, _emit, result=number_type)
+
+
+def where_type(mask: types.Type, a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of `where`: lanes if one of its arguments has lanes."""
+    return elementwise_type(a, b, *([mask.lanes] if isinstance(mask, Mask) else []))
+
+
+@register(lanes.where, where_type)
+def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return on_each(context, builder, sig.return_type, sig.args[1:], args[1:], partial(builder.select, args[0]))
+
+
+def splat_type(x: types.Type, like: types.Type) -> types.Type | None:
+    """Return the type of `splat`: that of its second argument, or a Vec of it."""
+    if not isinstance(like, (Lanes, types.Float)):
+        return None
+    return VecType(like) if isinstance(x, VecType) else like if is_number(x) else None
+
+
+@register(lanes.splat, splat_type)
+def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return on_each(context, builder, sig.return_type, sig.args[:1], args[:1], lambda x: x)
+
+
+@register(lanes.lane, lambda x, ray: x.number if isinstance(x, Lanes) and isinstance(ray, types.Integer) else None)
+def _lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.extract_element(args[0], context.cast(builder, args[1], sig.args[1], types.int32))
+
+
+@register(lanes.unit_roundoff, single)
+def _unit_roundoff(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return context.get_constant(sig.return_type, 2.0 ** {64: -53, 32: -24}[sig.return_type.bitwidth])
+
+
+# Vecs.
+
+
+def vec_type(*kinds: types.Type) -> types.Type | None:
+    """Return the type of a Vec of three numbers."""
+    number = number_type(*kinds)
+    return number and VecType(number)
+
+
+@register(lanes.Vec, vec_type)
+def _vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    number = sig.return_type.number
+    parts = [widen(context, builder, *each, number) for each in zip(args, sig.args, strict=True)]
+    return vec_of(context, builder, sig.return_type, parts)
+
+
+def quotient_type(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of a Vec divided by a number."""
+    return elementwise_type(a, b) if isinstance(a, VecType) and is_number(b) else None
+
+
+@register(operator.truediv, quotient_type, [(VecType, types.Any)])
+def _divide(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    divisor = widen(context, builder, args[1], sig.args[1], sig.return_type.number)
+    inverse = builder.fdiv(constant(divisor, 1.0), divisor)
+    return on_each(context, builder, sig.return_type, sig.args[:1], args[:1], lambda part: builder.fmul(part, inverse))
+
+
+def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
+    """Return the sum of the products of three components."""
+    x, y, z = (multiply(builder, *pair) for pair in zip(a, b, strict=True))
+    return add(builder, z, add(builder, x, y))
+
+
+def dot_type(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of the scalar product of two Vecs."""
+    return number_type(a.number, b.number) if isinstance(a, VecType) and isinstance(b, VecType) else None
+
+
+@register(lanes.dot, dot_type)
+def _dot(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    a, b = (
+        [widen(context, builder, part, kind.number, sig.return_type) for part in vec_parts(builder, value)]
+        for value, kind in zip(args, sig.args, strict=True)
+    )
+    return scalar_product(builder, a, b)
+
+
+@register(lanes.unit, lambda a: a if isinstance(a, VecType) else None)
+def _unit(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    parts = vec_parts(builder, args[0])
+    factor = inverse_root(builder, scalar_product(builder, parts, parts))
+    return vec_of(context, builder, sig.return_type, [builder.fmul(part, factor) for part in parts])

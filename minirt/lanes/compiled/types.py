@@ -9,6 +9,7 @@ beside a vector is first copied to all of its lanes. A Vec is three numbers, eac
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any
 
 from llvmlite import ir
@@ -46,7 +47,7 @@ class VecType(types.Type):
         super().__init__(f"Vec({number})")
 
 
-ANY = types.Any
+ANYTHING = ((types.VarArg(types.Any),),)  # the pattern of arguments of any types
 Result = Callable[..., types.Type | None]  # result type for argument types; None: the operation does not take them
 REGISTERED: set[Any] = set()  # functions with a compiled form of their own
 I32 = ir.IntType(32)
@@ -143,7 +144,9 @@ def vec_of(context: Any, builder: ir.IRBuilder, kind: VecType, parts: list[Any])
     return vec
 
 
-def register(function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]]) -> Callable[..., Any]:
+def register(
+    function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]] = ANYTHING
+) -> Callable[..., Any]:
     """Decorator: compile `function`, on arguments that match one of `patterns`, to the code that a generator emits."""
 
     def generic(self: Any, args: Any, kws: Any) -> Any:
@@ -162,22 +165,47 @@ def register(function: Callable[..., Any], result: Result, patterns: Iterable[tu
     return decorate
 
 
-def same_numbers(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> list[Any]:
-    """Return the arguments, all as single numbers or all as lanes."""
-    target = common(*sig.args)
-    return [widen(context, builder, value, kind, target) for value, kind in zip(args, sig.args, strict=True)]
-
-
-def one_number(kind: types.Type) -> types.Type | None:
-    """Return the type of an operation on one number: that of the number."""
-    return common(kind) if is_number(kind) else None
-
-
-def two_numbers(a: types.Type, b: types.Type) -> types.Type | None:
-    """Return the type of an operation on two numbers: lanes if one of them is lanes."""
-    return common(a, b) if is_number(a) and is_number(b) else None
+def number_type(*kinds: types.Type) -> types.Type | None:
+    """Return the type of an operation on numbers: lanes if one of them is lanes."""
+    return common(*kinds) if all(map(is_number, kinds)) else None
 
 
 def single(x: types.Type) -> types.Type | None:
     """Return the type of one lane of x, or of x itself where that is a single number."""
     return getattr(common(x), "number", common(x)) if is_number(x) else None
+
+
+def elementwise_type(*kinds: types.Type) -> types.Type | None:
+    """Return the type of an operation on numbers and Vecs: a Vec if one of them is a Vec."""
+    number = number_type(*(kind.number if isinstance(kind, VecType) else kind for kind in kinds))
+    return VecType(number) if number and any(isinstance(kind, VecType) for kind in kinds) else number
+
+
+def on_each(context: Any, builder: ir.IRBuilder, kind: types.Type, kinds: Any, values: Any, emit: Any) -> Any:
+    """Return the number or the Vec, of the type `kind`, whose components `emit` computes from those of some values.
+
+    All are converted to the type of the result; a number beside a Vec counts for each component.
+    """
+    is_vec = isinstance(kind, VecType)
+    number = kind.number if is_vec else kind
+    table = []
+    for value, each in zip(values, kinds, strict=True):
+        if isinstance(each, VecType):
+            table.append([widen(context, builder, part, each.number, number) for part in vec_parts(builder, value)])
+        else:
+            table.append([widen(context, builder, value, each, number)] * (3 if is_vec else 1))
+    parts = [emit(*column) for column in zip(*table, strict=True)]
+    return vec_of(context, builder, kind, parts) if is_vec else parts[0]
+
+
+def register_elementwise(
+    function: Callable[..., Any],
+    emit: Callable[..., Any],
+    patterns: Iterable[tuple[Any, ...]] = ANYTHING,
+    result: Result = elementwise_type,
+) -> None:
+    """Compile `function`, on numbers and on the components of Vecs, to what `emit(builder, *numbers)` emits."""
+
+    @register(function, result, patterns)
+    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+        return on_each(context, builder, sig.return_type, sig.args, args, partial(emit, builder))

@@ -7,17 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit, typeof
+from numba import typeof
 
-import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import bvh_traversal
 from minirt.kernel.bvh_nodes import WIDTH
-from minirt.kernel.compiler.pipeline import FLAGS
-from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
 from tests.kernel.bvh.test_bvh import Interpreted, brute_force, build_tree, random_rays, random_shapes, trace
+from tests.kernel.machine_code.small_kernels import as_kernel
 from tests.shapes.examples import example
 
 REGIMES: dict[str, dict[str, float]] = {
@@ -49,9 +47,8 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int) -> None:
 def shadow_queries() -> Any:
     """Return `unoccluded` for n rays of unit direction, a multiple of `WIDTH`: interpreted, and compiled."""
 
-    def run(scene: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
-        tree = by_reference(scene)
-        for i in range(0, distances.size, WIDTH):
+    def run(tree: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
+        for i in range(0, distances.shape[0], WIDTH):
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
             direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
             distance = load(distances, i)
@@ -61,7 +58,7 @@ def shadow_queries() -> Any:
             for ray in range(WIDTH):
                 visible[i + ray] = lane(answer, ray)
 
-    return run, njit(**FLAGS)(run)
+    return run, as_kernel(run)
 
 
 @pytest.mark.parametrize("implementation", [0, 1], ids=["interpreted", "compiled"])

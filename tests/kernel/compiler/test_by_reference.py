@@ -6,14 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from numba import njit
 from numba.core.errors import TypingError
 from numba.extending import register_jitable
 
 import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.pipeline import FLAGS, INLINED
-from minirt.kernel.scene_arrays import by_reference
+from minirt.kernel.compiler.pipeline import INLINED
 from minirt.kernel.trace import for_each_kind
+from tests.kernel.machine_code.small_kernels import as_kernel
 
 Array = np.ndarray[Any, Any]
 
@@ -38,12 +37,11 @@ def example() -> Outer:
 
 
 def read(outer: Any, i: int, out: Array) -> None:
-    outer = by_reference(outer)
     out[0] = outer.table[i, 3] + outer.table[2, i]
     out[1] = outer.deep[i, 2, 4]
     out[2] = outer.deep[2, i][3]  # an item of a row
     out[3] = outer.inner.line[i] * outer.inner.number
-    out[4] = outer.table.shape[0] * 100 + outer.table.shape[1] * 10 + len(outer.parts)
+    out[4] = outer.table.shape[0] * 100 + outer.table.shape[1] * 10
     out[5] = for_each_kind(weighted_sum, outer.parts, 1.0, i)
 
 
@@ -53,12 +51,10 @@ def weighted_sum(part: Inner, state: float, i: int) -> float:
 
 
 def write(table: Any, i: int) -> None:
-    table = by_reference(table)
     table[i, 2] = 41
     table[1][i] = table[i, 2] + 1
 
 
-@register_jitable(**INLINED)
 def checked(outer: Any) -> int:
     if outer.absent is not None and outer.absent[0] > 1:
         return int(outer.absent.unknown)
@@ -67,15 +63,11 @@ def checked(outer: Any) -> int:
     return 7
 
 
-def check(outer: Any) -> int:
-    return checked(by_reference(outer))
-
-
 @pytest.mark.parametrize("i", [0, 1])
 def test_fields_rows_and_numbers_are_read(i: int) -> None:
     plain, compiled = np.zeros(6), np.zeros(6)
     read(example(), i, plain)
-    njit(**FLAGS)(read)(example(), i, compiled)
+    as_kernel(read)(example(), i, compiled)
     assert np.array_equal(compiled, plain)
     assert len(set(plain.tolist())) == 6
 
@@ -84,23 +76,13 @@ def test_fields_rows_and_numbers_are_read(i: int) -> None:
 def test_numbers_are_written_into_an_array(i: int) -> None:
     plain, compiled = np.zeros((3, 4)), np.zeros((3, 4))
     write(plain, i)
-    njit(**FLAGS)(write)(compiled, i)
+    as_kernel(write)(compiled, i)
     assert np.array_equal(compiled, plain)
     assert plain[i, 2] == 41
     assert plain[1, i] == 42
 
 
-def test_arrays_that_are_not_contiguous_are_passed_by_value() -> None:
-    plain, compiled = np.zeros(6), np.zeros(6)
-    transposed = example()._replace(table=np.arange(12.0).reshape(4, 3).T)
-    read(transposed, 1, plain)
-    njit(**FLAGS)(read)(transposed, 1, compiled)
-    assert np.array_equal(compiled, plain)
-    with pytest.raises(TypingError):
-        njit(**FLAGS)(write)(transposed.table, 1)
-
-
 def test_no_code_is_compiled_for_a_field_that_is_none() -> None:
-    assert njit(**FLAGS)(check)(example()) == 7
+    assert as_kernel(checked)(example()) == 7
     with pytest.raises(TypingError):
-        njit(**FLAGS)(check)(example()._replace(absent=np.ones(1)))
+        as_kernel(checked)(example()._replace(absent=np.ones(1)))

@@ -1,27 +1,19 @@
-"""Compiler of kernels: complete code for just its scene, by the lean pipeline or numba's own, with IEEE 754's rules."""
+"""Compiler of kernels: complete code for just its scene, with IEEE 754's rules."""
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
 import platform
 import struct
 import sys
-import tomllib
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 from llvmlite import binding
-from numba import njit
 
-from minirt.kernel.compiler import pipeline
-from minirt.kernel.compiler.object_code import type_of
-from minirt.kernel.compiler.pipeline import FLAGS
+from minirt.kernel.compiler.object_code import compiled_entry
 from minirt.kernel.frame import frame
 from minirt.kernel.machine_code.arguments import signature_of
 from minirt.kernel.machine_code.cache import ObjectCode
@@ -33,79 +25,12 @@ from minirt.rendering.frame import frame_arguments
 from minirt.rendering.needed_kernels import calls_for, ray_query
 from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Scene, parse
+from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.machine_code.small_kernels import call, object_code_of
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
-from tests.paths import ROOT
-from tests.processes import run
-
-BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
-CHANGE = "from numba.core.codegen import CodeLibrary; del CodeLibrary._get_compiled_object"
-COMPILE = f"{CHANGE}; from minirt.kernel.compiler import main; main()"
-RENDER = f"""
-import sys
-from pathlib import Path
-from minirt.kernel.machine_code import cache, compile_process
-from tests.kernel.compiler.test_pipeline import fingerprints
-
-cache.SHIPPED = Path("none")
-compile_process.COMMAND = sys.executable, "-c", {COMPILE!r}
-print(*fingerprints())
-"""
-
-
-def test_the_lean_pipeline_is_used_with_all_versions_that_the_project_allows() -> None:
-    dependencies = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    assert pipeline.TESTED in dependencies
-    limit = pipeline.TESTED.rpartition("<")[2]
-    is_tested = tuple(map(int, numba.__version__.split(".")[:2])) < tuple(map(int, limit.split(".")))
-    assert not is_tested or not pipeline.FAILED
-
-
-def fingerprints() -> list[str]:
-    """Return hashes of a picture and of its light."""
-    scene, renderer = parse(BALL).scene, Renderer(threads=1)
-    pixels, light = np.zeros((60, 80, 4), np.uint8), np.zeros((60, 80, 3))
-    renderer.prepare(scene)
-    renderer.render(scene, pixels, samples=2, linear=light)
-    return [hashlib.sha256(each.tobytes()).hexdigest() for each in (pixels, light)]
-
-
-def test_numbas_own_pipeline_draws_the_same_bits_with_a_notice(tmp_path: Path) -> None:
-    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
-    ended = run([sys.executable, "-c", RENDER], env=environment, text=True)
-    assert ended.returncode == 0, ended.stderr
-    assert ended.stdout.split() == fingerprints()
-    (notice,) = ended.stderr.splitlines()
-    assert notice.startswith("notice: kernels take twice as long to compile")
-    assert "_get_compiled_object" in notice
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ("import numba.core.codegen; del numba.core.codegen.JITCodeLibrary", "cannot import name 'JITCodeLibrary'"),
-        ("import numba, sys; sys.modules['numba._dynfunc'] = None; del numba._dynfunc", "_dynfunc"),
-        ("from numba.core.base import BaseContext; del BaseContext.insert_user_function", "insert_user_function"),
-        (
-            "from numba.core.codegen import CPUCodeLibrary; del CPUCodeLibrary._get_module_for_linking",
-            "module_for_linking",
-        ),
-        ("from numba.core.compiler import Flags; del Flags.no_compile", "no_compile"),
-    ],
-)
-def test_an_interface_that_is_gone_is_told_by_its_name(change: str, reason: str) -> None:
-    program = run([sys.executable, "-c", f"{change}; import minirt.kernel.compiler.pipeline"], text=True)
-    assert program.returncode == 0, program.stderr
-    (notice,) = program.stderr.splitlines()
-    assert reason in notice
-
-
-# Object code refers to nothing outside of itself, and a kernel has no code for what its scene lacks.
-
 
 SYMBOL = struct.Struct("<IBBHQQ")  # of ELF for 64 bits: name, kind, visibility, section, value, size
 ELF = pytest.mark.skipif(
@@ -114,12 +39,12 @@ ELF = pytest.mark.skipif(
 
 
 def quotients(x: Any, y: Any) -> None:
-    for i in range(len(x)):
+    for i in range(x.shape[0]):
         y[i] = x[i] / y[i]
 
 
 def step(x: Any, n: int) -> None:
-    for i in range(0, len(x), n):
+    for i in range(0, x.shape[0], n):
         x[i] = 1.0
 
 
@@ -182,10 +107,7 @@ def scene_of(*kinds: type[Any]) -> Scene:
 def code(scene: Scene) -> str:
     """Return the LLVM code of the kernel of a scene, compiled anew: a kernel from the cache shows none."""
     arguments = frame_arguments(Packing().pack(scene, 8, 8), np.zeros((8, 8, 4), np.uint8))
-    kernel = njit(**FLAGS)(frame)
-    signature = tuple(type_of(signature_of(each)) for each in arguments)
-    kernel.compile(signature)
-    return str(kernel.inspect_llvm(signature))
+    return str(compiled_entry(frame, list(map(signature_of, arguments)))[0].inspect_llvm())
 
 
 def test_only_shapes_that_take_square_roots_add_them() -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from minirt.kernel.machine_code.arguments import signature_of
 from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import Call, Entry, Library
@@ -26,15 +27,32 @@ def square(x: Any) -> None:
 
 
 def count(x: Any) -> int:
-    return len(x) + 40
+    return x.shape[0] + 40
 
 
 def both(x: Any, n: int) -> tuple[int, int]:
-    return len(x), -n
+    return x.shape[0], -n
 
 
 def half(x: Any) -> float:
     return 0.5 * x[0]
+
+
+def as_kernel(function: Any) -> Callable[..., Any]:
+    """Return the compiled form of a function, which may be local, as kernels are compiled."""
+    entries: dict[str, Entry] = {}
+
+    def call_compiled(*arguments: Any) -> Any:
+        from minirt.kernel.compiler.object_code import compiled_entry
+
+        signatures = [signature_of(each) for each in arguments]
+        key = json.dumps(signatures)
+        if key not in entries:
+            code, results = compiled_entry(function, signatures)
+            entries[key] = Entry(code.address, results, code)
+        return entries[key](*arguments)
+
+    return call_compiled
 
 
 class Compiler(CompileProcess):

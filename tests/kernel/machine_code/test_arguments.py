@@ -34,7 +34,7 @@ def read_back(number: int, outer: Outer, factor: float, records: Any, nothing: N
     out[0], out[1] = outer.table[1, 2], outer.deep[1, 2, 3]
     out[2], out[3] = outer.inner.line[1], outer.inner.number
     out[4], out[5] = number, factor
-    out[6], out[7] = len(records), 9 + records.shape[0]
+    out[6], out[7] = records.shape[0], 9 + outer.inner.line.shape[0]
     out[8], out[9] = outer.table.shape[0], outer.deep.shape[2]
     out[10] = outer.absent is None and nothing is None
     return number
