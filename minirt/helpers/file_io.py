@@ -9,14 +9,17 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import wraps
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 
 from minirt.errors import FileError, RenderError
+from minirt.helpers.system import ForkSafeLock
 
 if sys.platform != "win32":
     import fcntl
 
+Content = TypeVar("Content")
 TEMPORARY = ".minirt-*.tmp"
 ABANDONED = 3600  # seconds without a change, after which a temporary file belongs to a killed program
 FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
@@ -177,6 +180,25 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
     check_size(path, len(data), largest)
     return data
+
+
+def read_once(read: Callable[[Path], Content]) -> Callable[[str | os.PathLike[str]], Content]:
+    """Decorate a reader of a file that a scene names: it gives the same object until the file changes. FileError."""
+    entries: dict[str, tuple[tuple[int, ...], Content]] = {}
+    lock = ForkSafeLock()
+
+    @wraps(read)
+    def cached(path: str | os.PathLike[str]) -> Content:
+        found = status(path, LARGEST_ASSET)
+        stamp = found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+        key = os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
+        with lock:
+            if key not in entries or entries[key][0] != stamp:
+                entries.pop(key, None)
+                entries[key] = stamp, read(Path(path))
+            return entries[key][1]
+
+    return cached
 
 
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:

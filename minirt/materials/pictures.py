@@ -11,14 +11,15 @@ import os
 import re
 import warnings
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from weakref import WeakValueDictionary
 
 import numpy as np
 
 from minirt.errors import FileError, printable
+from minirt.fields import PictureFile
 from minirt.helpers import file_io, system
-from minirt.helpers.system import ForkSafeLock, TooLargeError
+from minirt.helpers.system import TooLargeError
 
 SIDE = 8192  # pixels
 FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP")  # raster formats: no programs, no fonts
@@ -34,82 +35,41 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear red, gre
 DECODING = 8  # bytes of a pixel while a picture is decoded and converted
 TEXEL = 4  # bytes of a channel of a pixel in the arrays of the kernel
 
-Stamp = tuple[int, int, int, int]  # device, inode, size and time of change of a file
 Read = Callable[[Path], np.ndarray]
 
-entries: dict[tuple[Read, str], tuple[Stamp, np.ndarray]] = {}
-shared: WeakValueDictionary[tuple[Read, Stamp], np.ndarray] = WeakValueDictionary()
-lock = ForkSafeLock()
+
+def cached(read: Read) -> Callable[[str | os.PathLike[str]], np.ndarray]:
+    """Decorate a reader of a picture file: its array is read-only, and read again only if the file has changed."""
+
+    @wraps(read)
+    def checked(path: Path) -> np.ndarray:
+        try:
+            array = read(path)
+            check_textures([array])
+        except TooLargeError as error:
+            raise FileError(path, str(error)) from None
+        array.flags.writeable = False
+        return array
+
+    return file_io.read_once(checked)
 
 
-def picture(path: str | os.PathLike[str]) -> np.ndarray:
+@cached
+def picture(path: Path) -> np.ndarray:
     """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; read-only. FileError if
     unreadable."""
-    return cached(colours, path)
-
-
-def sky(path: str | os.PathLike[str]) -> np.ndarray:
-    """A picture file as a sky: as `picture`, or of a Radiance picture its light, float32 (h, w, 3); read-only."""
-    return cached(light_or_colours, path)
-
-
-def heights(path: str | os.PathLike[str]) -> np.ndarray:
-    """A picture file as a height map, float32 (h, w): its luminance from 0 to 1, with up to 16 bits; read-only."""
-    return cached(brightness, path)
-
-
-def reader(heights_wanted: bool, sky_wanted: bool) -> Read:
-    """The function that reads a picture file as a height map, as a sky, or as colours."""
-    return heights if heights_wanted else sky if sky_wanted else picture
-
-
-def identity(path: str | os.PathLike[str]) -> tuple[int, int]:
-    """The device and the inode of a picture file, which all links to it share. FileError if it cannot be read."""
-    status = file_io.status(path, file_io.LARGEST_ASSET)
-    return status.st_dev, status.st_ino
-
-
-def cached(read: Read, path: str | os.PathLike[str]) -> np.ndarray:
-    """The array that `read` makes from a file, read again only if the file has changed; one for all links to it."""
-    path = Path(path)
-    status = file_io.status(path, file_io.LARGEST_ASSET)
-    stamp = (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
-    key = read, os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
-    with lock:
-        if key not in entries or entries[key][0] != stamp:
-            entries.pop(key, None)
-            array = shared.get((read, stamp))
-            if array is None:
-                try:
-                    array = read(path)
-                    check_textures([array])
-                except TooLargeError as error:
-                    raise FileError(path, str(error)) from None
-                array.flags.writeable = False
-                shared[read, stamp] = array
-            entries[key] = stamp, array
-        return entries[key][1]
-
-
-def check_textures(arrays: list[np.ndarray]) -> None:
-    """Check that there is room for the texels of these arrays, which a kernel reads; `TooLargeError` otherwise."""
-    need = TEXEL * sum(array.size for array in arrays)
-    system.check_memory(need, "the textures need", "smaller pictures need less")
-
-
-def colours(path: Path) -> np.ndarray:
-    """Red, green and blue of a file, uint8 (h, w, 3)."""
     pixels = decode(path)
     if pixels.dtype != np.uint8:
         pixels = np.rint(pixels / 257).astype(np.uint8)
     return np.ascontiguousarray(pixels if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2))
 
 
-def light_or_colours(path: Path) -> np.ndarray:
-    """The light of a Radiance picture; red, green and blue of any other file."""
+@cached
+def sky(path: Path) -> np.ndarray:
+    """A picture file as a sky: as `picture`, or of a Radiance picture its light, float32 (h, w, 3); read-only."""
     data = file_io.read(path, file_io.LARGEST_ASSET)
     if not data.startswith(RADIANCE):
-        return colours(path)
+        return picture(path)
     from minirt.materials import radiance
 
     try:
@@ -120,13 +80,31 @@ def light_or_colours(path: Path) -> np.ndarray:
         raise FileError(path, f"is a damaged Radiance picture: {error}") from None
 
 
-def brightness(path: Path) -> np.ndarray:
-    """Luminance of a file from 0 to 1, float32 (h, w)."""
+@cached
+def heights(path: Path) -> np.ndarray:
+    """A picture file as a height map, float32 (h, w): its luminance from 0 to 1, with up to 16 bits; read-only."""
     pixels = decode(path)
     grey = pixels.astype(np.float32)
     if pixels.ndim == 3:
         grey = grey @ LUMINANCE
     return np.clip(grey / np.iinfo(pixels.dtype).max, 0, 1)
+
+
+def reader(file: PictureFile) -> Callable[[Path], np.ndarray]:
+    """The function that reads a picture file as a height map, as a sky, or as colours."""
+    return heights if file.heights else sky if file.sky else picture
+
+
+def identity(path: str | os.PathLike[str]) -> tuple[int, int]:
+    """The device and the inode of a picture file, which all links to it share. FileError if it cannot be read."""
+    status = file_io.status(path, file_io.LARGEST_ASSET)
+    return status.st_dev, status.st_ino
+
+
+def check_textures(arrays: list[np.ndarray]) -> None:
+    """Check that there is room for the texels of these arrays, which a kernel reads; `TooLargeError` otherwise."""
+    need = TEXEL * sum(array.size for array in arrays)
+    system.check_memory(need, "the textures need", "smaller pictures need less")
 
 
 def check_size(path: Path, width: int, height: int) -> None:

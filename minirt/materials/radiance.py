@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-MAGIC = b"#?"
+from minirt.errors import quoted
+
 FORMAT = b"32-bit_rle_rgbe"
 RESOLUTION = re.compile(rb"([-+])([XY]) ([0-9]{1,9}) ([-+])([XY]) ([0-9]{1,9})")
 LONGEST_HEADER = 2**16  # bytes
 SHORTEST, LONGEST = 8, 2**15 - 1  # pixels of a scanline in the new encoding
 BRIGHTEST = 2.0**127  # that a float32 holds
-PIXELS_AT_ONCE = 2**20  # that are converted to light in double precision
 MOST_SHIFT = 24  # bits, by which the fourth of several repeats in a row is shifted
 
 
@@ -83,8 +83,8 @@ def positive(text: bytes, line: int) -> float:
 
 
 def shown(text: bytes) -> str:
-    """Return a part of a header for a message."""
-    return repr(text.strip().split(b"\n")[0][:40].decode("ascii", "replace"))
+    """Return the first line of a part of a header for a message."""
+    return quoted(text.strip().partition(b"\n")[0].decode("ascii", "replace"))
 
 
 def read_pixels(data: bytes, header: Header) -> np.ndarray:
@@ -101,13 +101,10 @@ def read_pixels(data: bytes, header: Header) -> np.ndarray:
         rgbe = rgbe.swapaxes(0, 1)
     rgbe = rgbe[:: 1 if header.down else -1, :: 1 if header.right else -1]
     with np.errstate(over="ignore"):  # mantissas are fractions of 256, and an exponent of 128 is 2^0
-        scale = np.minimum(np.ldexp(1.0 / header.exposure, np.arange(256) - 136), BRIGHTEST)
-    scale[0] = 0.0  # black, whatever the mantissas are
-    light = np.empty((header.height, header.width, 3), np.float32)
-    step = max(PIXELS_AT_ONCE // header.width, 1)
-    for start in range(0, header.height, step):
-        rows = rgbe[start : start + step]
-        light[start : start + step] = np.minimum(rows[..., :3] * scale.take(rows[..., 3])[..., None], BRIGHTEST)
+        scale = np.minimum(np.ldexp(1.0 / header.exposure, np.arange(256) - 136), BRIGHTEST).astype(np.float32)
+        scale[0] = 0.0  # black, whatever the mantissas are
+        light: np.ndarray = rgbe[..., :3] * scale.take(rgbe[..., 3])[..., None]
+    light[light > BRIGHTEST] = BRIGHTEST
     return light
 
 

@@ -7,17 +7,18 @@ their coordinates, and on which side of a line a corner lies is decided exactly.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections import deque
 from fractions import Fraction
+from math import inf
 
 import numpy as np
 
 ROUNDING = 2.0**-50  # error of a cross product of differences, as a share of the sum of its products
-MOST_LOOKS = 2**30  # at corners, for the faces of a file: several seconds
-TWO_EARS = ((3, 0, 1), (3, 1, 2))  # as ear clipping cuts a concave quadrangle that no fan covers
+MOST_LOOKS = 2**25  # at corners, for the faces of a file: half a minute at worst
 
 Point = tuple[float, float]
-Points = Point | tuple[np.ndarray, np.ndarray]
+Ears = list[tuple[int, int, int]]
 
 
 class FaceError(Exception):
@@ -35,27 +36,24 @@ def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray) -> n
     around its first corner where that covers the polygon and nothing else, as it does every convex one. Other polygons
     are cut into ears. A polygon that crosses itself may leave no ear to cut; it becomes a fan. FaceError.
     """
-    triangles, effort = fan_triangulation(sizes), Effort()
+    triangles, looks = fan_triangulation(sizes), MOST_LOOKS
     many = np.flatnonzero(sizes > 3)
-    if len(many):
-        first = np.cumsum(sizes) - sizes
-        many = many[~are_covered_by_fans(points, corners, first[many], sizes[many])]
-        quads = many[sizes[many] == 4]
-        are_fans, have_ears = certain_cuts(points, corners, first[quads])
-        cut = quads[have_ears]
-        for triangle, ear in enumerate(TWO_EARS):
-            triangles[first[cut] - 2 * cut + triangle] = first[cut, None] + ear
-        for face in np.setdiff1d(many, quads[are_fans | have_ears]).tolist():
-            polygon = points[corners[first[face] : first[face] + sizes[face]]]
-            spokes = polygon - polygon[0]
-            normal = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
-            axes, turned = seen_along(normal[None])
-            x, y = seen(polygon, np.repeat(axes, len(polygon)), np.repeat(turned, len(polygon)))
-            effort.face = face
-            ears = cut_polygon(x, y, effort)
-            if ears is not None:
-                start = first[face] - 2 * face
-                triangles[start : start + len(ears)] = first[face] + ears
+    if not len(many):
+        return triangles
+    first = np.cumsum(sizes) - sizes
+    *plane, are_fans = planes_of(points, corners, first[many], sizes[many])
+    for face, axis, is_turned in np.stack([many, *plane], axis=1)[~are_fans].tolist():
+        u, v = ((axis + 2) % 3, (axis + 1) % 3) if is_turned else ((axis + 1) % 3, (axis + 2) % 3)
+        flat = [(point[u], point[v]) for point in points[corners[first[face] :][: sizes[face]]].tolist()]
+        if is_covered_by_fan(flat):
+            continue
+        polygon = Polygon(flat, looks)
+        ears, looks = polygon.cut(), polygon.looks
+        if looks < 0:
+            raise FaceError(face)
+        if ears:
+            start = first[face] - 2 * face
+            triangles[start : start + len(ears)] = first[face] + np.array(ears)
     return triangles
 
 
@@ -67,10 +65,13 @@ def fan_triangulation(sizes: np.ndarray) -> np.ndarray:
     return np.stack([first, first + step + 1, first + step + 2], axis=1)
 
 
-def are_covered_by_fans(points: np.ndarray, corners: np.ndarray, first: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Whether a polygon is convex for certain, so that a fan covers it; True also for polygons without an area.
+def planes_of(
+    points: np.ndarray, corners: np.ndarray, first: np.ndarray, sizes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the axis along which polygons are seen, whether it points away from them, and whether a fan covers them.
 
-    Seen from the first corner, which is convex, each corner lies to the left of the corner before.
+    A fan covers polygons that are convex for certain: seen from the first corner each corner lies to the left of the
+    corner before. Polygons without an area count as covered, too.
     """
     starts = np.cumsum(sizes) - sizes
     spokes = points[corners[np.repeat(first - starts, sizes) + np.arange(sizes.sum())]]
@@ -78,34 +79,13 @@ def are_covered_by_fans(points: np.ndarray, corners: np.ndarray, first: np.ndarr
     following = np.roll(spokes, -1, axis=0)
     following[starts + sizes - 1] = 0.0
     normals = np.add.reduceat(np.cross(spokes, following), starts)
-    axes, turned = seen_along(normals)
+    axes = np.abs(normals).argmax(axis=1)
+    turned = normals[np.arange(len(normals)), axes] < 0
     x, y = seen(spokes, np.repeat(axes, sizes), np.repeat(turned, sizes))
     u, v = seen(following, np.repeat(axes, sizes), np.repeat(turned, sizes))
     first_x, first_y = np.repeat(x[starts + 1], sizes), np.repeat(y[starts + 1], sizes)
     left = is_left(x, y, u, v) & is_left(first_x, first_y, x, y)
-    return np.logical_and.reduceat(left, starts) | ~normals.any(axis=1)
-
-
-def certain_cuts(points: np.ndarray, corners: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Whether ear clipping leaves quadrangles a fan, and whether it cuts them into `TWO_EARS`, each for certain.
-
-    This takes 1 us each, and ear clipping 200.
-    """
-    polygons = points[corners[first[:, None] + np.arange(4)]]
-    spokes = polygons - polygons[:, :1]
-    axes, turned = seen_along(np.cross(spokes[:, :-1], spokes[:, 1:]).sum(axis=1))
-    x, y = (each.reshape(-1, 4).T for each in seen(polygons.reshape(-1, 3), np.repeat(axes, 4), np.repeat(turned, 4)))
-    a, b, c, d = zip(x, y, strict=True)
-    are_fans: np.ndarray = is_right(b, a, *c) & is_right(c, a, *d)
-    is_turned_over = is_right(a, b, *c) | is_right(a, c, *d)
-    have_ears: np.ndarray = is_turned_over & is_right(a, d, *b) & is_right(b, d, *c)
-    return are_fans, have_ears
-
-
-def seen_along(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the axis along which polygons with these normals are seen, and whether it points away from them."""
-    axes = np.abs(normals).argmax(axis=1)
-    return axes, normals[np.arange(len(normals)), axes] < 0
+    return axes, turned, np.logical_and.reduceat(left, starts) | ~normals.any(axis=1)
 
 
 def seen(points: np.ndarray, axes: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -122,28 +102,6 @@ def is_left(x: np.ndarray, y: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.nd
     return certain
 
 
-class Effort:
-    """Looks at corners that are left for the faces of a file, and the face that is cut."""
-
-    def __init__(self) -> None:
-        self.left, self.face = MOST_LOOKS, 0
-
-    def spend(self, looks: int) -> None:
-        """Count looks at corners; FaceError when none are left."""
-        self.left -= looks
-        if self.left < 0:
-            raise FaceError(self.face)
-
-
-def cut_polygon(x: np.ndarray, y: np.ndarray, effort: Effort) -> np.ndarray | None:
-    """Cut a polygon that goes round counter-clockwise into triangles: indices of their corners, (n - 2, 3).
-
-    None where a fan around the first corner covers the polygon, and where a polygon that crosses itself leaves no ear.
-    FaceError.
-    """
-    return None if is_covered_by_fan(list(zip(x.tolist(), y.tolist(), strict=True))) else Polygon(x, y, effort).cut()
-
-
 def is_covered_by_fan(points: list[Point]) -> bool:
     """Whether the fan around the first corner covers a polygon: no triangle is turned over, none overlap."""
     centre, first = points[:2]
@@ -157,35 +115,33 @@ def is_covered_by_fan(points: list[Point]) -> bool:
 
 
 class Polygon:
-    """A polygon from which ears are cut: triangles of three corners in a row that contain no other corner.
+    """A polygon that goes round counter-clockwise, from which ears are cut: triangles of three corners in a row that
+    contain no other corner.
 
     No ear is turned over, and so they cover each point as often as the polygon goes round it. Of the corners only those
     at which the polygon is not convex are looked at: a triangle that contains others contains one of them. They are
     sorted by x, so that most triangles meet few.
     """
 
-    def __init__(self, x: np.ndarray, y: np.ndarray, effort: Effort) -> None:
-        count, self.effort = len(x), effort
-        self.points = list(zip(x.tolist(), y.tolist(), strict=True))
+    def __init__(self, points: list[Point], looks: int) -> None:
+        count = len(points)
+        self.points = points
+        self.looks = looks  # at corners that are left; the polygon takes too long to cut where it is negative
         self.before = [count - 1, *range(count - 1)]
         self.after = [*range(1, count), 0]
         self.is_left = [True] * count
-        reflex = np.flatnonzero([self.turn(corner) <= 0 for corner in range(count)])
-        self.reflex = reflex[np.argsort(x[reflex], kind="stable")]
-        self.x, self.y = x[self.reflex], y[self.reflex]
-        self.is_reflex = np.ones(len(reflex), bool)
-        self.places = {corner: place for place, corner in enumerate(self.reflex.tolist())}
+        self.reflex = sorted((*points[corner], corner) for corner in range(count) if self.turn(corner) <= 0)
 
-    def cut(self) -> np.ndarray | None:
+    def cut(self) -> Ears | None:
         """Cut all ears: indices of the corners of triangles; None where no ear is left to cut."""
-        triangles = []
+        triangles: Ears = []
         waiting, remaining = deque(range(len(self.points))), len(self.points)
         refused = 0  # times that no corner in the queue could be cut
         while remaining > 3:
             if not waiting:
                 waiting.extend(corner for corner, is_left in enumerate(self.is_left) if is_left)
                 refused += 1
-                if refused > 3:
+                if refused > 3 or self.looks < 0:
                     return None
             corner = waiting.popleft()
             # Corners on a straight line make no triangle. They wait until there is nothing else to cut.
@@ -197,13 +153,13 @@ class Polygon:
             self.after[before], self.before[after] = after, before
             self.forget(corner)
             for each in (before, after):
-                if each in self.places and self.turn(each) > 0:
+                if self.turn(each) > 0:
                     self.forget(each)
                 waiting.append(each)  # cutting an ear makes or unmakes ears beside it only
             remaining, refused = remaining - 1, 0
         last = self.is_left.index(True)
         triangles.append((self.before[last], last, self.after[last]))
-        return np.array(triangles) if self.turn(last) >= 0 else None
+        return triangles if self.turn(last) >= 0 else None
 
     def turn(self, corner: int) -> int:
         """The sign of the turn at a corner: 1 to the left, where the polygon is convex."""
@@ -211,35 +167,24 @@ class Polygon:
 
     def forget(self, corner: int) -> None:
         """Look at a corner no more: it is cut off, or the polygon has become convex there."""
-        place = self.places.pop(corner, None)
-        if place is not None:
-            self.is_reflex[place] = False
+        entry = *self.points[corner], corner
+        place = bisect_left(self.reflex, entry)
+        if self.reflex[place : place + 1] == [entry]:
+            del self.reflex[place]
 
     def is_ear(self, corner: int) -> bool:
-        """Whether the triangle of a corner and its neighbours can be cut off."""
-        if self.turn(corner) <= 0:
+        """Whether the triangle of a corner and its neighbours can be cut off; not once there are no looks left."""
+        if self.looks < 0 or self.turn(corner) <= 0:
             return False
-        a, b, c = (self.points[each] for each in (self.before[corner], corner, self.after[corner]))
+        ends = a, b, c = [self.points[each] for each in (self.before[corner], corner, self.after[corner])]
         (left, right), (low, high) = ((min(parts), max(parts)) for parts in zip(a, b, c, strict=True))
-        start, end = np.searchsorted(self.x, left), np.searchsorted(self.x, right, side="right")
-        self.effort.spend(int(end - start))
-        y = self.y[start:end]
-        near = start + np.flatnonzero(self.is_reflex[start:end] & (y >= low) & (y <= high))
-        for one, other in ((a, b), (b, c), (c, a)):
-            near = near[~is_right(one, other, self.x[near], self.y[near])]
-        for point in map(self.points.__getitem__, self.reflex[near].tolist()):
-            if point in (a, b, c):
-                continue
-            if min(orientation(a, b, point), orientation(b, c, point), orientation(c, a, point)) >= 0:
-                return False
-        return True
-
-
-def is_right(a: Points, b: Points, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether points lie to the right of the line from a to b for certain; a and b may be one for each point."""
-    one, other = (b[0] - a[0]) * (y - a[1]), (b[1] - a[1]) * (x - a[0])
-    certain: np.ndarray = other - one > ROUNDING * (np.abs(one) + np.abs(other))
-    return certain
+        near = self.reflex[bisect_left(self.reflex, (left,)) : bisect_left(self.reflex, (right, inf))]
+        self.looks -= len(near)
+        return not any(
+            orientation(a, b, point) >= 0 and orientation(b, c, point) >= 0 and orientation(c, a, point) >= 0
+            for point in ((x, y) for x, y, _ in near if low <= y <= high)
+            if point not in ends
+        )
 
 
 def orientation(a: Point, b: Point, c: Point) -> int:

@@ -201,7 +201,7 @@ def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
     for file in slot.field.pictures(value):
         from minirt.materials import pictures
 
-        load_file(pictures.reader(file.heights, file.sky), file, "picture", slot, line, log)
+        load_file(pictures.reader(file), file, "picture", slot, line, log)
     return value
 
 

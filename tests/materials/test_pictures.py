@@ -86,17 +86,6 @@ def test_a_picture_for_which_memory_is_short_is_not_called_damaged(
     assert refusal(tmp_path / "a.png") == "needs more memory than there is to decode it"
 
 
-def test_all_links_to_a_file_share_one_array_until_one_is_replaced(tmp_path: Path) -> None:
-    Image.fromarray(COLOURS).save(tmp_path / "a.png")
-    os.link(tmp_path / "a.png", tmp_path / "hard.png")
-    first, hard = picture(tmp_path / "a.png"), picture(tmp_path / "hard.png")
-    assert first is hard
-    Image.fromarray(255 - COLOURS).save(tmp_path / "new.png")
-    (tmp_path / "new.png").replace(tmp_path / "hard.png")
-    assert np.array_equal(picture(tmp_path / "hard.png"), 255 - COLOURS)
-    assert picture(tmp_path / "a.png") is first
-
-
 @pytest.mark.parametrize("decodes", [False, True])
 def test_all_links_to_a_file_are_packed_once(tmp_path: Path, decodes: bool) -> None:
     Image.fromarray(COLOURS).save(tmp_path / "a.png")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from minirt.errors import FileError, SceneError
 from minirt.materials.pictures import SIDE, heights, picture, sky
-from minirt.materials.radiance import RadianceError, read_header, read_pixels
+from minirt.materials.radiance import RadianceError, read_header, read_pixels, read_whole_pixels
 from minirt.scene import load, parse
 from tests.kernel.pictures import linear
 
@@ -88,6 +89,37 @@ def test_every_encoding_gives_the_light_that_was_written(tmp_path: Path, encode,
     read = sky(written(tmp_path / "a.hdr", pixels, encode))
     assert (read.dtype, read.shape) == (np.float32, (5, width, 3))
     assert np.array_equal(read, light_of(pixels))
+
+
+def old_runs_at_random(row: list[bytes], random: Random) -> bytes:
+    """Write a scanline, with each run of equal pixels cut at random into pixels, repeats and repeats of none."""
+    data, done = b"", 0
+    while done < len(row):
+        data += row[done]
+        equal = next((at for at in range(done, len(row)) if row[at] != row[done]), len(row)) - done
+        repeats = random.randrange(equal)
+        done += 1 + repeats
+        if done < len(row) or repeats:
+            digits = [repeats >> shift & 255 for shift in (0, 8, 16, 24)]
+            while digits and not digits[-1] and (done == len(row) or random.random() < 0.7):
+                digits.pop()  # of the last pixels nothing may follow the digit that fills the scanline
+            data += b"".join(bytes([1, 1, 1, digit]) for digit in digits)
+    return data
+
+
+def test_all_ways_to_write_a_scanline_give_its_pixels() -> None:
+    random = Random(5)
+    for length in [*range(1, 12), 255, 256, 257, 1000, 70_000]:
+        for _ in range(20 if length < 2000 else 2):
+            row: list[bytes] = []
+            while len(row) < length:
+                row += [bytes([*random.randbytes(3), 200])] * random.choice([1, 2, 3, length // 2 + 1])
+            row = row[:length]
+            row = [pixel if pixel[:3] != b"\1\1\1" else b"\2\1\1\1" for pixel in row]
+            data = old_runs_at_random(row, random)
+            pixels = np.zeros((length, 4), np.uint8)
+            assert read_whole_pixels(b"--" + data + b"rest", 2, pixels) == 2 + len(data)
+            assert pixels.tobytes() == b"".join(row)
 
 
 def test_scanlines_of_all_encodings_may_be_mixed(tmp_path: Path) -> None:
