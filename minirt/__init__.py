@@ -11,9 +11,7 @@ import os
 import sys
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal, overload
-
-from minirt.errors import RenderError as RenderError
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
     from minirt.cluster.pictures import render_all as render_all
@@ -22,6 +20,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.errors import FileError as FileError
     from minirt.errors import MiniRTError as MiniRTError
     from minirt.errors import MlxError as MlxError
+    from minirt.errors import RenderError as RenderError
     from minirt.errors import ReplayError as ReplayError
     from minirt.errors import SceneError as SceneError
     from minirt.example_scenes import example as example
@@ -41,6 +40,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.queries.rays import trace as trace
     from minirt.rendering.renderer import renderer as renderer
     from minirt.rendering.settings import DEFAULT_ERROR as DEFAULT_ERROR
+    from minirt.rendering.settings import render as render
     from minirt.scene import DEFAULT_SIZE as DEFAULT_SIZE
     from minirt.scene import Ambient as Ambient
     from minirt.scene import Background as Background
@@ -63,7 +63,7 @@ __version__ = "0.1.0"
 MODULES = {
     "minirt.cluster.pictures": ("render_all", "render_to"),
     "minirt.element": ("Element",),
-    "minirt.errors": ("FileError", "MiniRTError", "MlxError", "ReplayError", "SceneError"),
+    "minirt.errors": ("FileError", "MiniRTError", "MlxError", "RenderError", "ReplayError", "SceneError"),
     "minirt.example_scenes": ("example", "examples"),
     "minirt.fields": ("MeshFile",),
     "minirt.rendering.image": ("Image", "LinearImage"),
@@ -72,7 +72,7 @@ MODULES = {
     "minirt.rendering": ("Renderer",),
     "minirt.rendering.buffers": ("Buffers", "buffers"),
     "minirt.rendering.renderer": ("renderer",),
-    "minirt.rendering.settings": ("DEFAULT_ERROR",),
+    "minirt.rendering.settings": ("DEFAULT_ERROR", "render"),
     "minirt.rendering.queries.rays": ("Hits", "camera_rays", "trace"),
     "minirt.movie": ("save_movie",),
     "minirt.scene": (
@@ -87,7 +87,7 @@ REGISTRIES = (
     "minirt.materials",
     "minirt.scene.lights",
 )  # the names in their `PUBLIC` are public here, too
-OWN = ("RenderError", "load", "render")
+OWN = ("load",)
 
 if not TYPE_CHECKING:
 
@@ -126,92 +126,3 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
     from minirt.scene import load as read
 
     return read(path, lenient, left_handed).scene
-
-
-@overload
-def render(
-    scene: Scene,
-    width: int | None = None,
-    height: int | None = None,
-    *,
-    samples: int | Literal["auto"] = 1,
-    error: float | None = None,
-    time: float | None = None,
-    threads: int | None = None,
-    precision: Literal["double", "single"] = "double",
-    depth: int | None = None,
-    linear: Literal[True] = True,
-    dither: bool = False,
-    region: tuple[int, int, int, int] | None = None,
-    rows: tuple[int, int] | None = None,
-) -> LinearImage: ...
-
-
-@overload
-def render(
-    scene: Scene,
-    width: int | None = None,
-    height: int | None = None,
-    *,
-    samples: int | Literal["auto"] = 1,
-    error: float | None = None,
-    time: float | None = None,
-    threads: int | None = None,
-    precision: Literal["double", "single"] = "double",
-    depth: int | None = None,
-    linear: bool,
-    dither: bool = False,
-    region: tuple[int, int, int, int] | None = None,
-    rows: tuple[int, int] | None = None,
-) -> Image: ...
-
-
-def render(
-    scene: Scene,
-    width: int | None = None,
-    height: int | None = None,
-    *,
-    samples: int | Literal["auto"] = 1,
-    error: float | None = None,
-    time: float | None = None,
-    threads: int | None = None,
-    precision: Literal["double", "single"] = "double",
-    depth: int | None = None,
-    linear: bool = True,
-    dither: bool = False,
-    region: tuple[int, int, int, int] | None = None,
-    rows: tuple[int, int] | None = None,
-) -> Image:
-    """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
-
-    Without a size the scene's own is used. Safe to call from several threads. Where no kernel was compiled ahead of
-    time, the first call for a combination of kinds of shapes compiles for some seconds. `precision` "single" computes
-    in float32 relative to the eye, about twice as fast. Light is mirrored or refracted at most `depth` times, by
-    default 8. RenderError for a size or a number of samples below 1.
-
-    With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
-    most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
-    of the picture tells which. Errors are defined in `minirt.rendering.outcome`. Without `linear` light, the
-    picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
-
-    Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
-    by blue noise, so that smooth shades have no steps.
-
-    `region` (x, y, width, height) renders that rectangle of the picture alone, at the cost of the rectangle: its pixels
-    are those of the whole picture. With `samples` "auto" the error is that of the rectangle, and so are the samples.
-    RenderError for a region that does not lie in the picture. `rows` (a, b) are the rows from a to b - 1.
-
-    RenderError for a picture, textures or lists of shapes that need more memory than `minirt.limit_memory` allows.
-    """
-    from minirt.rendering.packing.camera import Region
-    from minirt.rendering.settings import RenderSettings, rendered
-    from minirt.scene.scene import check_scene, size_for
-
-    check_scene(scene, "render")
-    size = size_for(scene, width, height)
-    if rows is not None:
-        if region is not None:
-            raise RenderError("a picture has a region or rows, not both")
-        region = (0, rows[0], size[0], rows[1] - rows[0])
-    part = region and Region(*region)
-    return rendered(scene, size, RenderSettings(samples, error, time, threads, precision, depth, linear, dither, part))

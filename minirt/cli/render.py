@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import argparse
-from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from itertools import islice
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.files import check_output, format_name, is_film, needs_light
 from minirt.cli.output import say_bytes, tell
-from minirt.cluster.job import Band, Job, image_of
+from minirt.cluster.job import Job
 from minirt.cluster.journal import Journal, delete, path_for
 from minirt.cluster.pictures import picture_of, results, stream
 from minirt.errors import RenderError
 from minirt.formats.table import memory_of
 from minirt.helpers import system
 from minirt.helpers.progress import State, progress
-from minirt.rendering.packing.camera import Region
 from minirt.rendering.settings import LIGHT, RenderSettings
 from minirt.scene import size_of
 
@@ -33,6 +29,8 @@ if TYPE_CHECKING:
     from minirt.scene import Scene
 
 LONG = 2**24  # rays: work of about a second of two processors, which an interrupt does not undo
+GIVEN = ("error", "time", "threads", "precision", "depth", "dither", "region")  # options that are settings
+BANDS = "bands of the picture"
 PATIENCE = 10  # seconds for a scheduler to answer
 
 
@@ -41,8 +39,12 @@ def render_output(scene: Scene, options: argparse.Namespace) -> int:
     job = Job(scene, options.size or size_of(scene), settings_for(options))
     render = stream_picture if is_streamed(job, options) else render_film if options.turntable else render_picture
     with system.gc_paused(), workers(options) as executor:
-        outcome = render(job, options, executor)
-    return FAILED if options.strict and outcome and not outcome.is_reached else OK
+        reached = render(job, options, executor)
+    if reached:
+        tell(reached)
+        if reached.notice:
+            tell(f"notice: {reached.notice}")
+    return FAILED if options.strict and reached and not reached.is_reached else OK
 
 
 @contextmanager
@@ -78,42 +80,44 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
 
 @contextmanager
 def kept_work(
-    job: Job, options: argparse.Namespace, share: Share, what: str, count: int = 1, has_parts: bool = True
+    job: Job, options: argparse.Namespace, share: Share, count: int = 1, has_parts: bool = True
 ) -> Iterator[Journal | None]:
-    """Keep what the block puts into the journal of the output, until the block ends without an error.
+    """Show progress, and keep what the block puts into the journal of the output, until it ends without an error.
 
-    Short work is not kept, and neither are samples that depend on those before. `what` names the `count` pictures or
-    the bands of one.
+    Short work is not kept, and neither are samples that depend on those before. There are `count` pictures.
     """
     *_, width, height = job.region
     rays = 0 if job.settings.samples == "auto" else width * height * job.settings.samples * count
     if options.output == "-" or not (options.resume or rays >= LONG):
         if options.output != "-":
             delete(path_for(options.output))
-        yield None
+        with progress(share.state):
+            yield None
         return
     work = job.work(options.turntable, options.bits, options.quality, options.metadata)
     journal = Journal(options.output, work, options.resume, has_parts=has_parts)
     if options.resume and not journal.places:
         tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
     try:
-        yield journal
+        with progress(share.state):
+            yield journal
     except BaseException:
         journal.close()
         if journal.places:
             import shlex
 
             command = shlex.join([*(each for each in options.command if each != "--resume"), "--resume"])
-            tell(f"{len(journal.places)} of {share.total} {what} are kept; miniRT {command} goes on")
+            tell(f"{len(journal.places)} of {share.total} {share.what} are kept; miniRT {command} goes on")
         raise
     journal.remove()
 
 
 class Share:
-    """Share of some work that this program has done: bands or frames, and rows of the one that is being rendered."""
+    """Share of some work that this program has done: bands or pictures, and rows of the one that is being rendered."""
 
-    def __init__(self, job: Job, executor: Workers | None) -> None:
-        self.renderer, self.rows = job.settings.renderer, None if executor else job.region.height
+    def __init__(self, job: Job, executor: Workers | None, what: str) -> None:
+        self.settings, self.rows = job.settings, None if executor else job.region.height
+        self.what, self.start = what, perf_counter()
         self.found: int | None = None
         self.done, self.total = 0, 0
 
@@ -122,122 +126,71 @@ class Share:
         self.found = done if self.found is None else self.found
         self.done, self.total = done, total
 
-    def state(self, what: str) -> State:
-        """Return the share with its name."""
-        found = self.found or 0
-        rows = self.renderer.rows_done(self.rows) if self.rows else 0.0
+    def state(self) -> State:
+        """Return the share, of the time where that is all that is known, with its name."""
+        if self.settings.samples == "auto" and self.total <= 1:
+            time = self.settings.time
+            return State("sampling", (perf_counter() - self.start) / time if time else None)
+        found, what = self.found or 0, f"{self.done} of {self.total} {self.what}"
+        rows = self.settings.renderer.rows_done(self.rows) if self.rows else 0.0
         return State(what, (self.done - found + rows) / max(1, self.total - found))
-
-    def of_bands(self) -> State:
-        """Return the share with the number of bands."""
-        return self.state(f"{self.done} of {self.total} bands")
 
 
 def render_picture(job: Job, options: argparse.Namespace, executor: Workers | None) -> Outcome | None:
     """Render a picture as the options ask and write the output; print measurements and notices to standard error."""
-    from minirt.rendering.notices import notices_about
+    from minirt.rendering.notices import measurements, notices_about
 
-    scene, size, settings = job
-    start = perf_counter()
-    if options.verbose and not executor:
-        settings.renderer.prepare(scene)
-        tell(f"kernel ready after {perf_counter() - start:.2f} s")
+    is_measured = options.verbose and not executor
+    if is_measured:
         start = perf_counter()
-    share = Share(job, executor)
-
-    def state() -> State:
-        if executor:
-            return share.of_bands()
-        if settings.samples != "auto":
-            return share.state(options.output)
-        return State("sampling", (perf_counter() - start) / settings.time if settings.time else None)
-
-    with kept_work(job, options, share, "bands of the picture") as journal:
-        bands = job.cut(bool(executor), journal is not None)
-        with progress(state):
-            image, not_finite = picture_of(job, bands, executor, journal, share.note)
-        tell_outcome(image.reached)
-        seconds = perf_counter() - start
-        notices = notices_about(scene, size, settings, image, options.verbose and not executor)
-        if not executor:
-            for each in notices.lost:
-                tell(f"notice: {each}")
-            if options.verbose:
-                tell_measurements(job, seconds, not_finite)
-                tell(notices.clipped)
-        if notices.view:
-            tell(f"notice: {notices.view}")
-        write(image, options.output, scene, options)
-    return image.reached
+        job.settings.renderer.prepare(job.scene)
+        tell(f"kernel ready after {perf_counter() - start:.2f} s")
+    share = Share(job, executor, BANDS)
+    with kept_work(job, options, share) as journal:
+        made = picture_of(job, job.cut(bool(executor), journal is not None), executor, journal, share.note)
+        seconds, image = perf_counter() - share.start, made.image(job.scene)
+        write(image, options.output, job.scene, options)
+    for each in measurements(*job[:3], seconds, made.not_finite) if is_measured else ():
+        tell(each)
+    for each in notices_about(*job[:3], image, is_here=not executor):
+        tell(f"notice: {each}")
+    return made.reached
 
 
 def render_film(job: Job, options: argparse.Namespace, executor: Workers | None) -> Outcome | None:
     """Render the scene from all around it and write the film, or numbered pictures; return the worst outcome."""
-    from minirt.movie import numbered, save_movie
+    from minirt.movie import Film, numbered
     from minirt.viewer.app.replay import turntable
 
     wanted = options.frames or range(1, options.turntable + 1)
     views = islice(turntable(job.scene, options.turntable), wanted.start - 1, wanted.stop - 1)
-    bands = [Band(number, view, job.size, job.settings) for number, view in zip(wanted, views, strict=True)]
-    file, outcomes, share = partial(numbered, Path(options.output)), [], Share(job, executor)
-
-    def images(journal: Journal | None) -> Iterator[Image]:
+    bands = [job._replace(scene=view, number=number) for number, view in zip(wanted, views, strict=True)]
+    film = Film(options.output, quality=options.quality) if is_film(options) else None
+    outcomes, share = [], Share(job, executor, "pictures of the film")
+    with kept_work(job, options, share, len(wanted), has_parts=film is not None) as journal:
+        if journal and not film:
+            places = journal.places.items()
+            journal.places = {number: each for number, each in places if numbered(options.output, number).is_file()}
         for band, made in results(bands, executor, journal, share.note, in_order=True):
             outcomes.append(made.reached)
-            if made.parts:
-                image = image_of(band, made)
-                if not is_film(options):
-                    write(image, str(file(band.number)), band.scene, options)
-                yield image
-
-    def state() -> State:
-        return share.state(f"picture {min(wanted.start + share.done, wanted[-1])} of {options.turntable}")
-
-    kept = kept_work(job, options, share, "pictures of the film", len(wanted), has_parts=is_film(options))
-    with kept as journal, progress(state):
-        if is_film(options):
-            save_movie(images(journal), options.output, quality=options.quality)
-        else:
-            if journal:
-                journal.places = {number: each for number, each in journal.places.items() if file(number).is_file()}
-            deque(images(journal), 0)
-    worst = max(filter(None, outcomes), key=lambda each: each.error, default=None)
-    tell_outcome(worst)
-    return worst
+            if film:
+                film.add(made.image(band.scene))
+            elif made.parts:
+                write(made.image(band.scene), str(numbered(options.output, band.number)), band.scene, options)
+        if film:
+            film.save()
+    return max(filter(None, outcomes), key=lambda each: each.error, default=None)
 
 
 def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | None) -> Outcome | None:
     """Render a picture of any size into a TIFF file, which goes on with what was interrupted."""
-    share = Share(job, executor)
+    share = Share(job, executor, BANDS)
     try:
-        with progress(share.of_bands):
-            reached = stream(options.output, job, options.bits or 8, executor, share.note)
+        with progress(share.state):
+            return stream(options.output, job, options.bits or 8, executor, share.note)
     except KeyboardInterrupt:
-        tell(f"{share.done} of {share.total} bands are kept; the same command goes on")
+        tell(f"{share.done} of {share.total} {BANDS} are kept; the same command goes on")
         raise
-    tell_outcome(reached)
-    return reached
-
-
-def tell_outcome(reached: Outcome | None) -> None:
-    """Tell the error that a picture, or the worst of a film, has reached."""
-    if reached:
-        tell(reached)
-        if reached.notice:
-            tell(f"notice: {reached.notice}")
-
-
-def tell_measurements(job: Job, seconds: float, not_finite: int) -> None:
-    """Tell the time of a picture that was rendered here, and how its scene was packed."""
-    (width, height), settings = job.size, job.settings
-    renderer = settings.renderer
-    place = f"region {','.join(map(str, settings.region))}, " if settings.region else ""
-    sampling = "" if settings.samples == "auto" else f"{settings.samples} samples a pixel, "
-    threads = f"{renderer.threads} threads, {renderer.precision} precision"
-    tell(f"{width}x{height}, {place}{sampling}{threads}: {seconds * 1e3:.1f} ms")
-    tell(f"rays whose light is not finite: {not_finite}")
-    for note in renderer.notes:  # of the whole picture, since the light that is clipped was rendered
-        tell(note)
 
 
 def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) -> None:
@@ -261,9 +214,8 @@ def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[st
 
 def settings_for(options: argparse.Namespace) -> RenderSettings:
     """Return the settings of a picture that goes to the output."""
-    given = {name: getattr(options, name) for name in ("error", "time", "threads", "precision", "depth", "dither")}
-    region, linear = options.region and Region(*options.region), needs_light(options, options.output)
-    return RenderSettings(options.samples or SAMPLES, linear=linear, region=region, **given)
+    given = {name: getattr(options, name) for name in GIVEN}
+    return RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
 
 
 def is_streamed(job: Job, options: argparse.Namespace) -> bool:

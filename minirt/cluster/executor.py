@@ -8,18 +8,15 @@ import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from itertools import islice
-from math import inf
-from time import monotonic
 from typing import Any, TypeAlias
 
-from minirt.cluster.job import Band, Made
+from minirt.cluster.job import Job, Made
 from minirt.cluster.worker import packed, version, work
 from minirt.errors import MiniRTError, RenderError
 from minirt.rendering.threads import usable_cores
 from minirt.scene import Camera
 
 OF_EACH = 2  # bands of each worker in flight: one is rendered, one waits
-PAUSE = 1.0  # seconds from one count of a cluster's workers to the next
 LARGE = 2**16  # bytes of a packed scene that dask keeps, and hands to each worker once
 MOST_PROCESSES = 8  # on this machine; each has its share of the processors
 
@@ -35,25 +32,22 @@ class Dispatcher:
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)
         self.executor: Executor = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
-        self.present, self.asked = 1, -inf  # workers of the client, and when they were counted
-        self.running: dict[Future[Made], Band] = {}
+        self.running: dict[Future[Made], Job] = {}
         self.last: tuple[object, Any] = None, b""  # the scene that was packed last, and its bytes
 
     @property
     def count(self) -> int:
         """The number of workers; those of a cluster may come and go."""
-        if self.client is None:
-            return int(getattr(self.executor, "_max_workers", 0)) or usable_cores()
-        if monotonic() > self.asked + PAUSE:  # asking takes a millisecond
-            self.present, self.asked = max(1, len(self.client.nthreads())), monotonic()
-        return self.present
+        if self.client is not None:
+            return max(1, len(self.client.nthreads()))
+        return int(getattr(self.executor, "_max_workers", 0)) or usable_cores()
 
     def results(
-        self, bands: Iterable[Band], restore: Callable[[Band], Made | None], in_order: bool
-    ) -> Iterator[tuple[Band, Made]]:
+        self, bands: Iterable[Job], restore: Callable[[Job], Made | None], in_order: bool
+    ) -> Iterator[tuple[Job, Made]]:
         """Yield bands and what was made of them, here or before; RenderError where one fails or its worker dies."""
         rest = iter(bands)
-        waiting: dict[int, Band] = {}
+        waiting: dict[int, Job] = {}
         made: dict[int, Made] = {}  # that wait for their turn
         try:
             while True:
@@ -62,7 +56,7 @@ class Dispatcher:
                     if kept := restore(band):
                         made[band.number] = kept
                     else:
-                        self.send(band)
+                        self.running[self.submitted(band)] = band
                 if not waiting:
                     return
                 turn = next(iter(waiting if in_order else made), None)
@@ -73,8 +67,8 @@ class Dispatcher:
         finally:
             self.close()
 
-    def arguments(self, band: Band) -> tuple[str, Any, Camera, Band]:
-        """Return what `work` is sent for a band. Scenes that differ in the camera alone are packed once."""
+    def submitted(self, band: Job) -> Future[Made]:
+        """Send a band to a worker. Scenes that differ in the camera alone are packed once."""
         scene, settings = band.scene, band.settings
         others = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
         if self.last[0] != others:
@@ -85,12 +79,9 @@ class Dispatcher:
         if settings.threads is None and self.is_pool:
             settings = settings.replace(threads=max(1, usable_cores() // self.count))
         nowhere: Any = None
-        return version(), self.last[1], scene.camera, band._replace(scene=nowhere, settings=settings)
-
-    def send(self, band: Band) -> None:
-        """Send a band."""
+        sent = band._replace(scene=nowhere, settings=settings)
         try:
-            self.running[self.executor.submit(work, *self.arguments(band))] = band
+            return self.executor.submit(work, version(), self.last[1], scene.camera, sent)
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
 

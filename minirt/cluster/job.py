@@ -25,29 +25,38 @@ RAYS, MOST_COLUMNS = 2**21, 64  # rays of a band of columns, and bands; they are
 
 
 class Job(NamedTuple):
-    """A picture of a scene, or a region of it, that is rendered in bands."""
+    """A picture of a scene, or a region of it, to be rendered by anyone, as a whole or in bands: jobs, too."""
 
     scene: Scene
     size: tuple[int, int]  # of the whole picture, in pixels
-    settings: RenderSettings
+    settings: RenderSettings  # their region is that of a band
+    number: int = 0  # of a band in its job, or of a picture in its film
+    bits: int | None = None  # of the strips of a TIFF file that are made of it, None for arrays
 
     @property
     def region(self) -> Region:
         """The rectangle of the picture that is rendered; RenderError where it does not lie in the picture."""
         return cut_for(self.settings.region, *self.size).region
 
-    def bands(self, regions: Sequence[Region], bits: int | None = None) -> list[Band]:
+    @property
+    def what(self) -> str:
+        """The name of a band in messages."""
+        return (
+            f"rows {self.region.y} to {self.region.y + self.region.height - 1}" if self.settings.region else "a picture"
+        )
+
+    def bands(self, regions: Sequence[Region], bits: int | None = None) -> list[Job]:
         """Return the bands that render some regions."""
         pairs = enumerate(regions)
-        return [Band(number, self.scene, self.size, self.settings.replace(region=each), bits) for number, each in pairs]
+        return [Job(self.scene, self.size, self.settings.replace(region=each), number, bits) for number, each in pairs]
 
-    def cut(self, by_workers: bool, is_kept: bool) -> list[Band]:
+    def cut(self, by_workers: bool, is_kept: bool) -> list[Job]:
         """Cut the picture into bands for workers, or for a journal; return one band where neither is there."""
         if by_workers:
             return self.bands(rows_of(self.region))
         if is_kept and self.settings.samples != "auto":
             return self.bands(columns_of(self.region, self.settings.samples))
-        return [Band(0, self.scene, self.size, self.settings)]
+        return [self]
 
     def work(self, *more: object) -> str:
         """Return what tells the job from others: a hash of all that the bits of the picture, or of `more`, depend
@@ -57,27 +66,6 @@ class Job(NamedTuple):
         return identity(self.scene, f"{__version__} {self.size} {self.settings.replace(threads=None)} {more}")
 
 
-class Band(NamedTuple):
-    """A picture, or a region of it, to be rendered by anyone."""
-
-    number: int  # in its job
-    scene: Scene
-    size: tuple[int, int]  # of the whole picture, in pixels
-    settings: RenderSettings  # their region is that of the band
-    bits: int | None = None  # of the strips of a TIFF file that are made of it, None for arrays
-
-    @property
-    def what(self) -> str:
-        """The name of the band in messages."""
-        region = self.settings.region
-        return f"rows {region.y} to {region.y + region.height - 1}" if region else "a picture"
-
-    @property
-    def region(self) -> Region:
-        """The rectangle of the picture that is rendered."""
-        return self.settings.region or Region(0, 0, *self.size)
-
-
 class Made(NamedTuple):
     """Result of rendering a band."""
 
@@ -85,21 +73,19 @@ class Made(NamedTuple):
     reached: Outcome | None
     not_finite: int = 0  # rays
 
+    def image(self, scene: Scene) -> Image:
+        """Return the picture of a scene."""
+        levels, light = (*self.parts, None)[:2]
+        return (Image if light is None else LinearImage)(levels, light, self.reached, scene.camera.tone)
 
-def render_band(band: Band) -> Made:
+
+def render_band(band: Job) -> Made:
     """Render a band in this process."""
     image = rendering_settings.rendered(band.scene, band.size, band.settings)
     if band.bits:
         return Made(tiff.strips(image.array if band.bits == 8 else image.deep), image.reached)
     parts = (image.array,) if image.linear is None else (image.array, image.linear)
     return Made(parts, image.reached, band.settings.renderer.not_finite)
-
-
-def image_of(band: Band, made: Made) -> Image:
-    """Return the picture of what was made of a band."""
-    kind = LinearImage if len(made.parts) > 1 else Image
-    levels, light = (*made.parts, None)[:2]
-    return kind(levels, light, made.reached, band.scene.camera.tone)
 
 
 def rows_of(region: Region) -> list[Region]:

@@ -1,7 +1,7 @@
 """Journal of unfinished work: the bands that are done, in a hidden file beside the output, from which it goes on.
 
-After a head, which is empty but in a TIFF file, comes a line that names the work; then records follow, each with its
-number, length and checksum. A program that is killed leaves at most the last record incomplete.
+After a line that names the work, records follow, each with its number, length and checksum. A program that is killed
+leaves at most the last record incomplete.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from itertools import accumulate, pairwise
 from math import inf
 from pathlib import Path
 from time import perf_counter
-from typing import IO, Any, NamedTuple
+from typing import IO, Any
 
 import numpy as np
 
-from minirt.cluster.job import Band, Made
+from minirt.cluster.job import Job, Made
 from minirt.errors import RenderError
 from minirt.helpers import file_io
 from minirt.rendering.outcome import Outcome
@@ -30,28 +30,27 @@ LEVEL = 1  # of compression
 SHARE = 0.1  # of the time, that goes into keeping bands at most; cheap ones are sooner rendered again than kept
 
 
-class Place(NamedTuple):
-    """Place of a record in the file."""
-
-    start: int
-    length: int
-
-
 class Journal:
     """Records by their numbers. The file is there from the first record on."""
 
     def __init__(
-        self, output: str | os.PathLike[str], work: str, resume: bool, head: bytes = b"", has_parts: bool = True
+        self,
+        output: str | os.PathLike[str],
+        work: str,
+        resume: bool = True,
+        keeps_all: bool = False,
+        has_parts: bool = True,
     ) -> None:
         """Go on with the journal of an output, or delete it.
 
-        With a head it becomes the output itself. Without parts it has what is done, and not what was rendered.
-        RenderError where another program writes it, and, with a head of no bytes, where it is of other work.
+        One that `keeps_all` bands, of which the output is put together, begins anew where it is of other work. Without
+        parts it has what is done, and not what was rendered. RenderError where another program writes it, and where it
+        is of other work.
         """
         self.path = path_for(output)
-        self.start = head + TITLE + work.encode() + b"\n"
-        self.is_output, self.has_parts = bool(head), has_parts
-        self.places: dict[int, Place] = {}
+        self.start = TITLE + work.encode() + b"\n"
+        self.keeps_all, self.has_parts = keeps_all, has_parts
+        self.places: dict[int, tuple[int, int]] = {}  # start and length of each record
         self.file: IO[bytes] | None = None
         self.credit = 0.0  # seconds that keeping bands may take
         if resume:
@@ -60,7 +59,7 @@ class Journal:
             delete(self.path)
 
     def open_existing(self) -> None:
-        """Open the file of an interrupted program, if there is one."""
+        """Open the file of an interrupted program, if there is one, and find its whole records."""
         try:
             self.file = self.locked("r+b")
         except FileNotFoundError:
@@ -68,23 +67,22 @@ class Journal:
         except OSError as error:
             raise RenderError(f"{self.path}: cannot be read: {error.strerror or error}") from None
         start = self.file.read(len(self.start))
+        if not (self.keeps_all or self.start.startswith(start)):  # a part: of a program killed before the first band
+            self.close()
+            raise RenderError(
+                f"{self.path}: was left by another scene, other settings or another version; without --resume the "
+                "work begins anew"
+            )
         if start != self.start:
-            if not self.is_output and not self.start.startswith(start):  # as of a program killed before the first band
-                self.close()
-                raise RenderError(
-                    f"{self.path}: was left by another scene, other settings or another version; without --resume the "
-                    "work begins anew"
-                )
             self.file.seek(0)
+            self.file.truncate()
             self.file.write(self.start)
         end, size = self.file.tell(), os.fstat(self.file.fileno()).st_size
-        while start == self.start and len(head := self.file.read(HEAD.size)) == HEAD.size:
+        while len(head := self.file.read(HEAD.size)) == HEAD.size:
             number, length, checksum = HEAD.unpack(head)
-            place = Place(self.file.tell(), length)
-            if length > size - place.start:
+            if length > size or zlib.crc32(self.file.read(length)) != checksum:
                 break
-            if zlib.crc32(self.file.read(length)) == checksum:
-                self.places[number] = place
+            self.places[number] = end + HEAD.size, length
             end = self.file.tell()
         self.file.truncate(end)
 
@@ -99,16 +97,16 @@ class Journal:
     def keep(self, number: int, made: Made, seconds: float) -> None:
         """Keep what took so long to make, unless keeping has taken its share of the time or the disk is full.
 
-        What becomes the output is always kept. OSError where that cannot be written.
+        OSError where all is kept and cannot be written.
         """
         self.credit += SHARE * seconds
-        if self.credit < 0 and not self.is_output:
+        if self.credit < 0 and not self.keeps_all:
             return
         start = perf_counter()
         try:
             self.append(number, packed(made if self.has_parts else made._replace(parts=())))
         except OSError:
-            if self.is_output:
+            if self.keeps_all:
                 raise
             self.credit = -inf
         self.credit -= perf_counter() - start
@@ -121,30 +119,15 @@ class Journal:
         start = self.file.seek(0, os.SEEK_END) + HEAD.size
         self.file.write(HEAD.pack(number, len(data), zlib.crc32(data)) + data)
         self.file.flush()
-        self.places[number] = Place(start, len(data))
+        self.places[number] = start, len(data)
 
-    def restore(self, band: Band) -> Made | None:
+    def restore(self, band: Job) -> Made | None:
         """Return what was made of a band; None where that is missing."""
-        place = self.places.get(band.number)
-        if place is None or self.file is None:
+        if band.number not in self.places or self.file is None:
             return None
-        self.file.seek(place.start)
-        return unpacked(self.file.read(place.length), band)
-
-    def become_output(self, output: Path, head: bytes, end: int, tail: bytes) -> None:
-        """Rename the file, after its head was replaced and a tail was added at byte `end`. OSError."""
-        import shutil
-
-        assert self.file
-        self.file.seek(end)
-        self.file.write(tail)
-        self.file.seek(0)
-        self.file.write(head)
-        self.file.flush()
-        os.fsync(self.file.fileno())
-        with suppress(FileNotFoundError):
-            shutil.copymode(output, self.path)
-        self.path.replace(output)
+        start, length = self.places[band.number]
+        self.file.seek(start)
+        return unpacked(self.file.read(length), band)
 
     def close(self) -> None:
         """Leave the file as it is."""
@@ -165,7 +148,7 @@ def packed(made: Made) -> bytes:
     return json.dumps(about).encode() + b"\n" + b"".join(parts)
 
 
-def unpacked(data: bytes, band: Band) -> Made:
+def unpacked(data: bytes, band: Job) -> Made:
     """Return what a record holds of a band."""
     line, _, rest = data.partition(b"\n")
     sizes, reached, not_finite = json.loads(line)

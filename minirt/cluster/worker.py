@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import minirt
-from minirt.cluster.job import Band, Made, render_band
+from minirt.cluster.job import Job, Made, render_band
 from minirt.element import Element, Record, fields_of
 from minirt.errors import RenderError
 from minirt.helpers import file_io
@@ -102,7 +102,7 @@ def folder() -> Path:
     return Path(path)
 
 
-def work(asked: str, data: bytes, camera: Camera, band: Band) -> Made:
+def work(asked: str, data: bytes, camera: Camera, band: Job) -> Made:
     """Render a band of a packed scene, with another camera. RenderError where this version is not the one `asked` for,
     which might draw other bits."""
     if asked != version():

@@ -1,15 +1,16 @@
-"""Writer of TIFF pictures of 8 or 16 bits (TIFF 6.0; compressed by Deflate): whole, or strip by strip in any order.
+"""Writer of TIFF pictures of 8 or 16 bits (TIFF 6.0; compressed by Deflate): whole, or strip by strip.
 
-Strips stand in the file in the order in which they come; the directory, at the end, has their places. BigTIFF has
-places of 64 bits, so many more pixels than fit into memory.
+The directory, at the end, has the places of the strips. BigTIFF has places of 64 bits, so many more pixels than fit
+into memory.
 """
 
 from __future__ import annotations
 
+import io
 import struct
 import zlib
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -36,45 +37,34 @@ BIG = Layout(struct.Struct("<2sHHHQ"), (43, 8, 0), "Q", "Q", LONG8)
 
 def encode(levels: np.ndarray) -> bytes:
     """Return the file of levels, (h, w, 3) uint8 or uint16."""
-    data = strips(levels, LEVEL)
-    sizes = [len(each) for each in data]
-    places = [CLASSIC.header.size + sum(sizes[:number]) for number in range(len(sizes))]
-    end = even(places[-1] + sizes[-1])
-    height, width = levels.shape[:2]
-    tail = directory(width, height, 8 * levels.itemsize, places, sizes, end, CLASSIC)
-    return (header(end, CLASSIC) + b"".join(data)).ljust(end, b"\0") + tail
+    buffer, (height, width) = io.BytesIO(), levels.shape[:2]
+    write(buffer, width, height, 8 * levels.itemsize, strips(levels, LEVEL), CLASSIC)
+    return buffer.getvalue()
+
+
+def write(file: BinaryIO, width: int, height: int, bits: int, strips: Iterable[bytes], layout: Layout = BIG) -> None:
+    """Write a picture of strips, the upper one first, to a file that can seek."""
+    file.write(layout.header.pack(b"II", *layout.version, 0))
+    places, sizes = [], []
+    for each in strips:
+        places.append(file.tell())
+        sizes.append(file.write(each))
+    end = file.tell() + file.tell() % 2
+    file.seek(end)
+    file.write(directory(width, height, bits, places, sizes, end, layout))
+    file.seek(0)
+    file.write(layout.header.pack(b"II", *layout.version, end))
 
 
 def strips(levels: np.ndarray, level: int = FAST) -> tuple[bytes, ...]:
     """Return the compressed strips of some rows, (h, w, 3) uint8 or uint16."""
-    return tuple(strip(levels[top : top + ROWS], level) for top in range(0, len(levels), ROWS))
-
-
-def strip(levels: np.ndarray, level: int) -> bytes:
-    """Return a compressed strip."""
     differences = levels.astype(levels.dtype.newbyteorder("<"))
     differences[:, 1:] -= levels[:, :-1]
-    return zlib.compress(differences.data, level)
-
-
-def even(place: int) -> int:
-    """Return the place at or behind another where another part may begin."""
-    return place + place % 2
-
-
-def header(start: int = 0, layout: Layout = BIG) -> bytes:
-    """Return the header of a file whose directory begins at a byte; 0 while it has none."""
-    return layout.header.pack(b"II", *layout.version, start)
+    return tuple(zlib.compress(differences[top : top + ROWS].data, level) for top in range(0, len(levels), ROWS))
 
 
 def directory(
-    width: int,
-    height: int,
-    bits: int,
-    places: Sequence[int],
-    sizes: Sequence[int],
-    start: int,
-    layout: Layout = BIG,
+    width: int, height: int, bits: int, places: Sequence[int], sizes: Sequence[int], start: int, layout: Layout
 ) -> bytes:
     """Return the directory that begins at byte `start` of a file with strips of these places and sizes."""
     entries: list[tuple[int, int, Sequence[int]]] = [
@@ -99,7 +89,10 @@ def directory(
     for tag, kind, values in entries:
         data = struct.pack(f"<{len(values)}{CODES[kind]}", *values)
         if len(data) > short:
-            data, behind = struct.pack(f"<{layout.place}", place + len(behind)), behind + data.ljust(even(len(data)))
+            data, behind = (
+                struct.pack(f"<{layout.place}", place + len(behind)),
+                behind + data,
+            )
         count = len(values) // 2 if kind == RATIONAL else len(values)
         out += struct.pack(f"<HH{layout.place}", tag, kind, count) + data.ljust(short, b"\0")
     return out + struct.pack(f"<{layout.place}", 0) + behind

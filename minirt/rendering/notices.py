@@ -1,8 +1,8 @@
-"""Notices about a picture: what it cannot show, and what its user may not have expected."""
+"""Notices about a picture: what it cannot show, what its user may not have expected, and how it was rendered."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterator
 
 from minirt.rendering.image import Image
 from minirt.rendering.queries.preview import notice_about
@@ -12,30 +12,32 @@ from minirt.rendering.tone_mapping import clipped_pixels
 from minirt.scene import Scene
 
 
-class Notices(NamedTuple):
-    """Sentences about a picture."""
-
-    lost: list[str]  # for each shape that single precision cannot show
-    clipped: str  # how many pixels are brighter than the picture can show; empty unless asked for
-    view: str  # that nothing is in view, and what would show the scene; empty for other pictures, and for a region
-
-
 def notices_about(
-    scene: Scene, size: tuple[int, int], settings: RenderSettings, image: Image, counts_clipped: bool
-) -> Notices:
-    """Look at a picture of this size, or at its region, that was rendered with some settings in this process."""
-    lost = list(lost_in_single(scene, settings.renderer.packing, *size)) if settings.precision == "single" else []
-    return Notices(
-        [f"single precision cannot show {each}" for each in lost],
-        clipped(scene, size, settings) if counts_clipped else "",
-        "" if settings.region else notice_about(scene, image.array),
-    )
+    scene: Scene, size: tuple[int, int], settings: RenderSettings, image: Image, is_here: bool
+) -> Iterator[str]:
+    """Yield sentences about a picture of this size, or its region; those about its shapes where it was rendered in this
+    process, which has packed them."""
+    if is_here and settings.precision == "single":
+        for each in lost_in_single(scene, settings.renderer.packing, *size):
+            yield f"single precision cannot show {each}"
+    if not settings.region and (text := notice_about(scene, image.array)):
+        yield text
 
 
-def clipped(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> str:
-    """Count the pixels that are brighter than the picture can show, by their light with one sample each."""
+def measurements(
+    scene: Scene, size: tuple[int, int], settings: RenderSettings, seconds: float, not_finite: int
+) -> Iterator[str]:
+    """Yield lines about a picture that was rendered in this process: its time, how its scene was packed, and how many
+    pixels are brighter than the picture can show, by their light with one sample each."""
+    renderer = settings.renderer
+    place = f"region {','.join(map(str, settings.region))}, " if settings.region else ""
+    sampling = "" if settings.samples == "auto" else f"{settings.samples} samples a pixel, "
+    threads = f"{renderer.threads} threads, {renderer.precision} precision"
+    yield f"{size[0]}x{size[1]}, {place}{sampling}{threads}: {seconds * 1e3:.1f} ms"
+    yield f"rays whose light is not finite: {not_finite}"
     once = settings.replace(samples=1, error=None, time=None, linear=True, dither=False)
     light = rendered(scene, size, once).light("clipped pixels")
+    yield from renderer.notes  # of the whole picture, since this light was rendered
     count, pixels = clipped_pixels(light, scene.camera.tone), light.size // 3
     share = f"{100 * count / pixels:.2g} %"
-    return f"clipped pixels, brighter than the picture can show: {count} of {pixels} ({share}), by one sample each"
+    yield f"clipped pixels, brighter than the picture can show: {count} of {pixels} ({share}), by one sample each"

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from inspect import Parameter, signature
 from math import inf
 from numbers import Real
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 import numpy as np
 
@@ -14,18 +16,34 @@ from minirt.helpers import system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.records import Immutable, record
 from minirt.rendering.image import Image, LinearImage
-from minirt.rendering.packing.camera import Region, cut_for
+from minirt.rendering.packing.camera import cut_for
 from minirt.rendering.renderer import Renderer, renderer
 from minirt.scene import Scene
+from minirt.scene.scene import check_scene, size_for
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 DEFAULT_ERROR = 0.002  # half a level of 255: the least that a picture of bytes can show
 CANCELLED = "the picture was cancelled"  # by `minirt.renderer(...).cancel()`, from another thread
 PIXEL, LIGHT = 4, 24  # bytes of a pixel and of its light, while they are rendered
 
 
+class Keywords(TypedDict, total=False):
+    """Types of the keywords that all functions take which render: the fields of `RenderSettings` but `linear`."""
+
+    samples: int | Literal["auto"]
+    error: float | None
+    time: float | None
+    threads: int | None
+    precision: Literal["double", "single"]
+    depth: int | None
+    dither: bool
+    region: tuple[int, int, int, int] | None
+
+
 @record()
 class RenderSettings(Immutable):
-    """The keywords of `minirt.render`, which explains them; RenderError where they do not go together."""
+    """The keywords of `render`, which explains them; RenderError where they do not go together."""
 
     samples: int | Literal["auto"] = 1  # rays a pixel
     error: float | None = None  # RMSE at which samples="auto" end
@@ -35,7 +53,7 @@ class RenderSettings(Immutable):
     depth: int | None = None  # of reflections and refractions; None: 8
     linear: bool = True  # whether the picture has its light, too
     dither: bool = False  # whether blue noise replaces rounding to 8 bits
-    region: Region | None = None  # None: the whole picture
+    region: tuple[int, int, int, int] | None = None  # x, y, width, height; None: the whole picture
 
     def __post_init__(self) -> None:
         for name, value in (("error", self.error), ("time", self.time)):
@@ -54,6 +72,81 @@ class RenderSettings(Immutable):
     def renderer(self) -> Renderer:
         """The renderer that all pictures with these threads, precision, depth and dithering share."""
         return renderer(self.threads, self.precision, self.depth, self.dither)
+
+
+def takes_settings(function: Function) -> Function:
+    """Decorate a function whose last parameter, `**settings`, are keywords of `render`: its signature names them."""
+    own = signature(function)
+    *first, _ = own.parameters.values()
+    names = {each.name for each in first}
+    others = [each for each in signature(RenderSettings).parameters.values() if each.name not in names]
+    further = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in others if each.name in Keywords.__annotations__]
+    setattr(function, "__signature__", own.replace(parameters=[*first, *further]))  # noqa: B010  # help() reads it
+    return function
+
+
+@overload
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: Literal[True] = True,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> LinearImage: ...
+
+
+@overload
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: bool,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> Image: ...
+
+
+@takes_settings
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: bool = True,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> Image:
+    """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
+
+    Without a size the scene's own is used. Safe to call from several threads. Where no kernel was compiled ahead of
+    time, the first call for a combination of kinds of shapes compiles for some seconds. `precision` "single" computes
+    in float32 relative to the eye, about twice as fast. Light is mirrored or refracted at most `depth` times, by
+    default 8. RenderError for a size or a number of samples below 1.
+
+    With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
+    most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
+    of the picture tells which. Errors are defined in `minirt.rendering.outcome`. Without `linear` light, the
+    picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
+
+    Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
+    by blue noise, so that smooth shades have no steps.
+
+    `region` (x, y, width, height) renders that rectangle of the picture alone, at the cost of the rectangle: its pixels
+    are those of the whole picture. With `samples` "auto" the error is that of the rectangle, and so are the samples.
+    RenderError for a region that does not lie in the picture. `rows` (a, b) are the rows from a to b - 1.
+
+    RenderError for a picture, textures or lists of shapes that need more memory than `minirt.limit_memory` allows.
+    """
+    check_scene(scene, "render")
+    size = size_for(scene, width, height)
+    if rows is not None:
+        if settings.get("region") is not None:
+            raise RenderError("a picture has a region or rows, not both")
+        settings["region"] = (0, rows[0], size[0], rows[1] - rows[0])
+    return rendered(scene, size, RenderSettings(linear=linear, **settings))
 
 
 def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:

@@ -176,7 +176,7 @@ def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
     arguments = "ball.rt", "-o", name, "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
     with terminal() as screen, start(folder, *arguments, command=ANNOUNCING, stderr=screen.end) as process:
         screen.leave()
-        until(lambda: re.search(rb"picture ([3-9]|\d\d+) of 3600", screen.read()), "the third picture")
+        until(lambda: re.search(rb"([3-9]|\d\d+) of 3600 pictures", screen.read()), "the third picture")
         screen.wait_for(RENDERING)
         assert interrupt(process, screen) == (130, b"")
     assert b"Traceback" not in screen.text

@@ -134,7 +134,7 @@ def test_verbose_prints_durations_and_features(run: Run) -> None:
 
 def test_verbose_prints_the_samples_of_auto_only_once(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "40x30", "--samples", "auto", "--error", "0.1", "-v")
-    _, reached, duration, finite, *_ = ended.err.splitlines()
+    _, duration, finite, *_, reached = ended.err.splitlines()
     assert reached.startswith("1.0 samples a pixel on average, 1 at most; ")
     assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"

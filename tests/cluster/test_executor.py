@@ -17,7 +17,7 @@ import tifffile
 import minirt
 from minirt.cli import main
 from minirt.cluster import executor
-from minirt.cluster.job import Band, Made
+from minirt.cluster.job import Job, Made
 from minirt.cluster.worker import share_of_cores, work
 from minirt.errors import RenderError
 from tests.cluster.scenes import BALL, with_files
@@ -41,14 +41,14 @@ def test_a_worker_that_dies_ends_the_work_and_what_is_done_is_kept(make: Callabl
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE).array)
 
 
-def dies(version: str, data: bytes, camera: minirt.Camera, band: Band) -> Made:
+def dies(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
     """Die of one band."""
     if band.region.y > 300:
         os.kill(os.getpid(), signal.SIGKILL)
     return work(version, data, camera, band)
 
 
-def fails(version: str, data: bytes, camera: minirt.Camera, band: Band) -> Made:
+def fails(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
     """Fail as no band should."""
     raise KeyError(band.what)
 

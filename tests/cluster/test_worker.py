@@ -12,7 +12,7 @@ import pytest
 import minirt
 from minirt import Scene
 from minirt.cluster import worker
-from minirt.cluster.job import Band
+from minirt.cluster.job import Job
 from minirt.cluster.worker import packed, unpacked, work
 from minirt.errors import FileError, RenderError
 from minirt.rendering.settings import RenderSettings
@@ -33,7 +33,7 @@ def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> N
     data = packed(scene, with_files=True)
     shutil.rmtree(tmp_path / "home")
     for _ in range(2):
-        made = work(worker.version(), data, scene.camera, Band(0, BALL, (40, 30), RenderSettings()))
+        made = work(worker.version(), data, scene.camera, Job(BALL, (40, 30), RenderSettings()))
         assert np.array_equal(made.parts[1], expected.linear)
         assert len(list((tmp_path / "files").iterdir())) == 1  # a picture that is there twice
     assert unpacked.cache_info().misses == 1
@@ -77,4 +77,4 @@ def test_a_file_that_has_gone_is_an_error(tmp_path: Path) -> None:
 
 def test_another_version_refuses_to_draw() -> None:
     with pytest.raises(RenderError, match="another miniRT"):
-        work("0.0.9 0123", b"", BALL.camera, Band(0, BALL, (40, 30), RenderSettings()))
+        work("0.0.9 0123", b"", BALL.camera, Job(BALL, (40, 30), RenderSettings()))

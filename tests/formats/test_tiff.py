@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,21 +15,16 @@ cv2 = pytest.importorskip("cv2")  # `make lowest` is without
 tifffile = pytest.importorskip("tifffile")
 
 
-def write(path: Path, levels: np.ndarray, order: list[int], first: int = 0) -> None:
-    """Write a picture with its strips in some order, the first of them at a byte far behind the header."""
-    parts = tiff.strips(levels)
-    places = [0] * len(parts)
+def write(path: Path, levels: np.ndarray, first: int = 0) -> None:
+    """Write a picture with its strips from a byte on that may be far behind the header."""
+    height, width, _ = levels.shape
     with path.open("wb") as file:
-        file.seek(max(first, tiff.BIG.header.size))
-        for number in order:
-            places[number] = file.tell()
-            file.write(parts[number])
-        start = file.tell()
-        height, width, _ = levels.shape
-        sizes = [len(each) for each in parts]
-        file.write(tiff.directory(width, height, 8 * levels.itemsize, places, sizes, start))
-        file.seek(0)
-        file.write(tiff.header(start))
+
+        def strips() -> Iterator[bytes]:
+            file.seek(max(first, file.tell()))
+            yield from tiff.strips(levels)
+
+        tiff.write(file, width, height, 8 * levels.itemsize, strips())
 
 
 @pytest.mark.parametrize("number", [np.uint8, np.uint16])
@@ -36,8 +32,7 @@ def write(path: Path, levels: np.ndarray, order: list[int], first: int = 0) -> N
 def test_other_libraries_read_the_levels(tmp_path: Path, number: type, width: int, height: int) -> None:
     levels = np.random.Generator(np.random.PCG64(7)).integers(np.iinfo(number).max, size=(height, width, 3))
     levels = levels.astype(number)
-    count = len(tiff.strips(levels))
-    write(tmp_path / "a.tif", levels, list(range(count))[::-1])
+    write(tmp_path / "a.tif", levels)
     with tifffile.TiffFile(tmp_path / "a.tif") as file:
         assert file.is_bigtiff
         assert np.array_equal(file.asarray(), levels)
@@ -50,5 +45,5 @@ def test_other_libraries_read_the_levels(tmp_path: Path, number: type, width: in
 
 def test_places_beyond_4_gib_are_kept(tmp_path: Path) -> None:
     levels = np.arange(40 * 5 * 3, dtype=np.uint8).reshape(40, 5, 3)
-    write(tmp_path / "a.tif", levels, [0, 1, 2], 5 * 2**30)  # a hole, which takes no room on the disk
+    write(tmp_path / "a.tif", levels, 5 * 2**30)  # a hole, which takes no room on the disk
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), levels)
