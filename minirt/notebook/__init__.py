@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, Unpack, overload
 
 from minirt.errors import MlxError
 from minirt.helpers.progress import in_notebook
@@ -14,69 +14,52 @@ if TYPE_CHECKING:
     from minirt.mlx import Mlx
     from minirt.notebook.widget import Viewer
     from minirt.scene import Scene
-
-    class Settings(TypedDict, total=False):
-        """Arguments of `view` that do not choose its result."""
-
-        samples: int
-        threads: int | None
-        precision: Literal["double", "single"]
-        keys: str
-        mlx: Mlx | None
-        dither: bool
-
+    from minirt.viewer.app.desktop import ViewSettings
 
 INSTALL = "a viewer in a notebook needs anywidget: pip install 'minirt[notebook]'"
+Size = tuple[int, int] | None
 
 
 @overload
 def view(
-    scene: Scene, size: tuple[int, int] | None = None, *, notebook: Literal[True], **settings: Unpack[Settings]
-) -> Viewer: ...
+    scene: Scene, size: Size = None, *, notebook: Literal[True], mlx: Mlx | None = None,
+    **settings: Unpack[ViewSettings],
+) -> Viewer: ...  # fmt: skip
 
 
 @overload
 def view(
-    scene: Scene, size: tuple[int, int] | None = None, *, notebook: Literal[False], **settings: Unpack[Settings]
-) -> Scene: ...
-
-
-@overload
-def view(
-    scene: Scene, size: tuple[int, int] | None = None, *, notebook: bool | None = None, **settings: Unpack[Settings]
-) -> Scene | Any: ...
+    scene: Scene, size: Size = None, *, notebook: bool | None = None, mlx: Mlx | None = None,
+    **settings: Unpack[ViewSettings],
+) -> Scene | Any: ...  # fmt: skip
 
 
 def view(
     scene: Scene,
-    size: tuple[int, int] | None = None,
+    size: Size = None,
     *,
     notebook: bool | None = None,
-    samples: int = 16,
-    threads: int | None = None,
-    precision: Literal["double", "single"] = "double",
-    keys: str = "auto",
     mlx: Mlx | None = None,
-    dither: bool = False,
+    **settings: Unpack[ViewSettings],
 ) -> Scene | Viewer:
     """Show a scene in a window until it is closed, and return the scene as it was edited there.
 
     With `notebook=True`, and in a notebook without a display, return a `Viewer` at once: the last value of a cell is
     shown below it, and takes the keys and the mouse of the window. `.scene` of it is the scene as edited so far.
 
-    Ctrl+S writes the file that the scene was read from, or `scene.rt`. `size` is that of the window in pixels;
-    `samples`, the most rays per pixel of a picture at rest. `keys` is the layout of the keyboard: auto, qwerty, azerty
-    or qwertz. The other arguments are those of `minirt.render`. MlxError where neither can be opened.
+    Ctrl+S writes the file that the scene was read from, or `scene.rt`. `size` is that of the window in pixels. The
+    settings: `samples`, the most rays per pixel of a picture at rest, 16; `keys`, the layout of the keyboard: auto,
+    qwerty, azerty or qwertz; `threads`, `precision` and `dither` as of `minirt.render`. MlxError where neither can be
+    opened.
     """
+    from minirt.mlx import Mlx
     from minirt.scene.scene import check_scene
-    from minirt.viewer import view as view_in_window
+    from minirt.viewer.app import desktop
 
     check_scene(scene, "view")
     if not notebook:
         try:
-            return view_in_window(
-                scene, size, samples=samples, threads=threads, precision=precision, keys=keys, mlx=mlx, dither=dither
-            )
+            return desktop.view(desktop.open_view(scene, size, mlx or Mlx(), **settings))
         except MlxError:
             if notebook is False or not in_notebook():
                 raise
@@ -84,4 +67,4 @@ def view(
         from minirt.notebook.widget import Viewer
     except ImportError as error:
         raise MlxError(f"{INSTALL} ({error})") from None
-    return Viewer(scene, size, samples=samples, threads=threads, precision=precision, keys=keys, dither=dither)
+    return Viewer(scene, size, **settings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from minirt.mlx.events import Button, Event, Key, Modifier
+from minirt.mlx.events import KEYS, Button, Event, Modifier
 from minirt.mlx.window import Window
 
 Message = dict[str, Any]
@@ -51,27 +51,11 @@ def point(window: Window, message: Message) -> tuple[int, int]:
 
 
 KEYPAD: Final = 3  # the location of keys on the keypad
-NAMED: Final[dict[str, Key]] = {
-    "ArrowLeft": Key.LEFT,
-    "ArrowUp": Key.UP,
-    "ArrowRight": Key.RIGHT,
-    "ArrowDown": Key.DOWN,
-    "Enter": Key.RETURN,
-    "PageUp": Key.PAGE_UP,
-    "PageDown": Key.PAGE_DOWN,
-    **{
-        each.name.title(): each
-        for each in (Key.BACKSPACE, Key.TAB, Key.PAUSE, Key.ESCAPE, Key.HOME, Key.END, Key.INSERT, Key.DELETE)
-    },
-    **{f"F{number}": Key[f"F{number}"] for number in range(1, 13)},
-}
-MODIFIER_CODES: Final[dict[str, Key]] = {
-    "ShiftLeft": Key.SHIFT_L,
-    "ShiftRight": Key.SHIFT_R,
-    "ControlLeft": Key.CONTROL_L,
-    "ControlRight": Key.CONTROL_R,
-    "AltLeft": Key.ALT_L,
-    "AltRight": Key.ALT_R,
+MODIFIERS: Final = {  # Command is the modifier of shortcuts, wherever the kernel runs
+    "shift": Modifier.SHIFT,
+    "ctrl": Modifier.CTRL,
+    "alt": Modifier.ALT,
+    "command": Modifier.ACCEL,
 }
 
 
@@ -87,27 +71,21 @@ def code_of(event: KeyEvent) -> int | None:
     """
     key: str = event["key"]
     code: str = event["code"]
-    if code in MODIFIER_CODES:
-        return MODIFIER_CODES[code]
-    if key in NAMED:
-        named = NAMED[key]
-        keypad = "ENTER" if named is Key.RETURN else named.name
-        return getattr(Key, f"KEYPAD_{keypad}", named) if event["location"] == KEYPAD else named
+    side = code.replace("Left", "L").replace("Right", "R")  # ShiftL, which is the name of a key of ours
+    if side != code and side in KEYS:
+        return KEYS[side]
     if len(key) != 1:
-        return None
+        name = key.removeprefix("Arrow")
+        usual = KEYS.get("Return" if name == "Enter" else name)
+        return KEYS.get(f"Keypad{name}", usual) if event["location"] == KEYPAD else usual
     if not key.isascii() and code.startswith("Key") and len(code) == 4:
         return ord(code[3].lower())
     return ord(key.lower())
 
 
 def modifiers_of(event: KeyEvent) -> Modifier:
-    """Return the modifiers that are held. Command is the modifier of shortcuts, wherever the kernel runs."""
-    held = {"shift": Modifier.SHIFT, "ctrl": Modifier.CTRL, "alt": Modifier.ALT, "command": Modifier.ACCEL}
-    modifiers = Modifier.NONE
-    for name, modifier in held.items():
-        if event[name]:
-            modifiers |= modifier
-    return modifiers
+    """Return the modifiers that are held."""
+    return Modifier(sum({modifier for name, modifier in MODIFIERS.items() if event[name]}))
 
 
 def text_of(event: KeyEvent) -> str:

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Unpack
 
 import anywidget
 import traitlets
 
 from minirt.errors import MiniRTError
+from minirt.mlx import Mlx
 from minirt.notebook.page_back_end import PageDisplay
 from minirt.notebook.page_events import deliver
 from minirt.rendering.image import Image
 from minirt.scene import size_of
 from minirt.scene.scene import check_scene
+from minirt.viewer.app.desktop import STOP_TIMEOUT, open_view
+from minirt.viewer.editing.state import state_after_reading
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
+    from minirt.viewer.app.desktop import ViewSettings
 
-STOP_TIMEOUT = 0.3  # seconds that a picture being rendered has to notice that it is cancelled
 DEFAULT_SIZE = 960, 540  # pixels, of a scene that does not name a size
 
 
@@ -36,34 +39,12 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
     width = traitlets.Int().tag(sync=True)
     height = traitlets.Int().tag(sync=True)
 
-    def __init__(
-        self,
-        scene: Scene,
-        size: tuple[int, int] | None = None,
-        *,
-        samples: int = 16,
-        threads: int | None = None,
-        precision: Literal["double", "single"] = "double",
-        keys: str = "auto",
-        dither: bool = False,
-    ) -> None:
+    def __init__(self, scene: Scene, size: tuple[int, int] | None = None, **settings: Unpack[ViewSettings]) -> None:
         """Open the viewer; see `minirt.view`."""
-        from minirt.mlx import Mlx
-        from minirt.rendering.renderer import renderer
-        from minirt.viewer.app.desktop import open_session
-
         self._assigned: Scene | None = None  # the last scene, until the session's thread shows it
         size = size or (size_of(scene) if scene.resolution else DEFAULT_SIZE)
         self._display = PageDisplay(lambda message, data: self.send(message, [data] if data else None))
-        self._session = open_session(
-            scene,
-            scene.file or Path("scene.rt"),
-            size,
-            renderer(threads, precision, dither=dither),
-            Mlx(self._display),
-            keys=keys,
-            samples=samples,
-        )
+        self._session = open_view(scene, size, Mlx(self._display), **settings)
         window = self._session.window
         super().__init__(width=window.width, height=window.height)
         self._closing = False
@@ -116,8 +97,6 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
             session.refinement.painter.close(STOP_TIMEOUT)
 
     def _show(self, scene: Scene) -> None:
-        from minirt.viewer.editing.state import state_after_reading
-
         self._session.release_button()
         self._session.show(state_after_reading(self._session.state, scene, None))
         if self._assigned is scene:

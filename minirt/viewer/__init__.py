@@ -3,8 +3,8 @@
 Importing this package loads neither the window library nor the compiler.
 """
 
-from minirt.viewer.app.desktop import run, view
+from minirt.viewer.app.desktop import run
 from minirt.viewer.app.replay import replay
 from minirt.viewer.bindings import keys_markdown, keys_text
 
-__all__ = ["keys_markdown", "keys_text", "replay", "run", "view"]
+__all__ = ["keys_markdown", "keys_text", "replay", "run"]

@@ -8,7 +8,7 @@ import zlib
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypedDict
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from minirt.helpers.system import gc_paused
 from minirt.mlx import Image, Mlx
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Scene, size_of
-from minirt.scene.scene import check_scene
 from minirt.viewer.app.commands import offer_found
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
@@ -28,6 +27,16 @@ from minirt.viewer.recovery import Recovery
 
 if TYPE_CHECKING:
     from minirt.rendering.renderer import Renderer
+
+    class ViewSettings(TypedDict, total=False):
+        """Settings of `open_view` and `minirt.view`."""
+
+        samples: int
+        threads: int | None
+        precision: Literal["double", "single"]
+        keys: str
+        dither: bool
+
 
 OK, INTERRUPTED = 0, 130
 STOP_TIMEOUT = 0.3  # seconds that a picture being rendered has to notice that it is cancelled
@@ -77,30 +86,28 @@ def run(
     return status
 
 
-def view(
+def view(session: Session) -> Scene:
+    """Show a session in its window until it is closed; return the scene as it was edited there."""
+    status, _ = run_event_loop(session)
+    if status == INTERRUPTED:
+        raise KeyboardInterrupt
+    return session.state.scene
+
+
+def open_view(
     scene: Scene,
-    size: tuple[int, int] | None = None,
+    size: tuple[int, int] | None,
+    mlx: Mlx,
     *,
     samples: int = 16,
     threads: int | None = None,
     precision: Literal["double", "single"] = "double",
     keys: str = "auto",
-    mlx: Mlx | None = None,
     dither: bool = False,
-) -> Scene:
-    """Show a scene in a window until it is closed; return the scene as it was edited there.
-
-    Ctrl+S in the window writes the file that the scene was read from, or `scene.rt`. The other arguments are those of
-    `run` and `minirt.render`.
-    """
-    check_scene(scene, "view")
+) -> Session:
+    """Open the session of `minirt.view`, whose Ctrl+S writes the file that the scene was read from, or `scene.rt`."""
     renderer = shared_renderer(threads, precision, dither=dither)
-    path = scene.file or Path("scene.rt")
-    session = open_session(scene, path, size, renderer, mlx or Mlx(), keys=keys, samples=samples)
-    status, _ = run_event_loop(session)
-    if status == INTERRUPTED:
-        raise KeyboardInterrupt
-    return session.state.scene
+    return open_session(scene, scene.file or Path("scene.rt"), size, renderer, mlx, keys=keys, samples=samples)
 
 
 def open_session(
