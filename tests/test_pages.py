@@ -69,6 +69,14 @@ def test_what_pages_name_exists(wrong) -> None:
     assert not {page: found for page in NAMES if (found := list(wrong(page)))}
 
 
+def test_the_makefile_makes_the_program_by_default_and_names_files_that_exist() -> None:
+    assert re.findall(r"^(\w+):", MAKEFILE, re.MULTILINE)[0] == "all"
+    assert re.search(r"^all: \$\(NAME\)", MAKEFILE, re.MULTILINE)
+    named = re.findall(r"\btests/[\w/]+\.py\b", MAKEFILE)
+    assert len(named) > 5
+    assert [path for path in named if not (ROOT / path).is_file()] == []
+
+
 def test_generated_parts_are_as_generated() -> None:
     assert not [page for page in NAMES if renewed(read(page)) != read(page)], GENERATED
     assert tomllib.loads(read("pyproject.toml"))["project"]["readme"]["text"] == index_text(), GENERATED

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterator
 from itertools import cycle, repeat
 from statistics import median
 from time import perf_counter
@@ -31,18 +31,16 @@ def measure(
     load(path, lenient=True)
     load_s = perf_counter() - start
     width, height = size or size_of(scene)
-    renderer = Renderer(threads, precision)
+    renderer, pixels = Renderer(threads, precision), np.empty((height, width, 4), np.uint8)
     start = perf_counter()
     renderer.specialise(scene)
     compile_s = perf_counter() - start
-    pixels = np.empty((height, width, 4), np.uint8)
 
-    def frame_times(steps: Iterable[Scene]) -> list[float]:
-        """Return the seconds of each frame; the first one, which is not counted, warms up."""
-        frames = iter(steps)
-        renderer.render(next(frames), pixels)
-        timed = runs(lambda: renderer.render(next(frames), pixels), LEAST_FRAMES, LEAST_SECONDS)
-        return [run.wall for run in timed]
+    def frame_times(steps: Iterator[Scene]) -> list[float]:
+        """Return the milliseconds of each frame; the first one, which is not counted, warms up."""
+        renderer.render(next(steps), pixels)
+        timed = runs(lambda: renderer.render(next(steps), pixels), LEAST_FRAMES, LEAST_SECONDS)
+        return [run.wall * 1e3 for run in timed]
 
     kept, moving = frame_times(repeat(scene)), frame_times(cycle((moved(scene), scene)))
     return {
@@ -51,10 +49,10 @@ def measure(
         "threads": renderer.threads,
         "precision": precision,
         "frames": len(kept),
-        "ms_min": milliseconds(min(kept)),
-        "ms_median": milliseconds(median(kept)),
-        "ms_min_moving": milliseconds(min(moving)),
-        "ms_median_moving": milliseconds(median(moving)),
+        "ms_min": round(min(kept), 3),
+        "ms_median": round(median(kept), 3),
+        "ms_min_moving": round(min(moving), 3),
+        "ms_median_moving": round(median(moving), 3),
         "compile_s": round(compile_s, 3),
         "load_s": round(load_s, 4),
     }
@@ -64,11 +62,6 @@ def moved(scene: Scene) -> Scene:
     """Return the scene seen by an eye that made one step."""
     x, y, z = scene.camera.position
     return scene.replace(scene.camera, position=(x + STEP, y, z))
-
-
-def milliseconds(seconds: float) -> float:
-    """Convert seconds, rounded to microseconds."""
-    return round(seconds * 1e3, 3)
 
 
 def report(measured: dict[str, str | float], as_json: bool) -> str:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import json
 import platform
-from collections.abc import Iterable, Iterator, Sequence
-from importlib.metadata import PackageNotFoundError, version
-from io import StringIO
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from importlib.metadata import version
 from math import exp, isfinite, nan, sqrt
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +22,6 @@ from minirt.report.precision import KindCertificates, SingleError
 from minirt.scene import Scene, dump
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pillow")
-LEAST = 3  # points of a line
 CLEAR = 2.0  # times the error of the reference: from there on an error is known well enough
 ERRORS = (0.03, 0.01, 0.003, 0.001)  # target errors, RMSE
 TIMES = (16.0, 100.0, 1000.0)  # target times, milliseconds
@@ -47,40 +44,88 @@ class Subject(NamedTuple):
 class Order(NamedTuple):
     """Fit of RMSE = constant * samples^-by_samples, and of RMSE = constant * time^-by_time, to the points of a line."""
 
-    knob: str
-    points: int  # that were fitted; others are as small as the error of the reference
-    by_samples: float = nan  # 0.5 for random samples; NaN where a line has no numbers of samples
-    by_samples_low: float = nan  # 95 % confidence interval, Student's t
-    by_samples_high: float = nan
-    by_time: float = nan
-    by_time_low: float = nan
-    by_time_high: float = nan
-    constant: float = nan  # RMSE at one sample by the fit
+    knob: Annotated[str, "setting"]
+    points: Annotated[int, "points", "d"]  # that were fitted; others are as small as the error of the reference
+    by_samples: Annotated[float, "order by samples", ".2f"] = nan  # 0.5 for random samples; NaN where they are unknown
+    by_samples_low: Annotated[float, "from", ".2f"] = nan  # 95 % confidence interval, Student's t
+    by_samples_high: Annotated[float, "to", ".2f"] = nan
+    by_time: Annotated[float, "order by time", ".2f"] = nan
+    by_time_low: Annotated[float, "from", ".2f"] = nan
+    by_time_high: Annotated[float, "to", ".2f"] = nan
+    constant: Annotated[float, "RMSE at 1 sample", ".3g"] = nan  # by the fit
 
 
-class Findings(NamedTuple):
-    """All results of the measurements."""
+@dataclass
+class Findings:
+    """All results of the measurements, which are added as soon as they are known."""
 
     subject: Subject
     reference_samples: int
     reference_error: float  # RMSE of the reference itself
-    eight_bits: float  # RMSE that rounding to 8 bits per channel adds: no picture in such a file can be closer
-    pictures: list[Row]
-    orders: list[Order]  # of each line of the diagram
-    ablation: list[Part]  # what features, kinds of shapes and lists cost or save
-    single: list[SingleError]  # errors of float32, feature by feature
-    certificates: list[KindCertificates]  # of the hits in the picture, kind by kind
-    stiff: list[Stiff]
-    notes: list[str]  # how the scene was packed, and which features were left out
-    same: list[int]  # sample counts for which the picture without culling is the same, bit for bit
-    not_measured: list[str]
+    eight_bits: float = EIGHT_BITS  # RMSE that rounding to 8 bits per channel adds: no such file can be closer
+    pictures: list[Row] = field(default_factory=list)
+    ablation: list[Part] = field(default_factory=list)  # what features, kinds of shapes and lists cost or save
+    single: list[SingleError] = field(default_factory=list)  # errors of float32, feature by feature
+    certificates: list[KindCertificates] = field(default_factory=list)  # of the hits in the picture, kind by kind
+    stiff: list[Stiff] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # how the scene was packed, and which features were left out
+    same: list[int] = field(default_factory=list)  # sample counts for which brute force gives the same bits
+    not_measured: list[str] = field(default_factory=list)
     interrupted: str = ""  # what was being measured when the user interrupted the report, and what is missing
+
+    @property
+    def title(self) -> str:
+        """The title of the report."""
+        return f"{self.subject.scene}: error against run time"
+
+    @property
+    def orders(self) -> list[Order]:
+        """The order of convergence of each line with at least three points whose error the reference can tell.
+
+        The error of the reference itself, which adds to each squared error, is taken off first.
+        """
+        groups: dict[str, list[Row]] = {}
+        for row in self.pictures:
+            if row.rmse > CLEAR * self.reference_error:
+                groups.setdefault(row.knob, []).append(row)
+        return [order for rows in groups.values() if (order := self.order(rows))]
+
+    def order(self, rows: list[Row]) -> Order | None:
+        """Fit the order of convergence of a line; None where it has too few points."""
+        errors = np.log([sqrt(row.rmse**2 - self.reference_error**2) for row in rows])
+        samples, times = np.log([row.samples for row in rows]), np.log([row.wall_ms for row in rows])
+        timed = [row.valid for row in rows]
+        by_samples, by_time = fit(samples, errors), fit(times[timed], errors[timed])
+        constant = exp(by_samples.intercept) if by_samples else nan
+        found = Order(rows[0].knob, len(rows), *falling(by_samples), *falling(by_time), constant)
+        return found if by_samples or by_time else None
+
+    @property
+    def choices(self) -> list[dict[str, Any]]:
+        """The best setting for each target error and each target time; None if no setting reaches it.
+
+        Errors are known up to that of the reference. "disturbed" counts the rows that were left out since their times
+        were disturbed.
+        """
+        by_error, by_time = pareto_front(self.pictures, 0.0), pareto_front(self.pictures, self.reference_error)
+        best = {f"error at most {most:g}": next((row for row in by_error if row.rmse <= most), None) for most in ERRORS}
+        for time in TIMES:
+            best[f"at most {time:g} ms"] = next((row for row in reversed(by_time) if row.wall_ms <= time), None)
+        disturbed = sum(row.remark == DISTURBED_BY_OTHERS for row in self.pictures if row.program == OURS)
+        return [{"wanted": wanted, "best": row, "disturbed": disturbed} for wanted, row in best.items()]
+
+    @property
+    def recommended(self) -> list[Row]:
+        """The rows that are the best for some wanted error or time."""
+        return list(dict.fromkeys(choice["best"] for choice in self.choices if choice["best"]))
 
 
 def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed: int) -> Subject:
     """Describe a scene and this machine."""
     digest = hashlib.sha256(dump(scene).encode()).hexdigest()
-    return Subject(name, digest, width, height, threads, seed, processor(), versions())
+    versions = {"minirt": minirt.__version__, "python": platform.python_version()}
+    versions |= {package: version(package) for package in PACKAGES}  # that compute or draw
+    return Subject(name, digest, width, height, threads, seed, processor(), versions)
 
 
 def processor() -> str:
@@ -90,42 +135,6 @@ def processor() -> str:
     except OSError:
         return platform.processor()
     return next((line.split(": ")[1] for line in lines if line.startswith("model name")), platform.processor())
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of miniRT, of Python and of the packages that compute or draw."""
-    found = {"minirt": minirt.__version__, "python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "not installed"
-    return found
-
-
-def orders(rows: Iterable[Row], reference_error: float) -> Iterator[Order]:
-    """Fit the order of convergence of each line with at least three points whose error the reference can tell.
-
-    The error of the reference itself, which adds to each squared error, is taken off first.
-    """
-    groups: dict[str, list[Row]] = {}
-    for row in rows:
-        if row.rmse > CLEAR * reference_error:
-            groups.setdefault(row.knob, []).append(row)
-    for knob, points in groups.items():
-        errors = np.log([sqrt(row.rmse**2 - reference_error**2) for row in points])
-        samples, times = np.log([row.samples for row in points]), np.log([row.wall_ms for row in points])
-        timed = [row.valid for row in points]
-        by_samples, by_time = line(samples, errors), line(times[timed], errors[timed])
-        if by_samples or by_time:
-            constant = exp(by_samples.intercept) if by_samples else nan
-            yield Order(knob, len(points), *falling(by_samples), *falling(by_time), constant)
-
-
-def line(x: np.ndarray, y: np.ndarray) -> Line | None:
-    """Fit a line to points of which at least three have finite and different x; None if there are fewer."""
-    known = np.isfinite(x)
-    return fit(x[known], y[known]) if len(np.unique(x[known])) >= LEAST else None
 
 
 def falling(found: Line | None) -> tuple[float, float, float]:
@@ -144,53 +153,3 @@ def pareto_front(rows: Iterable[Row], doubt: float) -> list[Row]:
         if not best or row.rmse < best[-1].rmse - doubt:
             best.append(row)
     return best
-
-
-def choices(rows: list[Row], doubt: float) -> list[dict[str, Any]]:
-    """Find the best setting for each target error and each target time; None if no setting reaches it.
-
-    Errors are known up to `doubt`. "disturbed" counts the rows that were left out since their times were disturbed.
-    """
-    by_error, by_time = pareto_front(rows, 0.0), pareto_front(rows, doubt)
-    best = {f"error at most {error:g}": next((row for row in by_error if row.rmse <= error), None) for error in ERRORS}
-    for time in TIMES:
-        best[f"at most {time:g} ms"] = next((row for row in reversed(by_time) if row.wall_ms <= time), None)
-    disturbed = sum(row.remark == DISTURBED_BY_OTHERS for row in rows if row.program == OURS)
-    return [{"wanted": wanted, "best": row, "disturbed": disturbed} for wanted, row in best.items()]
-
-
-def title(found: Findings) -> str:
-    """Return the title of the report."""
-    return f"{found.subject.scene}: error against run time"
-
-
-def recommended(found: Findings) -> list[Row]:
-    """Return the rows that are the best for some wanted error or time."""
-    best = (choice["best"] for choice in choices(found.pictures, found.reference_error))
-    return list(dict.fromkeys(row for row in best if row is not None))
-
-
-def as_csv(rows: Sequence[Any]) -> str:
-    """Return NamedTuples of one type as CSV: a line of field names, then a line for each."""
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(rows[0]._fields if rows else ())
-    writer.writerows(rows)
-    return text.getvalue()
-
-
-def as_json(found: Findings) -> str:
-    """Return the findings and the choices as JSON, with null for NaN and infinity."""
-    everything = found._asdict() | {"choices": choices(found.pictures, found.reference_error)}
-    return json.dumps(json_value(everything), indent=1, allow_nan=False) + "\n"
-
-
-def json_value(value: Any) -> Any:
-    """Convert a value to types that JSON has: NamedTuples become objects."""
-    if isinstance(value, tuple) and hasattr(value, "_asdict"):
-        return json_value(value._asdict())
-    if isinstance(value, dict):
-        return {key: json_value(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [json_value(each) for each in value]
-    return None if isinstance(value, float) and not isfinite(value) else value

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from math import ceil, log2
+from math import ceil, log2, nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -20,32 +20,21 @@ from minirt.rendering.notes import kernel_notes
 from minirt.rendering.queries.stiffness import coincident, stiff_shapes
 from minirt.rendering.threads import usable_cores
 from minirt.report import povray
-from minirt.report.ablation import PAIRS, Ablation, Part
+from minirt.report.ablation import PAIRS, Ablation
+from minirt.report.diagram import require_matplotlib
 from minirt.report.document import PAGE, summary, write_files
-from minirt.report.findings import EIGHT_BITS, Findings, orders, subject
+from minirt.report.findings import Findings, subject
 from minirt.report.metrics import Picture
-from minirt.report.page import require_matplotlib
-from minirt.report.pictures import (
-    RUNS,
-    Budget,
-    Reference,
-    Row,
-    SettingRenderer,
-    measure_disturbed_again,
-    measure_settings,
-    passes,
-    reference,
-)
-from minirt.report.precision import KindCertificates, SingleError, hit_certificates, single_errors
-from minirt.report.settings import AUTO, COUNTS, Setting, settings
+from minirt.report.pictures import RUNS, Budget, Reference, Row, SettingRenderer, reference, reference_steps
+from minirt.report.precision import hit_certificates, single_errors
+from minirt.report.settings import COUNTS, Setting, settings
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import Scene
 
 SEED = 20240607
+CULLING = ("brute force", "uniform")  # knobs whose pictures must be the same
 NOTHING = "Interrupted before anything was measured; no report was written."
-REFERENCE = "the reference"  # name of its steps
 # Expected durations, from which the progress bar tells the remaining time.
-ONE_SAMPLE, CONVERGENCE = 0.02, 0.75  # a usual RMSE of a picture with one sample per pixel, and order of convergence
 POVRAY = 5e-7  # seconds for a sample
 COMPILING = 15.0  # seconds for a kernel
 PERCEIVED = 2e-6  # seconds for a pixel of the perceived difference
@@ -73,17 +62,12 @@ class Measurement:
     def __init__(self, scene: Scene, name: str, plan: Plan, threads: int | None) -> None:
         self.scene, self.name, self.plan = scene, name, plan
         self.threads = threads or usable_cores()
-        self.width = self.height = 0
         self.reference: Reference | None = None
-        self.rows: list[Row] = []
+        self.found: Findings | None = None  # once there is a reference
         self.pictures: dict[str, Picture] = {}  # of the settings, by their names
-        self.single: list[SingleError] = []
-        self.certificates: list[KindCertificates] = []
-        self.parts: list[Part] = []
-        self.not_measured: list[str] = []
         self.what = ""  # name of the step that runs
         self.seconds: dict[str, float] = {}  # expected for a step
-        self.expected = self.done = 0.0  # seconds of all steps, and of those that have begun before the current one
+        self.done = 0.0  # seconds of the steps that have begun before the current one
 
     def step(self, what: str) -> None:
         """Note that a step begins."""
@@ -92,89 +76,72 @@ class Measurement:
 
     def state(self) -> State:
         """Return how much is done."""
-        return State(self.what, self.done / self.expected if self.expected else None)
+        return State(self.what, self.done / sum(self.seconds.values()) if self.seconds else None)
 
     def run(self, size: tuple[int, int], files: Path, ablation: bool) -> None:
         """Measure everything; `files` is a folder for temporary files."""
         scene, plan, step = self.scene, self.plan, self.step
         step("compiling")
-        self.width, self.height = width, height = fitting_size(scene, size, plan)
+        width, height, once = fitting_size(scene, size, plan)
         wanted, variants = list(settings(scene, plan.most, plan.least_error)), list(without_lists(scene))
         if ablation:
             variants += [*without_unseen(scene, width, height), *with_more(scene, files)]
-        steps = list(self.steps(wanted, variants))
-        self.seconds, self.expected = dict(steps), sum(seconds for _, seconds in steps)
-        self.reference = reference(scene, width, height, plan.samples, SEED, lambda: step(REFERENCE))
-        stage = SettingRenderer(scene, width, height, self.threads)
-        for row, picture in measure_settings(stage, wanted, self.reference, plan.budget, step):
-            self.keep(row, picture)
-        if plan.others:
-            self.measure_others(self.reference, files)
-        self.single.extend(single_errors(scene, width, height, self.threads))
-        self.certificates.extend(hit_certificates(scene, width, height, SEED))
-        self.parts.extend(Ablation(scene, width, height, self.threads, plan.budget).parts(variants, step))
-        self.rows = measure_disturbed_again(stage, wanted, self.rows, plan.budget, step)
-
-    def steps(self, wanted: list[Setting], variants: list[Variant]) -> Iterator[tuple[str, float]]:
-        """Yield the steps of the work and the seconds that each is expected to take, from a measured frame."""
-        plan, pixels = self.plan, self.width * self.height
-        renderer, frame = Renderer(), np.zeros((self.height, self.width, 4), np.uint8)
-        once = min(runs(lambda: renderer.render(self.scene, frame), 2, 0.0)).wall
-        count = passes(plan.samples)
-        yield from [(REFERENCE, once * plan.samples / count)] * count
+        self.seconds = dict(expected(plan, wanted, variants, once, width * height))
+        right = self.reference = reference(scene, width, height, plan.samples, SEED, step)
+        about = subject(scene, self.name, width, height, self.threads, SEED)
+        self.found = found = Findings(about, right.samples, right.error)
+        self.add_notes(found, width, height)
+        stage = SettingRenderer(scene, width, height, self.threads, plan.budget)
         for setting in wanted:
-            samples = setting.value
-            if setting.knob is AUTO:
-                samples = min(max(1.0, (ONE_SAMPLE / setting.value) ** (1 / CONVERGENCE)), plan.samples)
-            again = max(RUNS * once * samples, plan.budget.seconds) if once * samples < plan.budget.longest else 0.0
-            yield setting.name, once * samples + again + PERCEIVED * pixels
-        for each in povray.SETTINGS if plan.others else ():
-            yield f"{each.knob} {each.label}", povray.RUNS * POVRAY * np.nan_to_num(each.samples, nan=4.0) * pixels
-        for variant in variants:
-            yield f"{variant.name} {variant.change}", 4 * PAIRS * once + (0.0 if variant.packing else COMPILING)
+            step(setting.name)
+            self.keep(found, *stage.measured(setting, right))
+        brute, culled = ([self.pictures.get(f"{knob} {count}", nan) for count in COUNTS] for knob in CULLING)
+        found.same += [count for count, a, b in zip(COUNTS, brute, culled, strict=True) if np.array_equal(a, b)]
+        if plan.others:
+            try:
+                program = povray.PovRay(scene, width, height, self.threads, files)
+                for row, picture in program.rows(right, plan.budget, step):
+                    self.keep(found, row, picture)
+            except RenderError as error:
+                found.not_measured.append(str(error))
+        found.single.extend(single_errors(scene, width, height, self.threads))
+        found.certificates.extend(hit_certificates(scene, width, height, SEED))
+        found.ablation.extend(Ablation(scene, width, height, self.threads, plan.budget).parts(variants, step))
+        stage.measure_disturbed_again(wanted, found.pictures, step)
 
-    def keep(self, row: Row, picture: Picture | None) -> None:
+    def keep(self, found: Findings, row: Row, picture: Picture | None) -> None:
         """Keep a row, and the picture that it tells about."""
-        self.rows.append(row)
+        found.pictures.append(row)
         if picture is not None:
             self.pictures[row.name] = picture
 
-    def measure_others(self, right: Reference, files: Path) -> None:
-        """Measure other programs, or note why they cannot be measured."""
-        try:
-            program = povray.PovRay(self.scene, self.width, self.height, self.threads, files)
-            for row, picture in program.rows(right, self.plan.budget.longest, self.step):
-                self.keep(row, picture)
-        except RenderError as error:
-            self.not_measured.append(str(error))
-
-    def findings(self, interrupted: str = "") -> Findings | None:
-        """Conclude from what was measured; None if no picture was."""
-        if not (self.reference and self.rows):
-            return None
+    def add_notes(self, found: Findings, width: int, height: int) -> None:
+        """Add what packing tells of the scene: what is left out, and where it is stiff."""
         packing = Renderer().packing
-        packing.pack(self.scene, self.width, self.height)
+        packing.pack(self.scene, width, height)
         shapes = packing.shape_arrays
-        return Findings(
-            subject(self.scene, self.name, self.width, self.height, self.threads, SEED),
-            self.reference.samples,
-            self.reference.error,
-            EIGHT_BITS,
-            self.rows,
-            list(orders(self.rows, self.reference.error)),
-            self.parts,
-            self.single,
-            self.certificates,
-            [*stiff_shapes(self.scene, shapes, self.width, self.height), *coincident(self.scene, shapes)],
-            [*kernel_notes(self.scene, generic=None, compiling=False), *packing.notes],
-            identical_without_culling(self.pictures),
-            self.not_measured,
-            interrupted,
-        )
+        found.notes += [*kernel_notes(self.scene, generic=None, compiling=False), *packing.notes]
+        found.stiff += [*stiff_shapes(self.scene, shapes, width, height), *coincident(self.scene, shapes)]
 
 
-def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:
-    """Return the requested size, halved until the reference fits the plan's time.
+def expected(
+    plan: Plan, wanted: list[Setting], variants: list[Variant], once: float, pixels: int
+) -> Iterator[tuple[str, float]]:
+    """Yield the steps of the work and the seconds that each is expected to take; `once` is the time of a frame."""
+    steps = reference_steps(plan.samples)
+    yield from ((step, once * plan.samples / len(steps)) for step in steps)
+    for setting in wanted:
+        first = once * min(setting.knob.work(setting.value), plan.samples)
+        again = max(RUNS * first, plan.budget.seconds) if first < plan.budget.longest else 0.0
+        yield setting.name, first + again + PERCEIVED * pixels
+    for row, _ in povray.SETTINGS if plan.others else ():
+        yield row.name, povray.RUNS * POVRAY * np.nan_to_num(row.samples, nan=4.0) * pixels
+    for variant in variants:
+        yield f"{variant.name} {variant.change}", 4 * PAIRS * once + (0.0 if variant.packing else COMPILING)
+
+
+def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int, float]:
+    """Return the requested size, halved until the reference fits the plan's time, and the seconds of a frame in it.
 
     Halving, unlike exact scaling, mostly gives the same size when the report is repeated.
     """
@@ -184,23 +151,13 @@ def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, 
     pixels = np.zeros((height, width, 4), np.uint8)
     renderer.render(scene, pixels)
     once = min(runs(lambda: renderer.render(scene, pixels), 2, 0.0)).wall
-    halvings = ceil(log2(once * plan.samples / plan.seconds) / 2)
-    return scaled_size((width, height), 0.5 ** max(0, halvings))
+    halvings = max(0, ceil(log2(once * plan.samples / plan.seconds) / 2))
+    return *scaled_size((width, height), 0.5**halvings), once * 0.25**halvings
 
 
 def scaled_size(size: tuple[int, int], factor: float) -> tuple[int, int]:
     """Scale a size; at least one pixel remains."""
     return max(1, round(size[0] * factor)), max(1, round(size[1] * factor))
-
-
-def identical_without_culling(pictures: dict[str, Picture]) -> list[int]:
-    """The sample counts for which brute force gave the same picture, bit for bit."""
-    return [
-        samples
-        for samples in COUNTS
-        if (picture := pictures.get(f"brute force {samples}")) is not None
-        and np.array_equal(picture, pictures.get(f"uniform {samples}", 0))
-    ]
 
 
 def report(
@@ -238,8 +195,9 @@ def report(
 
 def write_report(measurement: Measurement, folder: str | os.PathLike[str], interrupted: str = "") -> str:
     """Write the files of a report, and return its summary; nothing if no picture was measured."""
-    found = measurement.findings(interrupted)
-    if not (found and measurement.reference):
+    found = measurement.found
+    if not (found and found.pictures and measurement.reference):
         return ""
+    found.interrupted = interrupted
     write_files(folder, found, measurement.pictures, measurement.reference.picture)
     return f"{summary(found)}\nThe report is in {Path(folder, PAGE)}"

@@ -45,10 +45,10 @@ def changed(a: Picture, b: Picture) -> int:
 # 95 % confidence intervals: bootstrap of times and of errors (Efron and Tibshirani, An Introduction to the Bootstrap,
 # 1993), and Student's t for fitted lines.
 
-
 LEVEL = 0.95
 RESAMPLES = 1000
 SEED = 20240608
+LEAST_POINTS = 3  # of a line
 BLOCK = 16  # pixels along an edge of a block: errors of neighbouring pixels are not independent, those of blocks nearly
 # The 97.5 % quantile of Student's t, by degrees of freedom from 1 on.
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
@@ -61,13 +61,10 @@ class Interval(NamedTuple):
     high: float
 
 
-UNKNOWN = Interval(nan, nan)
-
-
 def of_median(values: Sequence[float]) -> Interval:
     """Return the percentile interval of the median of some values; NaN for fewer than three."""
     if len(values) < 3:
-        return UNKNOWN
+        return Interval(nan, nan)
     random, numbers = np.random.default_rng(SEED), np.array(values)
     medians = np.median(numbers[random.integers(0, len(numbers), (RESAMPLES, len(numbers)))], axis=1)
     return percentiles(medians)
@@ -109,20 +106,19 @@ class Line(NamedTuple):
     interval: Interval
 
 
-def fit(x: np.ndarray, y: np.ndarray) -> Line:
-    """Fit a straight line to at least two points, of which two have different x; the interval needs three points."""
+def fit(x: np.ndarray, y: np.ndarray) -> Line | None:
+    """Fit a straight line to the points with finite x; None if fewer than three of these differ."""
+    x, y = x[np.isfinite(x)], y[np.isfinite(x)]
+    if len(np.unique(x)) < LEAST_POINTS:
+        return None
     dx, dy = x - x.mean(), y - y.mean()
-    slope = float(dx @ dy / (dx @ dx))
-    intercept, free = float(y.mean() - slope * x.mean()), len(x) - 2
-    if not free:
-        return Line(slope, intercept, UNKNOWN)
+    slope, free = float(dx @ dy / (dx @ dx)), len(x) - 2
     deviation = float(np.sqrt(((dy - slope * dx) ** 2).sum() / free / (dx @ dx)))
     reach = STUDENT[min(free, len(STUDENT)) - 1] * deviation
-    return Line(slope, intercept, Interval(slope - reach, slope + reach))
+    return Line(slope, float(y.mean() - slope * x.mean()), Interval(slope - reach, slope + reach))
 
 
 # Error images: the error of each pixel as a heat map.
-
 
 LEAST = 1e-4  # errors up to this are black; an error of 1, black against white, is white
 HEAT = np.array([[0, 0, 0], [40, 20, 120], [190, 30, 80], [250, 150, 20], [255, 255, 255]])  # one colour a decade
@@ -155,32 +151,23 @@ TO_XYZ = PRIMARIES * np.linalg.solve(PRIMARIES, WHITE) / WHITE[:, None]  # white
 FROM_XYZ = np.linalg.inv(TO_XYZ)
 
 
-class Perceived(NamedTuple):
-    """A picture as the eye perceives it."""
-
-    colours: Picture  # (h, w, 3)
-    edges: Picture  # (h, w) strength of edges
-    points: Picture  # (h, w) strength of points
-
-
-def flip(a: Perceived, b: Perceived) -> Picture:
-    """Return the FLIP error of each pixel, (h, w)."""
-    colour = colour_error(difference(a.colours, b.colours) ** COLOUR_POWER)
-    feature = np.maximum(np.abs(a.edges - b.edges), np.abs(a.points - b.points)) / sqrt(2)
+def flip(a: Picture, b: Picture) -> Picture:
+    """Return the FLIP error of each pixel, (h, w), of two pictures as they are `perceived`."""
+    far = difference(a, b) ** COLOUR_POWER
+    # Small differences of colours, which are in [0, MOST], take most of the range of errors.
+    colour = np.interp(far, (0.0, KNEE * MOST, MOST), (0.0, KNEE_ERROR, 1.0))
+    feature = np.abs(a - b)[..., 3:].max(axis=-1) / sqrt(2)
     error: Picture = colour ** (1 - feature**FEATURE_POWER)
     return error
 
 
-def perceived(picture: Picture) -> Perceived:
-    """Filter a picture as the eye does."""
+def perceived(picture: Picture) -> Picture:
+    """Filter a picture as the eye does: L*a*b* colours, and the strength of edges and of points, (h, w, 5)."""
     xyz = linear(picture) @ TO_XYZ.T
     x = np.arange(-ceil(3 * FEATURE), ceil(3 * FEATURE) + 1) / FEATURE
     bell = np.exp(-x * x / 2)
-    return Perceived(
-        colours(xyz),
-        gradient_strength(xyz[..., 1], bell, balanced(-x * bell)),
-        gradient_strength(xyz[..., 1], bell, balanced((x * x - 1) * bell)),
-    )
+    slopes = balanced(-x * bell), balanced((x * x - 1) * bell)
+    return np.dstack([colours(xyz), *(gradient_strength(xyz[..., 1], bell, slope) for slope in slopes)])
 
 
 def linear(srgb: Picture) -> Picture:
@@ -249,8 +236,3 @@ def difference(a: Picture, b: Picture) -> Picture:
 
 GREEN, BLUE = (lab(np.array([[colour]]) @ TO_XYZ.T) for colour in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
 MOST = float(difference(GREEN, BLUE)[0, 0]) ** COLOUR_POWER  # the largest difference of two sRGB colours
-
-
-def colour_error(far: Picture) -> Picture:
-    """Map colour differences in [0, MOST] to errors in [0, 1]; small differences take most of the range."""
-    return np.interp(far, (0.0, KNEE * MOST, MOST), (0.0, KNEE_ERROR, 1.0))

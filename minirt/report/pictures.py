@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import nan
 from statistics import median
 from time import perf_counter
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -17,19 +17,8 @@ from minirt.lanes import width as lanes_of
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
-from minirt.report.metrics import (
-    Perceived,
-    Picture,
-    changed,
-    clamped,
-    flip,
-    of_median,
-    of_rmse,
-    perceived,
-    psnr,
-    rmse,
-    to_8_bits,
-)
+from minirt.report import metrics
+from minirt.report.metrics import Picture, clamped, rmse
 from minirt.report.settings import Drawn, Setting
 from minirt.scene import Scene
 
@@ -42,6 +31,10 @@ TOO_SLOW = "takes too long for more than the first run"
 DISTURBED_BY_OTHERS = "other programs needed the processors"
 
 
+Step = Callable[[str], object]  # is called with the name of a step before it begins
+Works = Sequence[Callable[[], Run]]
+
+
 class Budget(NamedTuple):
     """Time that measuring a setting may take."""
 
@@ -51,26 +44,41 @@ class Budget(NamedTuple):
 
 
 class Times(NamedTuple):
-    """Runs to take the time from, and a remark if that time is not reliable."""
+    """Runs to take the time from, of each of some works in turn, and a remark if that time is not reliable."""
 
-    runs: list[Run]
+    runs: list[tuple[Run, ...]]
     remark: str = ""
 
 
-def measure_times(work: Callable[[], object], first: Run, threads: int, budget: Budget) -> Times:
-    """Return the undisturbed runs of some work after the warm-up run `first`; all runs if too few are undisturbed."""
+def timed(work: Callable[[], object]) -> Run:
+    """Time one run of some work."""
+    return runs(work, 1, 0.0)[0]
+
+
+def measure_times(works: Works, first: Run, threads: int, budget: Budget, many: int = RUNS) -> Times:
+    """Return the undisturbed runs of works that take turns; all runs if too few are undisturbed.
+
+    `first` is a warm-up run of the last of the works. Every second time the works run in the opposite order.
+    """
     if first.wall > budget.longest:
-        return Times([first], TOO_SLOW)
-    least = RUNS if RUNS * first.wall <= budget.longest else FEW
-    found: list[Run] = []
-    for _ in range(budget.tries):
-        found += runs(work, least, budget.seconds)
-        undisturbed = [run for run in found if not is_disturbed(run, threads)]
+        return Times([(*(work() for work in works[:-1]), first)], TOO_SLOW)
+    least = many if many * first.wall <= budget.longest else FEW
+    found: list[tuple[Run, ...]] = []
+    for number in range(1, budget.tries + 1):
+        while len(found) < number * least or seconds_of(found) < number * budget.seconds:
+            step = -1 if len(found) % 2 else 1
+            found.append(tuple([work() for work in works[::step]][::step]))
+        undisturbed = [each for each in found if not any(is_disturbed(run, threads) for run in each)]
         if len(undisturbed) >= min(ENOUGH, least):
             return Times(undisturbed)
-        if sum(run.wall for run in found) > budget.longest:
+        if seconds_of(found) > budget.longest:
             break
     return Times(found, DISTURBED_BY_OTHERS)
+
+
+def seconds_of(found: list[tuple[Run, ...]]) -> float:
+    """Return the wall time of all runs together."""
+    return sum(run.wall for each in found for run in each)
 
 
 class Reference(NamedTuple):
@@ -79,22 +87,22 @@ class Reference(NamedTuple):
     picture: Picture
     samples: int
     error: float  # estimated RMSE of the reference itself
+    perceived: Picture  # the picture as the eye perceives it
 
 
-def reference(
-    scene: Scene, width: int, height: int, samples: int, seed: int, step: Callable[[], object] = lambda: None
-) -> Reference:
-    """Render the reference picture as the mean of two halves; `step` is called `passes(samples)` times.
+def reference(scene: Scene, width: int, height: int, samples: int, seed: int, step: Step = str) -> Reference:
+    """Render the reference picture as the mean of two halves; `step` is called before each of `reference_steps`.
 
     Each half has the usual lattice of samples, shifted by a random phase. The errors of the halves are independent, so
     the RMSE of their mean is half of the RMSE between them.
     """
-    renderer, random = Renderer(), np.random.default_rng(seed)
+    renderer, random, steps = Renderer(), np.random.default_rng(seed), iter(reference_steps(samples))
     pixels, linear = np.zeros((height, width, 4), np.uint8), np.zeros((height, width, 3))
     halves = []
     for half in range(2):
         places, total = (sample_positions(samples // 2) + random.random(2)) % 1.0, np.zeros((height, width, 3))
         for start in range(0, len(places), PASS):
+            step(next(steps))
             some = places[start : start + PASS]
             traced = renderer.packing.pack(scene, width, height)
             rays = packet_rays(traced.camera, some)
@@ -105,56 +113,86 @@ def reference(
             renderer.runner.next_row = arguments.next_row  # so that it can be cancelled
             renderer.runner.run([arguments], renderer.threads)
             total += linear * len(some)
-            step()
         halves.append(clamped(total / len(places)))
-    return Reference((halves[0] + halves[1]) / 2, samples, rmse(*halves) / 2)
+    mean = (halves[0] + halves[1]) / 2
+    return Reference(mean, samples, rmse(*halves) / 2, metrics.perceived(mean))
 
 
-def passes(samples: int) -> int:
-    """Return the number of steps that rendering a reference takes."""
-    return 2 * -(-(samples // 2) // PASS)
+def reference_steps(samples: int) -> list[str]:
+    """Return the names of the calls of the kernel for a reference."""
+    count = 2 * -(-(samples // 2) // PASS)
+    return [f"the reference, {number} of {count}" for number in range(1, count + 1)]
 
 
 class Row(NamedTuple):
     """Error and run time of one setting."""
 
-    knob: str
-    label: str  # of the point in the diagram: "16" samples, or the error that was asked for
+    knob: Annotated[str, "setting"]
+    label: Annotated[str, "point"]  # in the diagram: "16" samples, or the error that was asked for
     program: str = OURS  # that drew the picture
-    samples: float = nan  # per pixel: "adaptive" takes so many at most, "auto" on average; NaN where nobody tells
-    rmse: float = nan  # of colours, 1 from black to white
-    rmse_low: float = nan  # 95 % confidence interval: bootstrap over blocks of pixels, and the error of the reference
-    rmse_high: float = nan
-    rmse_8_bits: float = nan  # of the picture rounded to 8 bits per channel, as files have it
-    psnr: float = nan  # decibels
-    flip: float = nan  # mean over the pixels
-    changed: float = nan  # pixels that differ in 8 bits
-    not_finite: float = nan  # rays whose light was infinite or NaN, and is 0 in the picture
+    samples: Annotated[float, "samples", ".3g"] = nan  # per pixel: "adaptive" takes so many at most, "auto" on average
+    rmse: Annotated[float, "RMSE", ".5f"] = nan  # of colours, 1 from black to white
+    rmse_low: Annotated[float, "from", ".5f"] = nan  # 95 % confidence interval: bootstrap over blocks of pixels, and
+    rmse_high: Annotated[float, "to", ".5f"] = nan  # the error of the reference
+    rmse_8_bits: Annotated[float, "in 8 bits", ".5f"] = nan  # rounded to 8 bits per channel, as files have it
+    psnr: Annotated[float, "PSNR, dB", ".1f"] = nan
+    flip: Annotated[float, "FLIP", ".4f"] = nan  # mean over the pixels
+    changed: Annotated[float, "changed pixels", ".0f"] = nan  # that differ in 8 bits
+    not_finite: Annotated[float, "rays not finite", ".0f"] = nan  # whose light is 0 in the picture
     asked: float = nan  # error that was asked for, of automatic sampling
-    estimated: float = nan  # error that automatic sampling estimates itself
-    wall_ms: float = nan  # median of the undisturbed runs
-    wall_low_ms: float = nan  # 95 % confidence interval: bootstrap over the runs
-    wall_high_ms: float = nan
-    cpu_ms: float = nan
+    estimated: Annotated[float, "own estimate", ".5f"] = nan  # error by the estimate of automatic sampling
+    wall_ms: Annotated[float, "ms", ".2f"] = nan  # median of the undisturbed runs
+    wall_low_ms: Annotated[float, "from", ".2f"] = nan  # 95 % confidence interval: bootstrap over the runs
+    wall_high_ms: Annotated[float, "to", ".2f"] = nan
+    cpu_ms: Annotated[float, "processor ms", ".2f"] = nan
     runs: int = 0  # that were undisturbed
-    sort_ms: float = nan  # packing and culling, once per scene
-    compile_s: float = nan  # compiling the kernel, or loading it from the cache
+    sort_ms: Annotated[float, "sorting, ms", ".2f"] = nan  # packing and culling, once per scene
+    compile_s: Annotated[float, "compiling or loading, s", ".2f"] = nan  # of the kernel
     valid: bool = False  # False: failed, or other programs disturbed all tries: never recommended
-    remark: str = ""
+    remark: Annotated[str, "remark"] = ""
 
     @property
     def name(self) -> str:
         """Name of the setting, such as `uniform 16`."""
         return f"{self.knob} {self.label}"
 
+    def with_errors(self, picture: Picture, right: Reference) -> Row:
+        """Return the row with the errors of its picture."""
+        error, rounded = rmse(picture, right.picture), metrics.to_8_bits(picture) / 255
+        low, high = metrics.of_rmse(picture, right.picture, right.error)
+        return self._replace(
+            rmse=error,
+            rmse_low=low,
+            rmse_high=high,
+            rmse_8_bits=rmse(rounded, right.picture),
+            psnr=metrics.psnr(error),
+            flip=float(metrics.flip(metrics.perceived(picture), right.perceived).mean()),
+            changed=metrics.changed(picture, right.picture),
+        )
+
+    def with_times(self, times: Times) -> Row:
+        """Return the row with its times."""
+        walls = [run.wall * 1e3 for (run,) in times.runs]
+        low, high = metrics.of_median(walls)
+        return self._replace(
+            wall_ms=median(walls),
+            wall_low_ms=low,
+            wall_high_ms=high,
+            cpu_ms=median(run.cpu * 1e3 for (run,) in times.runs),
+            runs=len(walls),
+            valid=not times.remark,
+            remark=times.remark,
+        )
+
 
 class SettingRenderer:
     """Renders one scene in one size under all settings; keeps a prepared renderer for each knob."""
 
-    def __init__(self, scene: Scene, width: int, height: int, threads: int) -> None:
-        self.scene, self.threads = scene, threads
+    def __init__(self, scene: Scene, width: int, height: int, threads: int, budget: Budget) -> None:
+        self.scene, self.threads, self.budget = scene, threads, budget
         self.pixels = np.zeros((height, width, 4), np.uint8)
         self.ready: dict[str, tuple[Renderer, float, float]] = {}
+        self.cost: dict[str, float] = {}  # seconds for a unit of work with a knob
 
     def renderer(self, setting: Setting) -> tuple[Renderer, float, float]:
         """Return the renderer of a knob, its compile time in seconds and its packing time in milliseconds."""
@@ -171,90 +209,36 @@ class SettingRenderer:
     def draw(self, setting: Setting, linear: Picture | None = None) -> Drawn:
         """Draw the picture of a setting."""
         renderer, *_ = self.renderer(setting)
-        return setting.knob.picture(renderer, self.scene, self.pixels, setting.value, linear)
+        return setting.knob.draw(renderer, self.scene, self.pixels, setting.value, linear)
 
+    def times(self, setting: Setting, first: Run | None = None) -> Times:
+        """Time a setting after a warm-up run."""
+        draw = partial(timed, partial(self.draw, setting))
+        return measure_times([draw], first or draw(), self.threads, self.budget)
 
-def measure_settings(
-    stage: SettingRenderer, settings: list[Setting], reference: Reference, budget: Budget, step: Callable[[str], object]
-) -> Iterator[tuple[Row, Picture | None]]:
-    """Yield a row and a picture for each setting; None in place of a picture if it failed.
-
-    `step` is called with the name of each setting before it is measured.
-    """
-    right = perceived(reference.picture)
-    cost: dict[str, float] = {}  # seconds for a unit of work
-    for setting in settings:
-        step(setting.name)
-        knob, work = setting.knob.name, setting.knob.work(setting.value)
-        expected = cost.get(knob, 0.0) * work
-        if expected > budget.longest:
-            yield Row(knob, setting.label, remark=f"left out: takes about {expected:.2g} s"), None
-            continue
+    def measured(self, setting: Setting, right: Reference) -> tuple[Row, Picture | None]:
+        """Return the row and the picture of a setting; None in place of a picture if it failed or takes too long."""
+        row, work = Row(setting.knob.name, setting.label), setting.knob.work(setting.value)
+        expected = self.cost.get(row.knob, 0.0) * work
+        if expected > self.budget.longest:
+            return row._replace(remark=f"left out: takes about {expected:.2g} s"), None
+        light, drawn = np.zeros_like(right.picture), list[Drawn]()
         try:
-            row, picture = measure_setting(stage, setting, reference, right, budget)
+            _, compile_s, sort_ms = self.renderer(setting)
+            first = timed(lambda: drawn.append(self.draw(setting, light)))
+            times = self.times(setting, first)
         except RenderError as error:
-            yield Row(knob, setting.label, remark=f"failed: {error}"), None
-            continue
-        cost[knob] = row.wall_ms / 1e3 / work
-        yield row, picture
+            return row._replace(remark=f"failed: {error}"), None
+        picture = clamped(light)
+        row = row._replace(sort_ms=sort_ms, compile_s=compile_s, **drawn[0])
+        row = row.with_errors(picture, right).with_times(times)
+        self.cost[row.knob] = row.wall_ms / 1e3 / work
+        return row, picture
 
-
-def measure_setting(
-    stage: SettingRenderer, setting: Setting, reference: Reference, right: Perceived, budget: Budget
-) -> tuple[Row, Picture]:
-    """Measure one setting; return its row and its picture."""
-    _, compile_s, sort_ms = stage.renderer(setting)
-    light, drawn = np.zeros((*stage.pixels.shape[:2], 3)), list[Drawn]()
-    (first,) = runs(lambda: drawn.append(stage.draw(setting, light)), 1, 0.0)
-    row = Row(setting.knob.name, setting.label, sort_ms=sort_ms, compile_s=compile_s)._replace(**drawn[0]._asdict())
-    picture = clamped(light)
-    times = measure_times(partial(stage.draw, setting), first, stage.threads, budget)
-    return with_times(with_errors(row, picture, reference, right), times), picture
-
-
-def measure_disturbed_again(
-    stage: SettingRenderer, settings: list[Setting], rows: list[Row], budget: Budget, step: Callable[[str], object]
-) -> list[Row]:
-    """Time those rows again that other programs disturbed, after all others; return all rows."""
-    by_name = {setting.name: setting for setting in settings}
-    measured = []
-    for row in rows:
-        if row.remark == DISTURBED_BY_OTHERS and row.name in by_name:
-            step(f"{row.name} again")
-            setting = by_name[row.name]
-            (first,) = runs(partial(stage.draw, setting), 1, 0.0)
-            again = measure_times(partial(stage.draw, setting), first, stage.threads, budget)
-            measured.append(with_times(row, again))
-        else:
-            measured.append(row)
-    return measured
-
-
-def with_errors(row: Row, picture: Picture, reference: Reference, right: Perceived) -> Row:
-    """Return a row with the errors of its picture; `right` is the reference as it is perceived."""
-    error, rounded = rmse(picture, reference.picture), to_8_bits(picture) / 255
-    low, high = of_rmse(picture, reference.picture, reference.error)
-    return row._replace(
-        rmse=error,
-        rmse_low=low,
-        rmse_high=high,
-        rmse_8_bits=rmse(rounded, reference.picture),
-        psnr=psnr(error),
-        flip=float(flip(perceived(picture), right).mean()),
-        changed=changed(picture, reference.picture),
-    )
-
-
-def with_times(row: Row, times: Times) -> Row:
-    """Return a row with its times."""
-    walls = [run.wall * 1e3 for run in times.runs]
-    low, high = of_median(walls)
-    return row._replace(
-        wall_ms=median(walls),
-        wall_low_ms=low,
-        wall_high_ms=high,
-        cpu_ms=median(run.cpu * 1e3 for run in times.runs),
-        runs=len(walls),
-        valid=not times.remark,
-        remark=times.remark,
-    )
+    def measure_disturbed_again(self, wanted: list[Setting], rows: list[Row], step: Step) -> None:
+        """Time those rows again that other programs disturbed."""
+        by_name = {setting.name: setting for setting in wanted}
+        for number, row in enumerate(rows):
+            if row.remark == DISTURBED_BY_OTHERS and row.name in by_name:
+                step(f"{row.name} again")
+                rows[number] = row.with_times(self.times(by_name[row.name]))

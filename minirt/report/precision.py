@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
 from math import nan
-from typing import Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.element import fields_of
-from minirt.materials import Attributes
+from minirt.element import Element
 from minirt.rendering import Renderer
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import ATTRIBUTES, NEEDS, PLAIN, WORDS, features
+from minirt.rendering.packing.features import NEEDS, WORDS, features
 from minirt.rendering.packing.generic_kernels import precision_of
 from minirt.rendering.queries.rays import Hits, trace
 from minirt.report.metrics import Picture, changed, clamped, rmse
+from minirt.report.variants import with_materials
 from minirt.scene import Background, Lamp, Scene
-from minirt.shapes import ALL_KINDS, Kind, Shape
+from minirt.shapes import ALL_KINDS, Kind
 
 NEEDS_DOUBLE = "always float64"
 NO_KERNEL = "no kernel was compiled ahead of time"
@@ -27,11 +27,11 @@ NO_KERNEL = "no kernel was compiled ahead of time"
 class SingleError(NamedTuple):
     """Difference of float32 and float64 in a scene that is reduced to one feature, both with one sample per pixel."""
 
-    feature: str  # in words, or "shapes alone"
-    rmse: float = nan  # between the two pictures
-    largest: float = nan  # difference of a channel of a pixel
-    changed: float = nan  # pixels that differ in 8 bits
-    remark: str = ""
+    feature: Annotated[str, "feature"]  # in words, or "shapes alone"
+    rmse: Annotated[float, "RMSE", ".1e"] = nan  # between the two pictures
+    largest: Annotated[float, "largest difference", ".1e"] = nan  # of a channel of a pixel
+    changed: Annotated[float, "changed pixels", ".0f"] = nan  # in 8 bits
+    remark: Annotated[str, "remark"] = ""
 
 
 def single_errors(scene: Scene, width: int, height: int, threads: int) -> Iterator[SingleError]:
@@ -61,25 +61,19 @@ def light(renderer: Renderer, scene: Scene, width: int, height: int) -> Picture:
 
 def reduced(scene: Scene, feature: Hashable) -> Scene:
     """Return a scene with no other feature than the given one; None leaves the shapes alone."""
-    return Scene((kept for each in scene.elements for kept in reduced_element(each, feature)), scene.file)
+    kept = {feature, "reflective"} if feature in NEEDS else {feature}
+    elements = (plain_element(each, feature) for each in with_materials(scene, kept.__contains__))
+    return Scene((each for each in elements if each), scene.file)
 
 
-def reduced_element(element: Any, feature: Hashable) -> Iterator[Any]:
-    """Yield an element without other features; a spot becomes a point light, and parallel light is left out."""
+def plain_element(element: Element, feature: Hashable) -> Element | None:
+    """Return an element without other features; a spot becomes a point light, and parallel light is left out."""
     match element:
-        case Shape() if ATTRIBUTES(element) != PLAIN:
-            fields = (field for field in fields_of(Attributes) if getattr(element, field.name) is not None)
-            kept = {feature, "reflective"} if feature in NEEDS else {feature}
-            others = [each.name for each in fields if each.feature_of(getattr(element, each.name)) not in kept]
-            yield element.replace(**dict.fromkeys(others))
-        case Background():
-            if feature == ("environment" if isinstance(element.paint, str) else "background"):
-                yield element
+        case Background() if feature != ("environment" if isinstance(element.paint, str) else "background"):
+            return None
         case Lamp() if feature != "spots" and "spots" in element.features():
-            if plain := element.without_features():
-                yield plain
-        case _:
-            yield element
+            return element.without_features()
+    return element
 
 
 Array = NDArray[np.float64]
@@ -92,21 +86,21 @@ CLEARANCE = 2.0**-40  # by which rays start above a surface, relative to the coo
 class KindCertificates(NamedTuple):
     """Certificates of the hits of one kind of shape; backward errors in units of 2^-53 (t + |o - c| + size)."""
 
-    kind: str
-    rays: str
-    hits: int
-    backward_median: float
-    backward_largest: float
-    up_to_quarter: float  # share of the hits with a backward error up to 0.25
-    up_to_half: float  # from there up to 0.5
-    up_to_1: float
-    up_to_2: float
-    up_to_4: float
-    above_4: float
-    condition_median: float
-    condition_99: float  # 99 of 100 hits have no larger one
-    condition_largest: float
-    normal_largest: float  # distance from the exact unit normal
+    kind: Annotated[str, "shape"]
+    rays: Annotated[str, "rays"]
+    hits: Annotated[int, "hits", "d"]
+    backward_median: Annotated[float, "backward error, median", ".2f"]
+    backward_largest: Annotated[float, "largest", ".2f"]
+    up_to_quarter: Annotated[float, "up to 1/4", ".1%"]  # share of the hits with a backward error up to 0.25
+    up_to_half: Annotated[float, "1/2", ".1%"]  # from there up to 0.5
+    up_to_1: Annotated[float, "1", ".1%"]
+    up_to_2: Annotated[float, "2", ".1%"]
+    up_to_4: Annotated[float, "4", ".1%"]
+    above_4: Annotated[float, "more", ".1%"]
+    condition_median: Annotated[float, "condition, median", ".1f"]
+    condition_99: Annotated[float, "99 %", ".2g"]  # 99 of 100 hits have no larger one
+    condition_largest: Annotated[float, "largest", ".2g"]
+    normal_largest: Annotated[float, "normal off by", ".1g"]  # distance from the exact unit normal
 
 
 def hit_certificates(scene: Scene, width: int, height: int, seed: int) -> Iterator[KindCertificates]:

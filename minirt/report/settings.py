@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from math import inf, nan
-from typing import NamedTuple
+from math import inf
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,8 @@ Change = Callable[[SceneArrays, int], SceneArrays]  # of the arrays of a picture
 class ChangedPacking(Packing):
     """Packs scenes and changes their arrays in one or more ways."""
 
-    def __init__(self, *changes: Change, precision: str = "double") -> None:
-        super().__init__(precision=precision)
+    def __init__(self, *changes: Change) -> None:
+        super().__init__()
         self.changes = changes
 
     def pack_double(self, scene: Scene, width: int, height: int, crop: Crop) -> SceneArrays:
@@ -48,7 +48,7 @@ def without_tiles(arrays: SceneArrays, tiles: int) -> SceneArrays:
     return arrays._replace(
         # All lists of one kind come first, then all lists of the next kind.
         tile_shapes=np.concatenate([np.tile(members[a:b], tiles) for a, b in pairwise(starts)]),
-        cones=np.broadcast_to(np.array(EVERYWHERE), arrays.cones.shape).copy(),
+        cones=np.full_like(arrays.cones, EVERYWHERE),
         groups=tuple(
             group._replace(tile_starts=tiles * starts[kind] + counts[kind] * np.arange(tiles + 1))
             for kind, group in enumerate(arrays.groups)
@@ -63,7 +63,7 @@ def without_light_buffers(arrays: SceneArrays, _: int) -> SceneArrays:
     return arrays._replace(
         light_buffer_cells=1,
         light_shapes=np.concatenate([members[:0], *[members] * lights]),
-        light_cones=np.broadcast_to(np.array(EVERYWHERE), arrays.light_cones.shape).copy(),
+        light_cones=np.full_like(arrays.light_cones, EVERYWHERE),
         groups=tuple(
             group._replace(light_starts=np.arange(lights)[:, None] * len(members) + starts[kind : kind + 2])
             for kind, group in enumerate(arrays.groups)
@@ -94,45 +94,34 @@ def shapes_by_kind(arrays: SceneArrays) -> tuple[np.ndarray, np.ndarray]:
 COUNTS = (1, 4, 16, 64)  # samples per pixel
 MORE_COUNTS = (1, 2, 4, 8, 16, 32, 64)  # for a line whose order of convergence is wanted best
 ERRORS = (0.01, 0.005, 0.002, 0.001, 0.0005)  # asked of automatic sampling
+ONE_SAMPLE = 0.02  # a usual error of a picture with one sample per pixel
 
 
-class Drawn(NamedTuple):
-    """Settings with which a picture was drawn."""
-
-    samples: float  # per pixel
-    not_finite: int  # rays that brought light that is not finite
-    asked: float = nan  # error that was asked for
-    estimated: float = nan  # error by the estimate of automatic sampling
+Drawn = dict[str, Any]  # how a picture was drawn, by fields of `minirt.report.pictures.Row`
+Linear = np.ndarray | None
+Draw = Callable[[Renderer, Scene, np.ndarray, float, Linear], Drawn]
 
 
-Picture = Callable[[Renderer, Scene, np.ndarray, float, "np.ndarray | None"], Drawn]
-
-
-def uniform_samples(
-    renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: float, linear: np.ndarray | None
-) -> Drawn:
+def uniform_samples(renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: float, linear: Linear) -> Drawn:
     """Render with the same number of samples in each pixel."""
     renderer.render(scene, pixels, int(samples), linear)
-    return Drawn(samples, renderer.not_finite)
+    return {"samples": samples, "not_finite": renderer.not_finite}
 
 
-def adaptive_samples(
-    renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: float, linear: np.ndarray | None = None
-) -> Drawn:
+def adaptive_samples(renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: float, linear: Linear) -> Drawn:
     """Render one sample per pixel, then `samples` where neighbouring pixels differ."""
     renderer.render(scene, pixels, 1, linear)
     before = renderer.not_finite
     renderer.refine(scene, pixels, int(samples), linear=linear)
-    return Drawn(samples, before + renderer.not_finite)
+    return {"samples": samples, "not_finite": before + renderer.not_finite}
 
 
-def automatic_samples(
-    renderer: Renderer, scene: Scene, pixels: np.ndarray, error: float, linear: np.ndarray | None = None
-) -> Drawn:
+def automatic_samples(renderer: Renderer, scene: Scene, pixels: np.ndarray, error: float, linear: Linear) -> Drawn:
     """Render as `--samples auto` does until the estimated error is at most `error`."""
-    outcome = renderer.reach(scene, pixels, error, linear=linear)
-    assert outcome, "nobody cancels"
-    return Drawn(outcome.samples, renderer.not_finite, error, outcome.error)
+    found = renderer.reach(scene, pixels, error, linear=linear)
+    assert found, "nobody cancels"
+    figures = {"samples": found.samples, "asked": error, "estimated": found.error}
+    return figures | {"not_finite": renderer.not_finite}
 
 
 def brute_force(threads: int) -> Renderer:
@@ -148,31 +137,9 @@ class Knob(NamedTuple):
     name: str
     about: str
     renderer: Callable[[int], Renderer] = Renderer  # number of threads -> renderer
-    picture: Picture = uniform_samples
+    draw: Draw = uniform_samples
     values: tuple[float, ...] = COUNTS  # samples, or errors that are asked for
-    work: Callable[[float], float] = float  # value -> what the time is proportional to, at most
-
-
-SINGLE = Knob("single", "float32 relative to the eye", renderer=lambda threads: Renderer(threads, "single"))
-AUTO = Knob(
-    "auto",
-    "as many samples in each part of the picture as the error that is asked for needs (`--samples auto`)",
-    picture=automatic_samples,
-    values=ERRORS,
-    work=lambda error: error**-1.5,
-)
-KNOBS = (
-    Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS),
-    Knob(
-        "adaptive",
-        "one sample, then more where neighbouring pixels differ",
-        picture=adaptive_samples,
-        values=COUNTS[1:],
-    ),
-    AUTO,
-    SINGLE,
-    Knob("brute force", "no culling: every ray tries every shape", renderer=brute_force, values=COUNTS[:2]),
-)
+    work: Callable[[float], float] = float  # value -> samples per pixel, at most, to which the time is proportional
 
 
 def bounces(depth: int, name: str) -> Knob:
@@ -181,18 +148,23 @@ def bounces(depth: int, name: str) -> Knob:
     return Knob(name, about, renderer=lambda threads: Renderer(threads, depth=depth), values=COUNTS[::2])
 
 
+SINGLE = Knob("single", "float32 relative to the eye", renderer=lambda threads: Renderer(threads, "single"))
+AUTO = Knob(
+    "auto",
+    "as many samples in each part of the picture as the error that is asked for needs (`--samples auto`)",
+    draw=automatic_samples,
+    values=ERRORS,
+    work=lambda error: (ONE_SAMPLE / error) ** 1.5,
+)
 BOUNCES = (bounces(0, "no bounces"), bounces(1, "1 bounce"), bounces(3, "3 bounces"))
-
-
-def knobs_of(scene: Scene) -> Iterator[Knob]:
-    """Yield the knobs that change something in a scene.
-
-    Single precision is left out if the scene needs float64, bounces if nothing reflects or refracts.
-    """
-    is_single = Packing(precision="single").pack(scene, 16, 9).camera.dtype == np.float32
-    yield from (knob for knob in KNOBS if is_single or knob is not SINGLE)
-    if "reflective" in features(scene):
-        yield from BOUNCES
+KNOBS = (
+    Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS),
+    Knob("adaptive", "one sample, then more where neighbouring pixels differ", Renderer, adaptive_samples, COUNTS[1:]),
+    AUTO,
+    SINGLE,
+    Knob("brute force", "no culling: every ray tries every shape", renderer=brute_force, values=COUNTS[:2]),
+    *BOUNCES,
+)
 
 
 class Setting(NamedTuple):
@@ -213,7 +185,13 @@ class Setting(NamedTuple):
 
 
 def settings(scene: Scene, most: int, least_error: float) -> Iterator[Setting]:
-    """Yield all settings of a scene with at most `most` samples, or errors of at least `least_error`, knob by knob."""
-    for knob in knobs_of(scene):
+    """Yield all settings of a scene with at most `most` samples, or errors of at least `least_error`, knob by knob.
+
+    Single precision is left out if the scene needs float64, bounces if nothing reflects or refracts.
+    """
+    is_single = Packing(precision="single").pack(scene, 16, 9).camera.dtype == np.float32
+    without = {SINGLE.name} if not is_single else set()
+    without |= {each.name for each in BOUNCES} if "reflective" not in features(scene) else set()
+    for knob in (each for each in KNOBS if each.name not in without):
         wanted = (value for value in knob.values if (value >= least_error if knob is AUTO else value <= most))
         yield from (Setting(knob, value) for value in wanted)

@@ -5,7 +5,9 @@ What is added stands where no ray meets it, so that the picture stays the same: 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from functools import partial
+from operator import ne
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -62,10 +64,8 @@ def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
 
 def with_element(scene: Scene, added: Any) -> Scene:
     """Return a scene with an element more; a background and a camera replace those of the scene."""
-    kept = (
-        each for each in scene.elements if not isinstance(added, Background | Camera) or type(each) is not type(added)
-    )
-    return Scene((*kept, added), scene.file)
+    replaced = type(added) if isinstance(added, Background | Camera) else ()
+    return Scene((*(each for each in scene.elements if not isinstance(each, replaced)), added), scene.file)
 
 
 class InvisibleElements:
@@ -77,9 +77,10 @@ class InvisibleElements:
         lights = [np.subtract(light.position, eye) for light in scene.lights if hasattr(light, "position")]
         behind = max([1.0, *(-2 * float(offset @ forward) for offset in lights)])
         self.place, self.size = eye - behind * forward, SIZE * behind
-        self.back = vector(-forward)
-        self.folder = folder
-        self.camera = scene.camera
+        self.back, self.camera = vector(-forward), scene.camera
+        self.picture, self.mesh = str(folder / "grey.png"), str(folder / "tetrahedron.obj")
+        Image(np.full((2, 2, 3), 128, np.uint8)).save(self.picture)
+        Path(self.mesh).write_text(TETRAHEDRON)
 
     def features(self, plain: Shape) -> dict[str, Any]:
         """Return an element with each feature, by the feature's key; materials are those of a `plain` shape."""
@@ -93,44 +94,35 @@ class InvisibleElements:
         found["spots"] = SpotLight(position=vector(self.place), direction=self.back, angle=10.0, brightness=0.5)
         found["soft"] = FurtherLight(vector(self.place), 1e-12, size=self.size)  # so faint that no level changes
         found["lens"] = self.camera.replace(lens=self.size, focus=1.0)
-        found["background"] = Background(DARK)
-        found["environment"] = Background(self.picture())
+        found |= {"background": Background(DARK), "environment": Background(self.picture)}
         return {feature: found[feature] for feature in WORDS}
 
     def record(self, kind: type[Any]) -> Any:
-        """Make a record of its required fields."""
-        corners = iter(np.vstack([np.zeros(3), np.eye(3)]) * self.size)
+        """Make a record of its required fields; its points are corners of a small tetrahedron."""
+        corners = iter(np.vstack([np.zeros(3), np.eye(3)]) * self.size + self.place)
         required = (field for field in fields_of(kind) if field.required)
-        return kind(
-            **{
-                field.name: vector(self.place + next(corners)) if isinstance(field, Point) else self.value(field)
-                for field in required
-            }
-        )
+        return kind(**{field.name: self.value(field, corners) for field in required})
 
-    def value(self, field: Any) -> Any:
-        """Return a value of a field that is no point."""
-        if isinstance(field, Compound):
-            return field.check(field.parse(field.bare)) if field.bare else self.record(field.record)
-        if isinstance(field, (Picture, MeshField)):
-            return self.picture() if isinstance(field, Picture) else self.mesh(field)
-        if isinstance(field, (Length, Lengths)) and field.unit:
-            return (self.size,) * 3 if isinstance(field, Lengths) else self.size * (field.initial or 1.0)
-        if isinstance(field, (Direction, Colour)):
-            return self.back if isinstance(field, Direction) else GREY
-        return (field.low + field.high) / 2 if field.initial is None else field.initial
-
-    def mesh(self, field: MeshField) -> Any:
-        """Write a tetrahedron into the folder, and return it as the value of a field."""
-        path = self.folder / "tetrahedron.obj"
-        path.write_text(TETRAHEDRON)
-        return field.check(field.parse(str(path)))
-
-    def picture(self) -> str:
-        """Write a small picture into the folder, and return its path."""
-        path = self.folder / "grey.png"
-        Image(np.full((2, 2, 3), 128, np.uint8)).save(path)
-        return str(path)
+    def value(self, field: Any, corners: Iterator[np.ndarray] | None = None) -> Any:
+        """Return a value of a field."""
+        match field:
+            case Compound():
+                value = field.check(field.parse(field.bare)) if field.bare else self.record(field.record)
+            case MeshField():
+                value = field.check(field.parse(self.mesh))
+            case Picture():
+                value = self.picture
+            case Lengths() if field.unit:
+                value = (self.size,) * 3
+            case Length() if field.unit:
+                value = self.size * (field.initial or 1.0)
+            case Point() if corners:
+                value = vector(next(corners))
+            case Direction() | Colour():
+                value = self.back if isinstance(field, Direction) else GREY
+            case _:
+                value = (field.low + field.high) / 2 if field.initial is None else field.initial
+        return value
 
 
 def vector(numbers: Iterable[float]) -> Triple:
@@ -148,39 +140,34 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     The lists for culling tell what can be seen: they may hold too much, never too little. Where a mirror or glass can
     be seen, every shape counts as seen.
     """
-    seen, lit = shapes_in_lists(scene, width, height)
+    packing = Packing()
+    arrays = packing.pack(scene, width, height)
+    seen, lit = (
+        [scene.shapes[index] for index in np.unique(packing.shape_arrays.owner[np.unique(each)]).tolist()]
+        for each in (arrays.tile_shapes, arrays.light_shapes)
+    )
     used = {feature for shape in seen for feature in material_features(shape)}
     if "reflective" in used:
         return
     materials = {feature for shape in scene.shapes for feature in material_features(shape)}
     for feature, words in WORDS.items():
         if feature in materials - used:
-            yield Variant("unseen", words, "without", Scene(stripped(scene, feature), scene.file))
+            kept = with_materials(scene, partial(ne, feature))
+            yield Variant("unseen", words, "without", Scene(kept, scene.file))
     if "parallel" in features(scene):  # whose shadow rays need no list
         return
     for kind in {type(shape): None for shape in scene.shapes}:
-        if kind not in {type(shape) for shape in (*seen, *lit)}:
-            kept = Scene((each for each in scene.elements if type(each) is not kind), scene.file)
-            if kept.shapes:
-                yield Variant("unseen", kind.plural, "without", kept)
+        rest = Scene((each for each in scene.elements if type(each) is not kind), scene.file)
+        if rest.shapes and kind not in set(map(type, (*seen, *lit))):
+            yield Variant("unseen", kind.plural, "without", rest)
 
 
-def shapes_in_lists(scene: Scene, width: int, height: int) -> tuple[list[Shape], list[Shape]]:
-    """Return the shapes in the list of any tile, and those in the list of any light-buffer cell."""
-    packing = Packing()
-    arrays = packing.pack(scene, width, height)
-    owner = packing.shape_arrays.owner
-    lists = (np.unique(owner[np.unique(each)]).tolist() for each in (arrays.tile_shapes, arrays.light_shapes))
-    seen, lit = ([scene.shapes[index] for index in each] for each in lists)
-    return seen, lit
-
-
-def stripped(scene: Scene, feature: Hashable) -> Iterator[Element]:
-    """Yield the elements of a scene, without the materials that need a feature."""
+def with_materials(scene: Scene, wanted: Callable[[Hashable], bool]) -> Iterator[Element]:
+    """Yield the elements of a scene, of whose materials those remain whose feature is wanted."""
     for each in scene.elements:
         if isinstance(each, Shape) and ATTRIBUTES(each) != PLAIN:
-            values = {field.name: (field, getattr(each, field.name)) for field in fields_of(Attributes)}
-            names = [name for name, (field, value) in values.items() if value and field.feature_of(value) == feature]
-            yield each.replace(**dict.fromkeys(names))
+            values = [(field, getattr(each, field.name)) for field in fields_of(Attributes)]
+            gone = (field for field, value in values if value is not None and not wanted(field.feature_of(value)))
+            yield each.replace(**dict.fromkeys(field.name for field in gone))
         else:
             yield each

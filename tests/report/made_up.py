@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
-from minirt.report.findings import EIGHT_BITS, Findings, Order, Subject
+from minirt.report.findings import Findings, Subject
 from minirt.report.pictures import Row
 from minirt.report.precision import KindCertificates, SingleError
 
@@ -49,14 +49,17 @@ FINDINGS = Findings(
     Subject("scenes/<ball>.rt", "0" * 64, 32, 20, 2, 1, "a processor", {"minirt": "0.1.0"}),
     1024,
     REFERENCE_ERROR,
-    EIGHT_BITS,
-    ROWS,
-    [Order("uniform", 3, by_samples=1.0, by_samples_low=0.9, by_samples_high=1.1)],
-    [Part("scene", "", "as it is", 2.5, valid=True), Part("list", "tiles", "without", 5.0, percent=100.0, valid=True)],
-    [SingleError("shapes alone", 1e-7, 1e-6, 3)],
-    [KindCertificates("sphere", "from the eye", 8, 0.25, 3.0, 0.5, 0.25, 0.0, 0.0, 0.25, 0.0, 3.0, 9.0, 1e9, 1e-16)],
-    [Stiff("sphere 1", "small", {"size": 1e-9})],
-    ["kernel for spheres"],
-    [1, 4],
-    ["POV-Ray is not installed"],
+    pictures=ROWS,
+    ablation=[
+        Part("scene", "", "as it is", 2.5, valid=True),
+        Part("list", "tiles", "without", 5.0, percent=100.0, valid=True),
+    ],
+    single=[SingleError("shapes alone", 1e-7, 1e-6, 3)],
+    certificates=[
+        KindCertificates("sphere", "from the eye", 8, 0.25, 3.0, 0.5, 0.25, 0.0, 0.0, 0.25, 0.0, 3.0, 9.0, 1e9, 1e-16)
+    ],
+    stiff=[Stiff("sphere 1", "small", {"size": 1e-9})],
+    notes=["kernel for spheres"],
+    same=[1, 4],
+    not_measured=["POV-Ray is not installed"],
 )

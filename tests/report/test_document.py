@@ -2,31 +2,41 @@
 
 from __future__ import annotations
 
+import io
 import re
+from dataclasses import replace
+from math import nan
+from pathlib import Path
+from typing import Annotated, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from minirt.errors import RenderError
-from minirt.report import page
+from minirt.report import diagram
 from minirt.report.ablation import Part
-from minirt.report.document import advice, document, report_files
+from minirt.report.diagram import NARROW, WIDE, draw
+from minirt.report.document import PAGE, advice, document, report_files
 from minirt.report.findings import Findings, Order
-from minirt.report.page import NARROW, WIDE, Column, Document, draw
+from minirt.report.page import Document
 from minirt.report.pictures import Row
 from minirt.report.precision import SingleError
+from tests.browser import Page, page
 from tests.paths import PACKAGE
 from tests.report.made_up import FINDINGS, NAMES, POINTS, ROWS
 
+__all__ = ["page"]
 BLACK = np.zeros((2, 2, 3))
 README = (PACKAGE / "report" / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(autouse=True)
-def no_diagram(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_diagram(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave the diagram, which takes a second, to the tests that look at it."""
-    monkeypatch.setattr("minirt.report.document.draw", lambda found, size: "<svg/>")
+    if "page" not in request.fixturenames:
+        monkeypatch.setattr("minirt.report.document.draw", lambda found, size: "<svg/>")
 
 
 def lines(found: Findings) -> list[str]:
@@ -41,19 +51,19 @@ def test_the_diagram_and_the_advice_come_before_the_tables() -> None:
 def test_what_was_not_measured_has_no_section() -> None:
     parts = ["## Orders of convergence", "## What parts cost and save", "## Single precision, feature by feature"]
     assert [each for each in lines(FINDINGS) if each in parts] == parts
-    assert not set(lines(FINDINGS._replace(orders=[], ablation=[], single=[]))) & set(parts)
+    assert not set(lines(replace(FINDINGS, pictures=[], ablation=[], single=[]))) & set(parts)
 
 
 def test_an_interrupt_is_told_first() -> None:
-    assert lines(FINDINGS._replace(interrupted="Stopped."))[2] == "**Stopped.**"
-    assert 'role="alert">Stopped.<' in document(FINDINGS._replace(interrupted="Stopped."), []).as_page()
+    assert lines(replace(FINDINGS, interrupted="Stopped."))[2] == "**Stopped.**"
+    assert 'role="alert">Stopped.<' in document(replace(FINDINGS, interrupted="Stopped."), []).as_page()
 
 
 def test_disturbed_settings_are_counted_and_not_recommended() -> None:
     told = list(advice(FINDINGS))
     assert told[-1] == "left out, as other programs disturbed their times: 1"
     assert "error at most 0.01: single, 4 samples (9 ms, RMSE 0.01, 30.0 dB)" in told
-    calm = FINDINGS._replace(pictures=[row._replace(valid=True, remark="") for row in ROWS])
+    calm = replace(FINDINGS, pictures=[row._replace(valid=True, remark="") for row in ROWS])
     assert "error at most 0.01: adaptive, 4 samples (7 ms, RMSE 0.01, 30.0 dB)" in list(advice(calm))
     assert not [line for line in advice(calm) if "left out" in line]
 
@@ -74,13 +84,25 @@ def test_both_forms_tell_every_figure(name: str) -> None:
     assert ("&lt;slow&gt; &amp; sure" if name == "report.html" else "<slow> & sure") in text
 
 
-def test_cells_of_tables() -> None:
+class Made(NamedTuple):
+    """A record of a table; a field without a title is not shown."""
+
+    word: Annotated[str, "a `b`"]
+    number: Annotated[float, "y", ".2f"] = nan
+    hidden: int = 0
+    truth: Annotated[bool, "z"] = False
+
+
+def test_a_table_shows_the_titled_fields_of_records() -> None:
     """A dash for NaN, words for truth, a bar that ends no cell; the best rows in bold."""
-    made, row = Document("a `b`"), Row("k|nob", "1", valid=True)
-    made.table([row, Row("c", "2")], [Column("x", "knob"), Column("y", "rmse", ".2f"), Column("z", "valid")], [row])
-    assert made.markdown[1].splitlines()[1:] == ["|---|---:|---|", "| **k\\|nob** | - | yes |", "| c | - | no |"]
+    made, best = Document("t"), Made("k|nob", truth=True)
+    made.table([best, Made("<c>", 0.125)], [best])
+    head, *lines = made.markdown[1].splitlines()
+    assert head == "| a `b` | y | z |"
+    assert lines == ["|---|---:|---|", "| **k\\|nob** | - | yes |", "| <c> | 0.12 | no |"]
+    assert '<th class="word">a <code>b</code></th><th class="number">y</th>' in made.html[1]
     assert '<tr class="emphasised"><td class="word">k|nob</td><td class="number">-</td>' in made.html[1]
-    assert made.html[0] == "<h1>a <code>b</code></h1>"
+    assert '<tr class="plain"><td class="word">&lt;c&gt;</td>' in made.html[1]
 
 
 @pytest.mark.parametrize("size", [WIDE, NARROW])
@@ -95,13 +117,13 @@ def test_the_diagram_shows_each_line_and_each_point(size: tuple[float, float]) -
 
 
 def test_a_diagram_without_points_is_drawn() -> None:
-    assert "milliseconds per picture" in draw(FINDINGS._replace(pictures=[Row("auto", "1", remark="failed")]), WIDE)
+    assert "milliseconds per picture" in draw(replace(FINDINGS, pictures=[Row("auto", "1", remark="failed")]), WIDE)
 
 
 def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(page, "find_spec", lambda name: None)
+    monkeypatch.setattr(diagram, "find_spec", lambda name: None)
     with pytest.raises(RenderError, match=r"pip install 'minirt\[report\]'"):
-        page.require_matplotlib()
+        diagram.require_matplotlib()
 
 
 @pytest.mark.parametrize(
@@ -116,3 +138,57 @@ def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_page_about_reports_explains_every_field(table: str, fields: tuple[str, ...]) -> None:
     own = re.split(r"\n\| `\w+\.csv` \||\n\n", README.split(f"| `{table}` |")[1])[0]
     assert set(re.findall(r"`(\w+)`", own)) == set(fields)
+
+
+# The page, in a real browser without network.
+
+HEIGHT, WIDTH = 20, 32
+
+
+def shown(page: Page) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+
+def box(page: Page, selector: str) -> dict[str, float]:
+    return dict(page.value(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()"))
+
+
+def test_the_page_of_a_report(page: Page, tmp_path: Path) -> None:
+    """It asks for nothing, fits its window, follows the user's colours, and compares pictures; nothing is wrong."""
+    lights = {row.name: np.full((HEIGHT, WIDTH, 3), 0.001 * index) for index, row in enumerate(ROWS[:-1])}
+    file = tmp_path / PAGE
+    file.write_bytes(report_files(FINDINGS, lights, np.zeros((HEIGHT, WIDTH, 3)))[PAGE])
+    page.open(file, height=2000)
+    assert page.value("document.title") == "scenes/<ball>.rt: error against run time"
+    assert page.requests[0] == file.as_uri()
+    assert {each.partition(":")[0] for each in page.requests[1:]} == {"data"}
+    assert page.value("[...document.images].every(each => each.complete && each.naturalWidth > 0)")
+    names = page.value("[...document.querySelectorAll('.pictures img')].map(each => each.alt)")
+    assert len(names) == len(ROWS)  # the last row has none, and the reference is one more
+    assert page.value("[...document.querySelectorAll('select.left option')].map(each => each.text)") == names
+
+    panes = box(page, ".panes")
+    y = round(panes["y"] + panes["height"] / 2)
+    left, right = (round(panes["x"] + share * panes["width"]) for share in (0.3, 0.7))
+    one, other = (shown(page)[y, x].tolist() for x in (left, right))
+    assert one != other
+    page.value("document.querySelector('.comparison input').focus()")
+    page.press("End", 35)
+    assert [shown(page)[y, x].tolist() for x in (left, right)] == [one, one]
+    page.drag((panes["x"] + 5, y), (panes["x"] + 0.5 * panes["width"], y))
+    assert [shown(page)[y, x].tolist() for x in (left, right)] == [one, other]
+    assert np.median(shown(page)) > 240
+    assert page.complaints == []
+
+    for width, seen, hidden in ((1000, ".wide", ".narrow"), (380, ".narrow", ".wide")):
+        page.open(file, width, is_dark=True)
+        assert page.value("document.documentElement.scrollWidth") == width
+        assert box(page, f"{seen} svg")["width"] > 0.85 * min(width, 960)
+        assert box(page, hidden)["width"] == 0
+        assert np.median(shown(page)) < 40
+
+    (tmp_path / "changed.html").write_text(
+        file.read_text().replace("</main>", '<img src="https://example.invalid/picture.png"></main>')
+    )
+    page.open(tmp_path / "changed.html")  # the browser itself refuses to leave the page
+    assert any("Content Security Policy" in each for each in page.complaints)

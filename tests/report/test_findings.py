@@ -9,10 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from minirt.report.findings import choices, orders, pareto_front
+from minirt.report.findings import Findings, Order, pareto_front
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Row
+from tests.report.made_up import FINDINGS
 
 FLOOR = 1e-4  # error of the reference
+
+
+def orders(rows: list[Row]) -> list[Order]:
+    return Findings(FINDINGS.subject, 1024, FLOOR, pictures=rows).orders
 
 
 def row(knob: str, samples: float, order: float = 0.75, noise: float = 1.0, **changes: object) -> Row:
@@ -23,7 +28,7 @@ def row(knob: str, samples: float, order: float = 0.75, noise: float = 1.0, **ch
 
 
 def test_the_order_and_the_constant_are_found() -> None:
-    (found,) = orders([row("uniform", samples) for samples in (1, 4, 16, 64)], FLOOR)
+    (found,) = orders([row("uniform", samples) for samples in (1, 4, 16, 64)])
     assert (found.knob, found.points) == ("uniform", 4)
     for order, low, high in (found[2:5], found[5:8]):
         assert low <= order <= high
@@ -33,7 +38,7 @@ def test_the_order_and_the_constant_are_found() -> None:
 
 def test_scatter_widens_the_interval_around_the_order() -> None:
     noise = (1.1, 0.9, 1.05, 0.95)
-    (found,) = orders([row("u", 4**k, noise=factor) for k, factor in enumerate(noise)], FLOOR)
+    (found,) = orders([row("u", 4**k, noise=factor) for k, factor in enumerate(noise)])
     assert 0.05 < found.by_samples_high - found.by_samples_low < 0.5
     assert found.by_samples_low < 0.75 < found.by_samples_high
 
@@ -41,17 +46,16 @@ def test_scatter_widens_the_interval_around_the_order() -> None:
 def test_points_that_the_reference_cannot_tell_are_left_out() -> None:
     rows = [row("u", samples) for samples in (1, 4, 16, 64)]
     same = row("u", 4096, rmse=1.5 * FLOOR)
-    assert [*orders([*rows, same], FLOOR)] == [*orders(rows, FLOOR)]
-    assert [*orders(rows[:2], FLOOR)] == []
-    assert [*orders([*rows[:2], Row("u", "failed")], FLOOR)] == []
+    assert orders([*rows, same]) == orders(rows)
+    assert orders(rows[:2]) == orders([*rows[:2], Row("u", "failed")]) == []
 
 
 def test_disturbed_times_and_unknown_samples_are_left_out_of_the_fit() -> None:
     rows = [row("u", samples) for samples in (1, 4, 16, 64)]
     slow = rows[2]._replace(wall_ms=1e6, valid=False)
-    (found,) = orders([*rows[:2], slow, rows[3]], FLOOR)
+    (found,) = orders([*rows[:2], slow, rows[3]])
     assert found.by_time == pytest.approx(0.75)
-    (found,) = orders([each._replace(samples=nan) for each in rows], FLOOR)
+    (found,) = orders([each._replace(samples=nan) for each in rows])
     assert isnan(found.by_samples)
     assert found.by_time == pytest.approx(0.75)
 
@@ -69,7 +73,8 @@ FEW = some.integers(1, 6).map(float)
 
 
 def best(rows: list[Row], doubt: float = 0.0) -> dict[str, Row | None]:
-    return {choice["wanted"]: choice["best"] for choice in choices(rows, doubt)}
+    found = Findings(FINDINGS.subject, 1024, doubt, pictures=rows)
+    return {choice["wanted"]: choice["best"] for choice in found.choices}
 
 
 def test_the_best_settings_by_hand() -> None:
@@ -90,7 +95,8 @@ def test_an_error_smaller_by_less_than_the_doubt_counts_as_equal() -> None:
 def test_disturbed_rows_and_other_programs_are_never_the_best() -> None:
     disturbed, other = FINE._replace(valid=False, remark=DISTURBED_BY_OTHERS), FINE._replace(program="POV-Ray")
     assert pareto_front([ROUGH, disturbed, other], 0.0) == [ROUGH]
-    assert {choice["disturbed"] for choice in choices([ROUGH, disturbed, other], 0.0)} == {1}
+    found = Findings(FINDINGS.subject, 1024, 0.0, pictures=[ROUGH, disturbed, other])
+    assert {choice["disturbed"] for choice in found.choices} == {1}
 
 
 @given(some.lists(some.builds(point, FEW, FEW), max_size=12))

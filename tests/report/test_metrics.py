@@ -76,11 +76,10 @@ def test_the_median_lies_in_its_interval() -> None:
 
 def test_the_slope_lies_in_its_interval() -> None:
     random, x = np.random.default_rng(2), np.log([1, 2, 4, 8, 16, 32, 64])
-    lines = [fit(x, 0.3 - 0.75 * x + random.normal(0, 0.1, len(x))) for _ in range(TRIALS)]
+    lines = [line for _ in range(TRIALS) if (line := fit(x, 0.3 - 0.75 * x + random.normal(0, 0.1, len(x))))]
     assert 0.91 < share_that_holds(-0.75, [line.interval for line in lines]) < 0.98
     assert np.mean([line.intercept for line in lines]) == pytest.approx(0.3, abs=0.02)
-    assert isnan(fit(x[:2], x[:2]).interval.low)
-    assert fit(x[:2], x[:2]).slope == pytest.approx(1.0)
+    assert fit(np.array([1.0, 1.0, 2.0, np.nan]), np.zeros(4)) is None
 
 
 @pytest.mark.parametrize("free", [1, 5])

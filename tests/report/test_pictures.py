@@ -19,11 +19,9 @@ from minirt.report.pictures import (
     Reference,
     Row,
     SettingRenderer,
-    measure_disturbed_again,
-    measure_settings,
     reference,
 )
-from minirt.report.settings import AUTO, KNOBS, Drawn, Knob, Setting, knobs_of, settings
+from minirt.report.settings import AUTO, KNOBS, Drawn, Knob, Setting, settings
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 from tests.simulated_clock import PACKET_SECONDS, PROCESSOR_SHARE, Clock, packets, simulate_clock
@@ -56,8 +54,8 @@ def error(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def rows_for(*wanted: Setting, budget: Budget = EASY, scene: Scene = ALL, near: Reference | None = None) -> list[Row]:
-    stage = SettingRenderer(scene, WIDTH, HEIGHT, 1)
-    return [row for row, _ in measure_settings(stage, list(wanted), near or right(), budget, lambda name: None)]
+    stage = SettingRenderer(scene, WIDTH, HEIGHT, 1, budget)
+    return [stage.measured(setting, near or right())[0] for setting in wanted]
 
 
 @cache
@@ -98,7 +96,7 @@ def test_more_samples_are_closer_and_take_longer() -> None:
 def test_knobs_do_what_they_say(clock: Clock) -> None:
     uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
     assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
-    stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
+    stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1, EASY), (knob for knob in KNOBS if knob.name == "adaptive")
     stage.renderer(Setting(knob, 16))
     before = clock.packets
     stage.draw(Setting(knob, 16))
@@ -115,9 +113,9 @@ def test_knobs_do_what_they_say(clock: Clock) -> None:
 
 def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     mirrors = ALL.replace(ALL.shapes[0], mirror=0.5).replace(ALL.shapes[1], mirror=0.9)
-    names = [knob.name for knob in knobs_of(ALL)]
-    assert names == ["uniform", "adaptive", "auto", "single", "brute force"]
-    assert [knob.name for knob in knobs_of(mirrors)] == [*names[:3], names[4], "no bounces", "1 bounce", "3 bounces"]
+    plain, names = (list({each.knob.name: 0 for each in settings(scene, 16, 0.0)}) for scene in (ALL, mirrors))
+    assert plain == ["uniform", "adaptive", "auto", "single", "brute force"]
+    assert names == [*plain[:3], plain[4], "no bounces", "1 bounce", "3 bounces"]
     right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
     wanted = [setting for setting in settings(mirrors, 16, 1.0) if setting.value == 16]
     rmse = {row.knob: row.rmse for row in rows_for(*wanted, scene=mirrors, near=right)}
@@ -143,7 +141,7 @@ def test_a_setting_that_fails_stays_as_nan() -> None:
     def fails(*_: object) -> Drawn:
         raise RenderError("no room")
 
-    failed, good = rows_for(Setting(Knob("bad", "", picture=fails), 1), Setting(KNOBS[0], 1))
+    failed, good = rows_for(Setting(Knob("bad", "", draw=fails), 1), Setting(KNOBS[0], 1))
     assert isnan(failed.rmse)
     assert isnan(failed.wall_ms)
     assert (failed.valid, failed.remark) == (False, "failed: no room")
@@ -190,9 +188,10 @@ def test_a_disturbed_row_is_measured_again_after_all_others(monkeypatch: pytest.
     wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
     before = rows_for(*wanted)
     assert [row.remark for row in before] == [DISTURBED_BY_OTHERS] * 2
-    busy[0], told, stage = False, [], SettingRenderer(ALL, WIDTH, HEIGHT, 1)
+    busy[0], told, stage = False, [], SettingRenderer(ALL, WIDTH, HEIGHT, 1, EASY)
     good, *_ = rows_for(wanted[0])
-    after = measure_disturbed_again(stage, wanted, [good, before[1]], EASY, told.append)
+    after = [good, before[1]]
+    stage.measure_disturbed_again(wanted, after, told.append)
     assert told == ["uniform 4 again"]
     assert after[0] == good
     assert (after[1].valid, after[1].remark, after[1].rmse) == (True, "", before[1].rmse)
