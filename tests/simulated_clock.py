@@ -11,7 +11,7 @@ from minirt.rendering import frame_runner, renderer
 from minirt.rendering.frame import Frame
 from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
-from minirt.report import bench, pictures
+from minirt.report import bench
 
 PACKET_SECONDS = 1e-6  # for a packet of rays
 # Processor time by wall time: different enough from 1 to be told apart, but not counted as a disturbed measurement.
@@ -45,7 +45,7 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(FrameRunner, "run", counted)
-    for module in (system, auto, frame_runner, renderer, pictures, bench):
+    for module in (system, auto, frame_runner, renderer, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(system, "process_time", clock.cpu)
     return clock

@@ -100,8 +100,7 @@ class Ablation:
     def pays_after(self, change: str, ratio: float, interval: Interval, compile_s: float) -> float:
         """Return after how many seconds of rendering a kernel without a part has saved its own compile time.
 
-        `ratio` is the frame time of the variant by that of the scene as it is. NaN where its interval does not tell
-        for certain that the part costs time.
+        `ratio` is the frame time of the variant by that of the scene as it is. NaN where its interval holds 1.
         """
         if change == "added":
             return self.compile_s * ratio / (ratio - 1) if interval.low > 1 else nan

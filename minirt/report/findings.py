@@ -16,7 +16,7 @@ import numpy as np
 import minirt
 from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
-from minirt.report.metrics import Line, fit
+from minirt.report.metrics import fit
 from minirt.report.pictures import DISTURBED_BY_OTHERS, OURS, Row
 from minirt.report.precision import KindCertificates, SingleError
 from minirt.scene import Scene, dump
@@ -88,17 +88,16 @@ class Findings:
         for row in self.pictures:
             if row.rmse > CLEAR * self.reference_error:
                 groups.setdefault(row.knob, []).append(row)
-        return [order for rows in groups.values() if (order := self.order(rows))]
+        found = map(self.order, groups.values())
+        return [order for order in found if isfinite(order.by_samples) or isfinite(order.by_time)]
 
-    def order(self, rows: list[Row]) -> Order | None:
-        """Fit the order of convergence of a line; None where it has too few points."""
+    def order(self, rows: list[Row]) -> Order:
+        """Fit the order of convergence of a line, which falls with the logarithms of samples and of time."""
         errors = np.log([sqrt(row.rmse**2 - self.reference_error**2) for row in rows])
-        samples, times = np.log([row.samples for row in rows]), np.log([row.wall_ms for row in rows])
         timed = [row.valid for row in rows]
-        by_samples, by_time = fit(samples, errors), fit(times[timed], errors[timed])
-        constant = exp(by_samples.intercept) if by_samples else nan
-        found = Order(rows[0].knob, len(rows), *falling(by_samples), *falling(by_time), constant)
-        return found if by_samples or by_time else None
+        by_samples = fit(-np.log([row.samples for row in rows]), errors)
+        by_time = fit(-np.log([row.wall_ms for row in rows])[timed], errors[timed])
+        return Order(rows[0].knob, len(rows), *by_samples[:3], *by_time[:3], exp(by_samples.intercept))
 
     @property
     def choices(self) -> list[dict[str, Any]]:
@@ -135,11 +134,6 @@ def processor() -> str:
     except OSError:
         return platform.processor()
     return next((line.split(": ")[1] for line in lines if line.startswith("model name")), platform.processor())
-
-
-def falling(found: Line | None) -> tuple[float, float, float]:
-    """Return the order of a line, which is its slope downwards, and the interval of the order."""
-    return (-found.slope, -found.interval.high, -found.interval.low) if found else (nan, nan, nan)
 
 
 def pareto_front(rows: Iterable[Row], doubt: float) -> list[Row]:

@@ -98,24 +98,25 @@ def percentiles(values: np.ndarray) -> Interval:
     return Interval(low, high)
 
 
-class Line(NamedTuple):
-    """A straight line fitted by least squares, and the confidence interval of its slope."""
+class Fit(NamedTuple):
+    """A straight line fitted by least squares, and the confidence interval of its slope; NaN without enough points."""
 
-    slope: float
-    intercept: float
-    interval: Interval
+    slope: float = nan
+    low: float = nan
+    high: float = nan
+    intercept: float = nan
 
 
-def fit(x: np.ndarray, y: np.ndarray) -> Line | None:
-    """Fit a straight line to the points with finite x; None if fewer than three of these differ."""
+def fit(x: np.ndarray, y: np.ndarray) -> Fit:
+    """Fit a straight line to the points with finite x, of which at least three must differ."""
     x, y = x[np.isfinite(x)], y[np.isfinite(x)]
     if len(np.unique(x)) < LEAST_POINTS:
-        return None
+        return Fit()
     dx, dy = x - x.mean(), y - y.mean()
     slope, free = float(dx @ dy / (dx @ dx)), len(x) - 2
     deviation = float(np.sqrt(((dy - slope * dx) ** 2).sum() / free / (dx @ dx)))
     reach = STUDENT[min(free, len(STUDENT)) - 1] * deviation
-    return Line(slope, float(y.mean() - slope * x.mean()), Interval(slope - reach, slope + reach))
+    return Fit(slope, slope - reach, slope + reach, float(y.mean() - slope * x.mean()))
 
 
 # Error images: the error of each pixel as a heat map.

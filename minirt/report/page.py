@@ -79,14 +79,14 @@ class Document:
         self.add("\n".join(f"- {item}" for item in items), f"<ul>{points}</ul>")
 
     def section(self, title: str, text: str, rows: Sequence[Any], emphasised: Collection[Any] = ()) -> None:
-        """Add a heading, a paragraph and a table; nothing where there are no rows."""
-        if rows:
-            self.heading(title)
-            self.text(text)
-            self.table(rows, emphasised)
+        """Add a heading, a paragraph and a table of records, with a dash for NaN; nothing where there are no records.
 
-    def table(self, rows: Sequence[Any], emphasised: Collection[Any] = ()) -> None:
-        """Add a table of records, with a dash for NaN; it scrolls sideways where it is wider than the screen."""
+        The table scrolls sideways where it is wider than the screen.
+        """
+        if not rows:
+            return
+        self.heading(title)
+        self.text(text)
         shown = columns(type(rows[0]))
         kinds = ["number" if column.format else "word" for column in shown]  # numbers are aligned to the right
         titles = [column.title for column in shown]

@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from math import nan
 from statistics import median
-from time import perf_counter
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
 from minirt.report import metrics
 from minirt.report.metrics import Picture, clamped, rmse
-from minirt.report.settings import Drawn, Setting
+from minirt.report.settings import Drawn, Knob, Setting
 from minirt.scene import Scene
 
 OURS = "miniRT"
@@ -191,24 +190,22 @@ class SettingRenderer:
     def __init__(self, scene: Scene, width: int, height: int, threads: int, budget: Budget) -> None:
         self.scene, self.threads, self.budget = scene, threads, budget
         self.pixels = np.zeros((height, width, 4), np.uint8)
-        self.ready: dict[str, tuple[Renderer, float, float]] = {}
+        self.ready: dict[str, tuple[Renderer, dict[str, Any]]] = {}
         self.cost: dict[str, float] = {}  # seconds for a unit of work with a knob
 
-    def renderer(self, setting: Setting) -> tuple[Renderer, float, float]:
-        """Return the renderer of a knob, its compile time in seconds and its packing time in milliseconds."""
-        if setting.knob.name not in self.ready:
-            renderer = setting.knob.renderer(self.threads)
-            start = perf_counter()
-            renderer.specialise(self.scene)
-            compiled = perf_counter()
+    def renderer(self, knob: Knob) -> tuple[Renderer, dict[str, Any]]:
+        """Return the renderer of a knob, and how long its compilation and its packing took, by fields of `Row`."""
+        if knob.name not in self.ready:
+            renderer = knob.renderer(self.threads)
+            compiling = timed(lambda: renderer.specialise(self.scene))
             height, width, _ = self.pixels.shape
-            renderer.packing.pack(self.scene, width, height)
-            self.ready[setting.knob.name] = renderer, compiled - start, (perf_counter() - compiled) * 1e3
-        return self.ready[setting.knob.name]
+            sorting = timed(lambda: renderer.packing.pack(self.scene, width, height))
+            self.ready[knob.name] = renderer, {"compile_s": compiling.wall, "sort_ms": sorting.wall * 1e3}
+        return self.ready[knob.name]
 
     def draw(self, setting: Setting, linear: Picture | None = None) -> Drawn:
         """Draw the picture of a setting."""
-        renderer, *_ = self.renderer(setting)
+        renderer, _ = self.renderer(setting.knob)
         return setting.knob.draw(renderer, self.scene, self.pixels, setting.value, linear)
 
     def times(self, setting: Setting, first: Run | None = None) -> Times:
@@ -224,14 +221,13 @@ class SettingRenderer:
             return row._replace(remark=f"left out: takes about {expected:.2g} s"), None
         light, drawn = np.zeros_like(right.picture), list[Drawn]()
         try:
-            _, compile_s, sort_ms = self.renderer(setting)
+            _, prepared = self.renderer(setting.knob)
             first = timed(lambda: drawn.append(self.draw(setting, light)))
             times = self.times(setting, first)
         except RenderError as error:
             return row._replace(remark=f"failed: {error}"), None
         picture = clamped(light)
-        row = row._replace(sort_ms=sort_ms, compile_s=compile_s, **drawn[0])
-        row = row.with_errors(picture, right).with_times(times)
+        row = row._replace(**prepared, **drawn[0]).with_errors(picture, right).with_times(times)
         self.cost[row.knob] = row.wall_ms / 1e3 / work
         return row, picture
 

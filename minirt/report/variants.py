@@ -5,7 +5,7 @@ What is added stands where no ray meets it, so that the picture stays the same: 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from functools import partial
 from operator import ne
 from pathlib import Path
@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.element import Element, fields_of
-from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture, Point, Triple
+from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture, Point
 from minirt.materials import Attributes, Clouds, Compound, Glass
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
@@ -77,7 +77,7 @@ class InvisibleElements:
         lights = [np.subtract(light.position, eye) for light in scene.lights if hasattr(light, "position")]
         behind = max([1.0, *(-2 * float(offset @ forward) for offset in lights)])
         self.place, self.size = eye - behind * forward, SIZE * behind
-        self.back, self.camera = vector(-forward), scene.camera
+        self.back, self.camera = (-forward).tolist(), scene.camera
         self.picture, self.mesh = str(folder / "grey.png"), str(folder / "tetrahedron.obj")
         Image(np.full((2, 2, 3), 128, np.uint8)).save(self.picture)
         Path(self.mesh).write_text(TETRAHEDRON)
@@ -91,8 +91,8 @@ class InvisibleElements:
         glass = self.record(Glass)
         found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
         found["raised_patterns"] = plain.replace(clouds=Clouds(self.size, height=0.1))
-        found["spots"] = SpotLight(position=vector(self.place), direction=self.back, angle=10.0, brightness=0.5)
-        found["soft"] = FurtherLight(vector(self.place), 1e-12, size=self.size)  # so faint that no level changes
+        found["spots"] = SpotLight(position=self.place, direction=self.back, angle=10.0, brightness=0.5)
+        found["soft"] = FurtherLight(self.place, 1e-12, size=self.size)  # so faint that no level changes
         found["lens"] = self.camera.replace(lens=self.size, focus=1.0)
         found |= {"background": Background(DARK), "environment": Background(self.picture)}
         return {feature: found[feature] for feature in WORDS}
@@ -117,18 +117,12 @@ class InvisibleElements:
             case Length() if field.unit:
                 value = self.size * (field.initial or 1.0)
             case Point() if corners:
-                value = vector(next(corners))
+                value = next(corners)
             case Direction() | Colour():
                 value = self.back if isinstance(field, Direction) else GREY
             case _:
                 value = (field.low + field.high) / 2 if field.initial is None else field.initial
         return value
-
-
-def vector(numbers: Iterable[float]) -> Triple:
-    """Return three floats as a tuple."""
-    x, y, z = map(float, numbers)
-    return x, y, z
 
 
 # Features and kinds of shapes that a scene has, and that no pixel of its picture can show.

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from minirt.rendering.threads import usable_cores
 from minirt.report.findings import processor
 from tests.bench import scenes, starts
-from tests.bench.measure import Cells, Setting, System, available, records, table, take_turns
+from tests.bench.measure import Setting, System, available, records, table, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
 from tests.bench.peers.programs import PovRay, Tachyon
@@ -62,16 +62,16 @@ def main() -> None:
     print(f"{processor()}, {usable_cores()} processors; {asked.threads} threads each.")
     print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {plan.rounds} rounds")
     print("in which the systems take turns; the second figure is a multiple of the first row.\n", flush=True)
-    four = [*scenes.compared(folder), scenes.compared(folder)]
+    four = scenes.compared(folder)
     compared = take_turns(systems, four, plan.rounds, plan.seconds)
-    print(table(compared, names(systems), [scene.stem for scene in four]), end="\n\n", flush=True)
+    print(table(compared), end="\n\n", flush=True)
 
     started, start_reasons = starts.measured(setting, four[:3], plan.starts)
     print(starts.report(started, plan.starts), end="\n\n", flush=True)
 
     grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= plan.most]
     growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
-    print(table(growth, names(own), [scene.stem for scene in grown], "spheres in view"), end="\n\n")
+    print(table(growth, "spheres in view"), end="\n\n")
 
     for system in systems:
         print(f"{system.name}: {system.how}")
@@ -84,29 +84,18 @@ def main() -> None:
         "size": [WIDTH, HEIGHT],
         "how": {system.name: system.how for system in systems},
         "not measured": reasons,
-        "compared": records(compared),
-        "starts": records(started),
-        "growth": records(growth),
     }
+    found |= {"compared": records(compared), "starts": records(started), "growth": records(growth)}
     (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
-    draw(compared, started, growth, asked.out)
-
-
-def names(systems: list[System]) -> list[str]:
-    return [system.name for system in systems]
-
-
-def draw(compared: Cells, started: Cells, growth: Cells, out: Path) -> None:
-    """Draw the charts if matplotlib is installed."""
     if find_spec("matplotlib") is None:
         print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
         return
     from tests.bench import charts
 
-    charts.dots(compared, out / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
-    charts.dots(started, out / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
-    charts.growth(growth, out / "growth.png")
-    print(f"{out}: bench.json, bench.png, starts.png, growth.png")
+    charts.dots(compared, asked.out / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
+    charts.dots(started, asked.out / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
+    charts.growth(growth, asked.out / "growth.png")
+    print(f"{asked.out}: bench.json, bench.png, starts.png, growth.png")
 
 
 if __name__ == "__main__":

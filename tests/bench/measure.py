@@ -88,11 +88,21 @@ def times(ratio: float) -> str:
     return f"x{ratio:.{digits}f}"
 
 
-def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms a frame") -> str:
+def names(cells: Cells) -> tuple[list[str], list[str]]:
+    """Return the systems and the scenes, in the order in which they were measured."""
+    return list(dict.fromkeys(system for system, _ in cells)), list(dict.fromkeys(scene for _, scene in cells))
+
+
+def table(cells: Cells, title: str = "ms a frame") -> str:
     """Return a table with a row per system and a column per scene; ratios are to the first row, which has all."""
+    systems, scenes = names(cells)
     rows = [[title, *scenes]]
     rows += [[system, *(text(cells, system, scene, systems[0]) for scene in scenes)] for system in systems]
-    return aligned(rows)
+    first, *widths = (max(map(len, column)) for column in zip(*rows, strict=True))
+    lines = (
+        [row[0].ljust(first), *(cell.rjust(width) for cell, width in zip(row[1:], widths, strict=True))] for row in rows
+    )
+    return "\n".join("  ".join(line).rstrip() for line in lines)
 
 
 def text(cells: Cells, system: str, scene: str, first: str) -> str:
@@ -103,24 +113,10 @@ def text(cells: Cells, system: str, scene: str, first: str) -> str:
     return f"{figure(ms)} {times(ms / median(cells[first, scene])):>5}"
 
 
-def aligned(rows: list[list[str]]) -> str:
-    """Align rows of cells: the first column to the left, the others to the right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = (
-        "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(cells))
-        for cells in (zip(row, widths, strict=True) for row in rows)
-    )
-    return "\n".join(line.rstrip() for line in lines)
-
-
 def records(cells: Cells) -> list[dict[str, Any]]:
     """Return the results for a JSON file."""
+    rounded = {key: [round(each, 3) for each in rounds] for key, rounds in cells.items()}
     return [
-        {
-            "system": system,
-            "scene": scene,
-            "ms": round(median(rounds), 3),
-            "rounds": [round(each, 3) for each in rounds],
-        }
-        for (system, scene), rounds in cells.items()
+        {"system": system, "scene": scene, "ms": round(median(cells[system, scene]), 3), "rounds": rounds}
+        for (system, scene), rounds in rounded.items()
     ]

@@ -15,7 +15,7 @@ from contextlib import ExitStack, contextmanager
 from functools import cache, partial
 from pathlib import Path
 from time import perf_counter, sleep
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from tests.processes import run, started
 from tests.waiting import HANG_LIMIT
 
 Pixels = NDArray[np.uint8]  # (height, width, 3), red green blue
+QUIET: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 
 class Screen(NamedTuple):
@@ -45,8 +46,7 @@ def virtual_screen(width: int, height: int) -> Iterator[Screen]:
         reader, writer = os.pipe()
         command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24"]
         command += ["-fbdir", folder, "-nolisten", "tcp", "-noreset"]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        with os.fdopen(reader) as number, started(command, pass_fds=(writer,), **quiet) as server:
+        with os.fdopen(reader) as number, started(command, pass_fds=(writer,), **QUIET) as server:
             os.close(writer)
             name = number.readline().strip()  # comes when the server is ready; empty if it ended
             if not name:
@@ -69,17 +69,17 @@ def pixels_of(dump: Path) -> Pixels:
 
 
 WIDTH, HEIGHT = 320, 240
+Environment = dict[str, str]
 
 
 class Start(System):
-    """Starts of miniRT."""
+    """Starts of miniRT that write a picture: of the whole program."""
 
-    where: str
+    where = "-o"
 
     def __init__(self, setting: Setting, cold: bool) -> None:
         super().__init__(setting)
         self.name = f"miniRT {self.where}, {'cold' if cold else 'warm'}"
-        self.how = "the whole program" + (" with an empty cache of kernels" if cold else "")
         self.cold = cold
         self.warmed: set[Path] = set()
 
@@ -89,43 +89,22 @@ class Start(System):
         return [sys.executable, "-m", "minirt", str(path), *size, *options]
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
-        with self.cache_folder() as folder:
-            environment = os.environ | {"XDG_CACHE_HOME": str(folder)}
-            if not self.cold and path not in self.warmed:
-                run_checked(self.command(path, "--bench"), environment)  # which waits for the best kernel
-                self.warmed.add(path)
-            return [self.start(path, environment) * 1e3]
-
-    @contextmanager
-    def cache_folder(self) -> Iterator[Path]:
-        """Yield the cache folder of a start: an empty one, or one for all warm starts."""
         if self.cold:
             with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-                yield Path(folder)
-        else:
-            yield (self.setting.folder / "cache").absolute()
+                return [self.start(path, os.environ | {"XDG_CACHE_HOME": folder}) * 1e3]
+        environment = os.environ | {"XDG_CACHE_HOME": str((self.setting.folder / "cache").absolute())}
+        if path not in self.warmed:
+            run_checked(self.command(path, "--bench"), environment)  # which waits for the best kernel
+            self.warmed.add(path)
+        return [self.start(path, environment) * 1e3]
 
-    def start(self, path: Path, environment: dict[str, str]) -> float:
+    def start(self, path: Path, environment: Environment) -> float:
         """Start the program and return the seconds to its picture."""
-        raise NotImplementedError
-
-
-class FileStart(Start):
-    """Starts of miniRT that write a picture."""
-
-    where = "-o"
-
-    def start(self, path: Path, environment: dict[str, str]) -> float:
-        command = self.command(path, "-o", str(self.picture(path)))
-        begin = perf_counter()
-        run_checked(command, environment)
-        return perf_counter() - begin
+        return run_checked(self.command(path, "-o", str(self.picture(path))), environment)
 
 
 class PeerStart(System):
     """Starts of another ray tracer: the whole program, from a scene in its own language."""
-
-    how = "the whole program"
 
     def __init__(self, kind: type[Command], setting: Setting) -> None:
         super().__init__(setting)
@@ -134,17 +113,16 @@ class PeerStart(System):
         self.prepared = cache(peer.prepared)
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
-        command = self.prepared(path)
-        begin = perf_counter()
-        run_checked(command, dict(os.environ))
-        return [(perf_counter() - begin) * 1e3]
+        return [run_checked(self.prepared(path), dict(os.environ)) * 1e3]
 
 
-def run_checked(command: list[str], environment: dict[str, str]) -> None:
-    """Run a program; RuntimeError if it fails."""
+def run_checked(command: list[str], environment: Environment) -> float:
+    """Run a program, and return the seconds that it took; RuntimeError if it fails."""
+    begin = perf_counter()
     ran = run(command, env=environment, text=True)
     if ran.returncode:
         raise RuntimeError(f"{' '.join(command)}: {ran.stderr or ran.stdout}")
+    return perf_counter() - begin
 
 
 POLL = 2e-3  # seconds between two looks at the screen
@@ -161,19 +139,18 @@ class WindowStart(Start):
         super().__init__(setting, cold)
         self.screen = screen
 
-    def start(self, path: Path, environment: dict[str, str]) -> float:
-        right = right_picture(path)
+    def start(self, path: Path, environment: Environment) -> float:
+        right, window = right_picture(path), self.screen.pixels[:HEIGHT, :WIDTH]
         environment = {key: value for key, value in environment.items() if key != "WAYLAND_DISPLAY"}
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        options = {"env": environment | {"DISPLAY": self.screen.name}} | QUIET
         begin = perf_counter()
-        options = {"env": environment | {"DISPLAY": self.screen.name}} | quiet
         with started(self.command(path, "--samples", "1"), **options) as program:
-            while not shows(self.screen.pixels[:HEIGHT, :WIDTH], right):
+            while not shows(window, right):
                 if program.poll() is not None or perf_counter() - begin > HANG_LIMIT:
                     raise RuntimeError(f"{self.name} on {path}: no right picture")
                 sleep(POLL)
             took = perf_counter() - begin
-        while shows(self.screen.pixels[:HEIGHT, :WIDTH], right):  # until the closed window has left the screen
+        while shows(window, right):  # until the closed window has left the screen
             sleep(POLL)
         return took
 
@@ -196,7 +173,7 @@ def measured(setting: Setting, scenes: list[Path], rounds: int) -> tuple[Cells, 
     folder.mkdir(exist_ok=True)
     small = Setting(WIDTH, HEIGHT, setting.threads, folder)
     with ExitStack() as stack:
-        makers: list[Callable[[], System]] = [partial(FileStart, small, cold) for cold in (False, True)]
+        makers: list[Callable[[], System]] = [partial(Start, small, cold) for cold in (False, True)]
         try:
             screen = stack.enter_context(virtual_screen(WIDTH, HEIGHT))
             makers += [partial(WindowStart, small, cold, screen) for cold in (False, True)]
@@ -210,9 +187,8 @@ def measured(setting: Setting, scenes: list[Path], rounds: int) -> tuple[Cells, 
 
 def report(cells: Cells, rounds: int) -> str:
     """Return the table of starts with its heading."""
-    systems, scenes = (list(dict.fromkeys(each)) for each in zip(*cells, strict=True))
     return (
         f"Whole programs, until their picture of {WIDTH}x{HEIGHT} pixels is in a file or in a window.\n"
         f"Median of {rounds} starts; a cold one finds an empty cache of kernels.\n\n"
-        f"{table(cells, systems, scenes, 'ms to a picture')}"
+        f"{table(cells, 'ms to a picture')}"
     )

@@ -14,8 +14,6 @@ from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 
-Corners = NDArray[np.float64]  # (n, 3, 3) points of the corners of triangles
-
 SIDES = 64  # of a cylinder
 ENDLESS = 1e5  # half of an edge of a plane
 
@@ -28,44 +26,28 @@ class Triangles(NamedTuple):
 
 
 def triangulated(shape: Shape) -> Triangles:
-    """Return the triangles of a plane, a cylinder or a mesh."""
-    match shape:
-        case Mesh():
-            return Triangles(shape.placed(shape.triangles.points), shape.triangles.corners)
-        case Cylinder():
-            corners = cylinder(shape)
-        case Plane():
-            corners = plane(shape)
-        case _:
-            raise ValueError(f"no triangles for {shape}")
-    return Triangles(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
-
-
-def across(axis: Triple) -> tuple[Corners, Corners]:
-    """Two unit vectors perpendicular to an axis and to each other."""
-    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    """Return the triangles of a plane, a large square; of a cylinder, a prism of SIDES sides; or of a mesh."""
+    if isinstance(shape, Mesh):
+        return Triangles(shape.placed(shape.triangles.points), shape.triangles.corners)
+    assert isinstance(shape, Cylinder | Plane), f"no triangles for {shape}"
+    axis = np.array(shape.axis if isinstance(shape, Cylinder) else shape.normal)
+    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])  # u and v are perpendicular to the axis and to each other
     u /= np.linalg.norm(u)
-    return u, np.cross(axis, u)
-
-
-def cylinder(shape: Cylinder) -> Corners:
-    """Approximate a cylinder by a prism of SIDES sides that touches it at its edges."""
-    u, v = across(shape.axis)
-    angles = np.arange(SIDES) * (2 * np.pi / SIDES)
-    around = shape.diameter / 2 * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
-    low, high = (np.array(shape.centre) + end * shape.height / 2 * np.array(shape.axis) for end in (-1, 1))
-    a, b = low + around, high + around
-    c, d = np.roll(a, -1, axis=0), np.roll(b, -1, axis=0)  # the next edge
-    centres = [np.broadcast_to(end, a.shape) for end in (low, high)]
-    faces = [(a, c, d), (a, d, b), (centres[0], a, c), (centres[1], b, d)]
-    return np.concatenate([np.stack(face, axis=1) for face in faces])
-
-
-def plane(shape: Plane) -> Corners:
-    """Approximate a plane by a large square."""
-    u, v = (ENDLESS * each for each in across(shape.normal))
-    point = np.array(shape.point)
-    return np.array([[point - u - v, point + u - v, point + u + v], [point - u - v, point + u + v, point - u + v]])
+    v = np.cross(axis, u)
+    if isinstance(shape, Cylinder):
+        angles = np.arange(SIDES) * (2 * np.pi / SIDES)
+        around = shape.diameter / 2 * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
+        low, high = (np.array(shape.centre) + end * shape.height / 2 * axis for end in (-1, 1))
+        a, b = low + around, high + around
+        c, d = np.roll(a, -1, axis=0), np.roll(b, -1, axis=0)  # the next edge
+        bottom, top = (np.broadcast_to(end, a.shape) for end in (low, high))
+        faces = [np.stack(face, axis=1) for face in ((a, c, d), (a, d, b), (bottom, a, c), (top, b, d))]
+    else:
+        turns = [sign * ENDLESS * u + side * ENDLESS * v for sign, side in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        square = np.array(shape.point) + turns
+        faces = [square[[[0, 1, 2], [0, 2, 3]]]]
+    points = np.concatenate(faces).reshape(-1, 3)
+    return Triangles(points, np.arange(len(points)).reshape(-1, 3))
 
 
 def light(source: Ambient | Light | None) -> Triple:

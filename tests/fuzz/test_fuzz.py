@@ -5,14 +5,16 @@ from __future__ import annotations
 from math import inf
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from minirt.errors import FileError, MiniRTError, SceneError
 from minirt.meshes import obj_lines
 from minirt.rendering.packing import camera
-from tests.fuzz import grammar
+from tests.fuzz import soak
 from tests.fuzz.__main__ import FUZZERS
 from tests.fuzz.mutations import Fuzzer, seeded
+from tests.usage import Record, Usage
 
 FRAME = "A 1 9,9,9\nC 0,0,0 0,0,1 60\n"
 
@@ -33,25 +35,18 @@ def test_the_same_number_gives_the_same_input() -> None:
         assert fuzzer.make(seeded(name, 7)) == fuzzer.make(seeded(name, 7)) != fuzzer.make(seeded(name, 8))
 
 
-@pytest.mark.parametrize(
-    ("line", "expected"),
-    [
-        ("sp 0,0,0 1 1,2,3", True),
-        ("sp 0,0,0 1 1,2,3 mirror:0.5,2 axis:1,0,0", True),
-        ("sp 0,0,0 1 1,2,3 mirror:0.5 mir:0.5", False),
-        ("sp 0,0,0 0 1,2,3", False),
-        ("sp 0,0,0 1 1,2,256", False),
-        ("pl 0,0,0 0,1,0,0 1,2,3", True),
-        ("pl 0,0,0 0,0,0 1,2,3", False),
-        ("hy 0,0,0 0,1,0 2 1 1 1,2,3", False),
-        ("tr 0,0,0 1,1,1 2,2,2 1,2,3", False),
-        ("sp 0,0,0 1 1,2,3 fresnel checker uv:1,2,0,0,90", True),
-        ("sp 0,0,0 1 1,2,3\r", True),
-        ("sp 0,0,0 1 1,2,3 \xa0", False),
-    ],
-)
-def test_the_grammar_agrees_with_the_description(line: str, expected: bool) -> None:
-    assert grammar.is_scene((FRAME + line).encode()) is expected
+def test_a_leak_of_each_picture_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    leaked: list[np.ndarray] = []
+    monkeypatch.setattr(soak, "render", lambda *_: leaked.append(np.ones(2**18)))
+    start = Usage.of().memory
+
+    def measure() -> Usage:
+        usage = Usage.of()
+        return usage._replace(memory=usage.memory - start + 10**8)  # as if other tests had left nothing in memory
+
+    record = Record(6, measure)
+    soak.soak(lambda pictures: pictures / 24, 1, record)
+    assert not record.is_flat
 
 
 def refuse(path: Path, _: bytes) -> None:

@@ -9,22 +9,26 @@ from typing import Any
 import numpy as np
 import pytest
 
+from minirt.errors import RenderError
+from minirt.kernel.bvh_nodes import NODE, REFERENCES
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.rendering.needed_kernels import packing_calls
 from minirt.rendering.packing.features import WORDS, features
+from minirt.rendering.scene_packing import Packing
 from minirt.report import ablation, pictures
 from minirt.report.ablation import Ablation, Part
 from minirt.report.metrics import Interval
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
-from minirt.report.settings import ChangedPacking
+from minirt.report.settings import ChangedPacking, brute_force, without_boxes, without_light_buffers, without_tiles
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import Background, Camera, FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane
 from minirt.shapes.torus import Torus
-from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES, interpreted
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES, interpreted, linear
+from tests.random_scenes import random_scene
 from tests.simulated_clock import Clock, packets, simulate_clock
 
 WIDTH, HEIGHT = 32, 20
@@ -184,3 +188,49 @@ def test_a_kernel_pays_once_it_has_saved_its_compile_time(
     measured = Ablation.__new__(Ablation)
     measured.compile_s = 4.0
     assert measured.pays_after(change, ratio, Interval(*interval), 6.0) == pytest.approx(seconds, nan_ok=True)
+
+
+# Brute force tries every shape for every ray and gives the same picture, bit for bit.
+
+WIDE, HIGH = 70, 40  # 5 x 3 tiles
+
+
+@pytest.mark.parametrize("scene", [ALL, Scene((AMBIENT, EYE, *SHAPES)), *map(random_scene, range(1, 6))])
+def test_brute_force_gives_the_same_picture(scene: Scene) -> None:
+    brute = linear(scene, WIDE, HIGH, 3, brute_force(2))
+    assert np.array_equal(brute, linear(scene, WIDE, HIGH, 3))
+
+
+def test_every_tile_and_every_light_has_every_shape() -> None:
+    traced = ChangedPacking(without_tiles, without_light_buffers).pack(ALL, WIDE, HIGH)
+    for kind, group in enumerate(traced.groups):
+        expected = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
+        assert len(group.tile_starts) == 15 + 1
+        for a, b in zip(group.tile_starts, group.tile_starts[1:], strict=False):
+            assert sorted(traced.tile_shapes[a:b]) == expected
+        assert len(group.light_starts) == 2
+        for a, b in group.light_starts:
+            assert sorted(traced.light_shapes[a:b]) == expected
+    assert traced.light_buffer_cells == 1
+    assert (traced.cones == [0, 0, 0, -2, 0]).all()  # no cone and no distance keeps a shape from being tried
+    assert (traced.light_cones == [0, 0, 0, -2, 0]).all()
+    assert len(Packing().pack(ALL, WIDE, HIGH).tile_shapes) < len(traced.tile_shapes)
+
+
+def test_lists_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("minirt.report.settings.MOST", 15 * len(ALL.shapes))
+    packing = ChangedPacking(without_tiles)
+    packing.pack(ALL, WIDE, HIGH)
+    with pytest.raises(RenderError, match="6 shapes in each of 18 tiles are too many"):
+        packing.pack(ALL, WIDE + 16, HIGH)
+
+
+def test_every_ray_visits_every_leaf_of_the_tree() -> None:
+    mirrors = ALL.replace(ALL.shapes[1], mirror=0.7).replace(ALL.shapes[0], mirror=0.4)
+    tree, wide = (packing.pack(mirrors, WIDE, HIGH).bvh for packing in (Packing(), ChangedPacking(without_boxes)))
+    boxes, open_boxes = (each.nodes.reshape(-1, NODE)[:, :REFERENCES] for each in (tree, wide))
+    used = (boxes[:, : REFERENCES // 2] <= boxes[:, REFERENCES // 2 :]).sum()
+    assert 0 < used == np.isneginf(open_boxes[:, : REFERENCES // 2]).sum()
+    assert np.array_equal(tree.nodes.reshape(-1, NODE)[:, REFERENCES:], wide.nodes.reshape(-1, NODE)[:, REFERENCES:])
+    brute = linear(mirrors, WIDE, HIGH, 1, brute_force(1))
+    assert np.array_equal(brute, linear(mirrors, WIDE, HIGH))

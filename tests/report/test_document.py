@@ -43,20 +43,12 @@ def lines(found: Findings) -> list[str]:
     return document(found, []).as_markdown().splitlines()
 
 
-def test_the_diagram_and_the_advice_come_before_the_tables() -> None:
+def test_the_order_of_the_sections_and_none_for_what_was_not_measured() -> None:
     first = {line[:2]: number for number, line in reversed([*enumerate(lines(FINDINGS))])}
     assert first["# "] < first["!["] < first["- "] < first["| "]
-
-
-def test_what_was_not_measured_has_no_section() -> None:
     parts = ["## Orders of convergence", "## What parts cost and save", "## Single precision, feature by feature"]
     assert [each for each in lines(FINDINGS) if each in parts] == parts
     assert not set(lines(replace(FINDINGS, pictures=[], ablation=[], single=[]))) & set(parts)
-
-
-def test_an_interrupt_is_told_first() -> None:
-    assert lines(replace(FINDINGS, interrupted="Stopped."))[2] == "**Stopped.**"
-    assert 'role="alert">Stopped.<' in document(replace(FINDINGS, interrupted="Stopped."), []).as_page()
 
 
 def test_disturbed_settings_are_counted_and_not_recommended() -> None:
@@ -96,13 +88,13 @@ class Made(NamedTuple):
 def test_a_table_shows_the_titled_fields_of_records() -> None:
     """A dash for NaN, words for truth, a bar that ends no cell; the best rows in bold."""
     made, best = Document("t"), Made("k|nob", truth=True)
-    made.table([best, Made("<c>", 0.125)], [best])
-    head, *lines = made.markdown[1].splitlines()
+    made.section("s", "x", [best, Made("<c>", 0.125)], [best])
+    head, *lines = made.markdown[-1].splitlines()
     assert head == "| a `b` | y | z |"
     assert lines == ["|---|---:|---|", "| **k\\|nob** | - | yes |", "| <c> | 0.12 | no |"]
-    assert '<th class="word">a <code>b</code></th><th class="number">y</th>' in made.html[1]
-    assert '<tr class="emphasised"><td class="word">k|nob</td><td class="number">-</td>' in made.html[1]
-    assert '<tr class="plain"><td class="word">&lt;c&gt;</td>' in made.html[1]
+    assert '<th class="word">a <code>b</code></th><th class="number">y</th>' in made.html[-1]
+    assert '<tr class="emphasised"><td class="word">k|nob</td><td class="number">-</td>' in made.html[-1]
+    assert '<tr class="plain"><td class="word">&lt;c&gt;</td>' in made.html[-1]
 
 
 @pytest.mark.parametrize("size", [WIDE, NARROW])

@@ -5,6 +5,9 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+import os
+import signal
+import sys
 from collections.abc import Callable
 from math import inf, isfinite
 from pathlib import Path
@@ -16,14 +19,19 @@ from PIL import Image
 import minirt
 from minirt.errors import RenderError
 from minirt.report import measure
-from minirt.report.measure import QUICK, Measurement, fitting_size, report
+from minirt.report.ablation import Ablation, Part
+from minirt.report.measure import NOTHING, QUICK, Measurement, fitting_size, report
 from minirt.report.metrics import HEAT
 from minirt.report.pictures import Budget
+from minirt.report.variants import Variant
 from minirt.scene import Scene, dump
+from tests.cli.announcing import RENDERING
 from tests.cli.conftest import folder, run
-from tests.cli.program import Result
+from tests.cli.program import Result, start
 from tests.kernel.pictures import ALL, AMBIENT, EYE
 from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
+from tests.terminals import terminal
+from tests.waiting import HANG_LIMIT
 
 __all__ = ["folder", "run"]
 Run = Callable[..., Result]
@@ -163,3 +171,59 @@ def test_the_steps_are_those_that_were_expected(tmp_path: Path, monkeypatch: pyt
     assert all(isfinite(seconds) and seconds > 0 for seconds in measured.seconds.values())
     measured.step("the end")
     assert measured.state().share == pytest.approx(1.0)
+
+
+# An interrupt keeps what was measured, and the report says what is missing.
+
+HELD = """
+import sys
+from minirt import cli
+from minirt.report import measure
+from tests.cli.announcing import announce_rendering
+
+announce_rendering()
+measure.FULL = measure.QUICK._replace(samples=2**20, width=1920, seconds=1e30)
+sys.exit(cli.main())
+"""
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 128 + signal.SIGTERM)])
+def test_before_the_first_figure_there_is_nothing_to_keep(folder: Path, number: int, status: int) -> None:
+    """A program is interrupted while it renders a reference, which would take hours."""
+    arguments = "ball.rt", "--report", "out", "--size", "1920x1080"
+    command = [sys.executable, "-c", HELD]
+    with terminal() as told, start(folder, *arguments, command=command, stderr=told.end) as process:
+        told.leave()
+        told.wait_for(b"the reference, 1 of")
+        told.wait_for(RENDERING)
+        os.killpg(process.pid, number)
+        told.wait_for_end()
+        out, _ = process.communicate(timeout=HANG_LIMIT)
+    assert (process.returncode, out) == (status, b"")
+    assert b"Traceback" not in told.text
+    assert told.text.replace(RENDERING + b"\r\n", b"").endswith(f"{NOTHING}\r\n".encode())
+    assert [*folder.glob("out/*")] == []
+
+
+def test_what_was_measured_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(_: object, variant: Variant) -> Part:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Ablation, "part", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        report(ALL, "all.rt", tmp_path, (32, 20), 1, quick=True)
+    remark = "Interrupted while measuring tiles and their cones without: this and all that would have followed is"
+    told = capsys.readouterr().err
+    assert remark in told
+    assert f"The report is in {tmp_path}/report.html" in told
+    assert remark in (tmp_path / "report.html").read_text()
+    assert f"**{remark} missing.**" in (tmp_path / "report.md").read_text()
+    found = json.loads((tmp_path / "report.json").read_text())
+    assert found["interrupted"] == f"{remark} missing."
+    assert len(found["pictures"]) > 5
+    assert [part["sort"] for part in found["ablation"]] == ["scene"]
+    names = {f"error-{row['knob']}-{row['label']}.png".replace(" ", "-") for row in found["pictures"]}
+    assert names <= {path.name for path in tmp_path.iterdir()}
+    assert not [*tmp_path.glob(".*")]  # of a file that was half written

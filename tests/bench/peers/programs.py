@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterable, Iterator
 from math import hypot
 from pathlib import Path
 
+import numpy as np
+
 from minirt import load
-from minirt.fields import Triple
 from minirt.rendering.packing.camera import camera_frame, camera_numbers
 from minirt.report import povray
 from minirt.scene import Scene
@@ -22,17 +23,6 @@ from minirt.shapes.sphere import Sphere
 from tests.bench.measure import INSTALL, MissingError, Setting, System
 from tests.bench.triangles import light, triangulated
 from tests.processes import run
-
-
-def words(numbers: Iterable[float]) -> list[str]:
-    """Format numbers, without negative zeros."""
-    return [f"{number + 0.0:.9g}" for number in numbers]
-
-
-def ends(cylinder: Cylinder) -> tuple[Triple, Triple]:
-    """Return the centres of the bottom and the top cap."""
-    (x, y, z), (u, v, w), half = cylinder.centre, cylinder.axis, cylinder.height / 2
-    return (x - half * u, y - half * v, z - half * w), (x + half * u, y + half * v, z + half * w)
 
 
 class Command(System):
@@ -93,18 +83,8 @@ class PovRay(Command):
 
     def arguments(self, file: Path, picture: Path) -> list[str]:
         width, height, threads, _ = self.setting
-        return [
-            f"+W{width}",
-            f"+H{height}",
-            f"+WT{threads}",
-            "-A",
-            "-D",
-            "-V",
-            "+FN8",
-            "File_Gamma=1.0",
-            f"+I{file}",
-            f"+O{picture}",
-        ]
+        options = f"+W{width} +H{height} +WT{threads} -A -D -V +FN8 File_Gamma=1.0"
+        return [*options.split(), f"+I{file}", f"+O{picture}"]
 
     def milliseconds(self, printed: str) -> float:
         return float(TRACE_TIME.findall(printed)[-1]) * 1e3
@@ -116,11 +96,12 @@ class PovRay(Command):
 TRACING_TIME = re.compile(r"Ray Tracing Time:\s*([\d.]+) seconds")
 
 
-def numbers(triple: Triple) -> str:
-    return " ".join(words(triple))
+def numbers(triple: Iterable[float]) -> str:
+    """Format numbers, without negative zeros."""
+    return " ".join(f"{number + 0.0:.9g}" for number in triple)
 
 
-def mirrored(triple: Triple) -> str:
+def mirrored(triple: Iterable[float]) -> str:
     """Convert a vector to Tachyon's left-handed coordinates."""
     x, y, z = triple
     return numbers((-x, y, z))
@@ -137,7 +118,8 @@ def solid(shape: Shape, ambient: float) -> Iterator[str]:
             yield f"SPHERE CENTER {mirrored(shape.centre)} RAD {shape.diameter / 2:.9g} {finish}"
         case Cylinder():
             radius = f"{shape.diameter / 2:.9g}"
-            bottom, top = ends(shape)
+            half = shape.height / 2 * np.array(shape.axis)
+            bottom, top = (np.array(shape.centre) + end * half for end in (-1, 1))
             yield f"FCYLINDER BASE {mirrored(bottom)} APEX {mirrored(top)} RAD {radius} {finish}"
             for end in (bottom, top):
                 yield f"RING CENTER {mirrored(end)} NORMAL {mirrored(shape.axis)} INNER 0 OUTER {radius} {finish}"
