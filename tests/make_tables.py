@@ -6,23 +6,22 @@ pyproject.toml; the manual page is a file of its own.
 
 from __future__ import annotations
 
+import argparse
 import re
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
+from minirt.cli.arguments import argument_parser
 from minirt.viewer import keys_markdown
 from tests.format_table import format_table
-from tests.manual_page import PAGE, manual_page
 from tests.pages import PAGES, block, name, read
-from tests.paths import ROOT, SCENES
+from tests.paths import ROOT
 from tests.test_imports import MAY
 
 # Left out of the diagram, as small.
 HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "example_scenes", "__main__"}
 PLACE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 INDEX_TEXT = re.compile(r"^(text = '''\n).*?^(''')$", re.MULTILINE | re.DOTALL)
-PICTURE = re.compile(r"^\| !\[.*?\]\((.*?)\) \| .*?<br>`miniRT (\S+)(.*)$", re.MULTILINE)
 
 
 def reachable(part: str) -> set[str]:
@@ -46,29 +45,12 @@ def node(part: str) -> str:
     return "library[__init__]" if part == "__init__" else part
 
 
-def gallery(rows: str) -> str:
-    """Rows of the gallery with the first line of each scene as caption; commands and times as they are."""
-
-    def captioned(row: re.Match[str]) -> str:
-        picture, scene, rest = row.groups()
-        caption = (SCENES.parent / scene).read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
-        return f"| ![{caption}]({picture}) | {caption}<br>`miniRT {scene}{rest}"
-
-    return PICTURE.sub(captioned, rows)
-
-
 TABLES: dict[str, Callable[[], str]] = {"keys": keys_markdown, "elements": format_table, "diagram": diagram}
 
 
 def renewed(page: str) -> str:
     """The text of a page with its tables as the program generates them."""
-
-    def table(place: re.Match[str]) -> str:
-        start, named, end = place.groups()
-        make = partial(gallery, place.group()[len(start) : -len(end)]) if named == "gallery" else TABLES[named]
-        return f"{start}\n{make().strip()}\n\n{end}"
-
-    return PLACE.sub(table, page)
+    return PLACE.sub(lambda place: f"{place[1]}\n{TABLES[place[2]]().strip()}\n\n{place[3]}", page)
 
 
 def index_text() -> str:
@@ -81,9 +63,73 @@ def index_text() -> str:
     return "\n\n".join([*shown, "## In Python", f"```python\n{block('README.md', 'python', 'minirt.load')}```\n"])
 
 
-def with_index_text(project: str) -> str:
-    """The text of pyproject.toml with `index_text`."""
-    return INDEX_TEXT.sub(lambda place: f"{place[1]}{index_text()}{place[2]}", project)
+# The manual page, `man miniRT`, made from the parser of the program's arguments.
+
+PAGE = ROOT / "minirt" / "cli" / "miniRT.1"
+HEAD = r""".\" Written by python -m tests.make_tables
+.TH MINIRT 1
+.SH NAME
+miniRT \- interactive ray tracer for .rt scene files
+.SH SYNOPSIS
+.B miniRT
+.RI [ options ]
+.I SCENE.rt
+\&...
+.SH DESCRIPTION
+Without
+.B \-o
+the scene is shown in a window, where keys and mouse edit it; the key H shows all keys. With
+.B \-o
+it is rendered to a file. A scene may also be a PNG picture that carries its scene, or \- for standard input.
+"""
+TAIL = r""".SH EXIT STATUS
+0 for success, 1 for an error in a scene, in rendering or in writing, 2 for wrong arguments, 130 after Ctrl+C,
+128 + n after the signal n.
+.SH FILES
+.TP
+.I ~/.config/minirt/config.toml
+Defaults of options by their long names, in TOML, such as
+.BR "samples = 4" .
+.SH EXAMPLES
+.TP
+.B miniRT scene.rt
+Show a scene in a window.
+.TP
+.B miniRT scene.rt \-o out.png \-\-size 1920x1080 \-\-samples auto
+Render a picture with as many samples as it needs.
+.TP
+.B miniRT scenes/*.rt \-o out/{name}.jpg
+Render several scenes.
+.TP
+.B miniRT scene.rt \-\-turntable 100 \-o spin.mp4
+Render a film.
+"""
+
+
+def manual_page() -> str:
+    """Return the source of the manual page, in the macros of man."""
+    parser = argument_parser()
+    parts = [HEAD]
+    for group in parser._action_groups:
+        actions = [action for action in group._group_actions if action.option_strings]
+        if actions:
+            parts += [f".SH {(group.title or '').upper()}\n", *map(entry, actions)]
+    return "".join(parts) + TAIL
+
+
+def entry(action: argparse.Action) -> str:
+    """Return the entry of an option: its names, its value and its help."""
+    value = ""
+    if action.nargs != 0:
+        value = f" {action.metavar or '{' + ','.join(map(str, action.choices or ())) + '}'}"
+    names = ", ".join(rf"\fB{escaped(name)}\fR" for name in action.option_strings)
+    about = (action.help or "").replace("%%", "%")
+    return f".TP\n{names}{escaped(value)}\n{escaped(about[:1].upper() + about[1:].rstrip('.'))}.\n"
+
+
+def escaped(text: str) -> str:
+    """Return a text in which nothing is a macro of roff."""
+    return text.replace("\\", r"\e").replace("-", r"\-").replace("'", r"\(aq")
 
 
 def write(path: Path, text: str) -> None:
@@ -97,7 +143,10 @@ def main() -> None:
     """Write every file whose generated parts have changed."""
     for page in PAGES:
         write(page, renewed(read(name(page))))
-    write(ROOT / "pyproject.toml", with_index_text(read("pyproject.toml")))
+    write(
+        ROOT / "pyproject.toml",
+        INDEX_TEXT.sub(lambda place: f"{place[1]}{index_text()}{place[2]}", read("pyproject.toml")),
+    )
     write(PAGE, manual_page())
 
 

@@ -13,8 +13,7 @@ import pytest
 import minirt
 from minirt.cli import main
 from minirt.cli.arguments import argument_parser
-from tests.make_tables import index_text, renewed
-from tests.manual_page import PAGE, manual_page
+from tests.make_tables import PAGE, index_text, manual_page, renewed
 from tests.notebook.requirements import require
 from tests.pages import PAGES, anchors, block, blocks, links, name, read, without_code
 from tests.paths import PACKAGE, ROOT, TESTS
