@@ -73,7 +73,7 @@ LOWEST := $(VENV)/lowest
 lowest: $(NAME)  ## run a short part of the tests with the lowest versions of the dependencies
 	$(PYTHON) -m venv $(LOWEST)
 	$(LOWEST)/bin/python -m pip --disable-pip-version-check install --quiet pytest pytest-xdist hypothesis mpmath gmpy2 \
-	    $$($(VENV)/bin/python -m tests.lowest_versions)
+	    $$($(VENV)/bin/python -m tests.pythons lowest)
 	mkdir -p $(LOWEST)/cache
 	XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
 	    -m "not window" tests/materials tests/formats tests/kernel/compiler \

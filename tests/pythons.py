@@ -1,6 +1,7 @@
 """Run the quick tests, a film, a window and a notebook with each Python that the machine has: `make pythons`.
 
 Each gets a new environment in .venv/pythons, with the newest versions of all packages, and compiles its own kernels.
+`python -m tests.pythons lowest` prints the lowest versions of the dependencies as arguments of pip, for `make lowest`.
 The Pythons are those that pyproject.toml names, and newer ones where numba has wheels for them.
 """
 
@@ -16,6 +17,7 @@ from pathlib import Path
 
 from tests.paths import ROOT
 
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 FOLDER = Path(".venv/pythons")
 LATER = 3  # minor versions after the newest named one that are looked for
 TESTS = "not window and not slow or each_python"  # the quick ones, a film, a window and a notebook
@@ -23,8 +25,14 @@ TESTS = "not window and not slow or each_python"  # the quick ones, a film, a wi
 
 def named() -> list[str]:
     """Return the versions of Python that pyproject.toml names, such as 3.11."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    return re.findall(r"Python :: (3\.\d+)", "\n".join(project["classifiers"]))
+    return re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["classifiers"]))
+
+
+def lowest_versions(*extras: str) -> list[str]:
+    """Return requirements such as `numpy==2.0`, one for each dependency of every platform and of some extras."""
+    required = PROJECT["dependencies"] + [each for name in extras for each in PROJECT["optional-dependencies"][name]]
+    everywhere = [each for each in required if ";" not in each]
+    return [re.sub(r"^([\w-]+)>=([\d.]+).*$", r"\1==\2", each) for each in everywhere]
 
 
 def newer(versions: list[str]) -> list[str]:
@@ -79,4 +87,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    if sys.argv[1:] == ["lowest"]:
+        print(*lowest_versions("video", "report"))
+    else:
+        sys.exit(main())

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 import minirt
-from minirt.errors import Problem
+from minirt.errors import ElementError, FieldError, Problem
+from minirt.meshes.obj_lines import ObjError
 from minirt.rendering import renderer
 from tests.cli.program import SCENE, environment
 from tests.lines import next_line
@@ -119,11 +120,14 @@ ERRORS = [
     minirt.RenderError("no size"),
     minirt.ReplayError("no keys"),
     minirt.MlxError("no display"),
+    FieldError("must be > 0", 2),
+    ElementError("two cameras"),
+    ObjError("no such vertex", 7),
 ]
 
 
 @pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
-def test_errors_survive_pickling(error: minirt.MiniRTError) -> None:
+def test_errors_survive_pickling(error: Exception) -> None:
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is type(error)
     assert str(again) == str(error)

@@ -44,10 +44,8 @@ MAY: dict[str, set[str]] = {
     "__init__": LOW | {"helpers", "scene", "rendering"},
 }
 COMPILER = {"numba", "llvmlite"}
-COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler
+COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler, in a process of its own
 LOADER = "kernel/machine_code/library.py"  # imports, late, the part of it that loads machine code
-# The program that compiles: all others do without the compiler.
-COMPILING = {"kernel/compiler", "lanes/compiled"}
 HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
@@ -127,7 +125,7 @@ def test_the_compiler_is_imported_where_it_is_attached_and_nowhere_else() -> Non
 
 def test_what_is_compiled_is_imported_by_the_compiling_process_alone() -> None:
     found = importers(sources(), {"minirt.kernel.compiler", "minirt.lanes.compiled"})
-    assert {path.rpartition("/")[0] for path in found} == COMPILING
+    assert {path.rpartition("/")[0] for path in found} == COMPILED
 
 
 def imported(*command: str, folder: Path) -> set[str]:
@@ -172,22 +170,8 @@ def module_of(path: str) -> str:
     return "minirt." + path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
-def folders(modules: dict[str, set[str]]) -> dict[str, set[str]]:
-    """The graph of imports between folders; a module beside sub-folders counts as a folder of its own."""
-    inner = {name for name in modules if any(other.startswith(f"{name}.") for other in modules)}
-
-    def folder(name: str) -> str:
-        parent = name.rpartition(".")[0]
-        return name if name in inner or any(each.startswith(f"{parent}.") for each in inner) else parent
-
-    found: dict[str, set[str]] = {}
-    for name, wanted in modules.items():
-        found.setdefault(folder(name), set()).update(folder(each) for each in wanted)
-    return {name: wanted - {name} for name, wanted in found.items()}
-
-
-def test_parts_modules_and_folders_import_each_other_in_no_circle() -> None:
-    for edges in (MAY, graph(sources()), folders(graph(sources()))):
+def test_parts_and_modules_import_each_other_in_no_circle() -> None:
+    for edges in (MAY, graph(sources())):
         assert [*TopologicalSorter(edges).static_order()]  # CycleError names a circle
 
 

@@ -43,13 +43,10 @@ def write_files(folder: str | os.PathLike[str], found: Findings, lights: dict[st
 
 def report_files(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, bytes]:
     """Build all files: their contents by their names."""
-    pictures = [
-        Picture(
-            caption(row), f"error-{row.name}.png".replace(" ", "-"), error_image(lights[row.name], reference).encode()
-        )
-        for row in found.pictures
-        if row.name in lights
-    ]
+    pictures = []
+    for row in (each for each in found.pictures if each.name in lights):
+        file = f"error-{row.name}.png".replace(" ", "-")
+        pictures.append(Picture(caption(row), file, error_image(lights[row.name], reference).encode()))
     if pictures:
         pictures.append(Picture("the reference", "reference.png", Image(to_8_bits(reference)).encode()))
     made = document(found, pictures)

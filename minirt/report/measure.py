@@ -34,10 +34,7 @@ from minirt.scene import Scene
 SEED = 20240607
 CULLING = ("brute force", "uniform")  # knobs whose pictures must be the same
 NOTHING = "Interrupted before anything was measured; no report was written."
-# Expected durations, from which the progress bar tells the remaining time.
-POVRAY = 5e-7  # seconds for a sample
-COMPILING = 15.0  # seconds for a kernel
-PERCEIVED = 2e-6  # seconds for a pixel of the perceived difference
+COMPILING = 15.0  # seconds that a kernel is expected to take, from which the progress bar tells the remaining time
 
 
 class Plan(NamedTuple):
@@ -86,7 +83,7 @@ class Measurement:
         wanted, variants = list(settings(scene, plan.most, plan.least_error)), list(without_lists(scene))
         if ablation:
             variants += [*without_unseen(scene, width, height), *with_more(scene, files)]
-        self.seconds = dict(expected(plan, wanted, variants, once, width * height))
+        self.seconds = dict(expected(plan, wanted, variants, once))
         right = self.reference = reference(scene, width, height, plan.samples, SEED, step)
         about = subject(scene, self.name, width, height, self.threads, SEED)
         self.found = found = Findings(about, right.samples, right.error)
@@ -124,18 +121,15 @@ class Measurement:
         found.stiff += [*stiff_shapes(self.scene, shapes, width, height), *coincident(self.scene, shapes)]
 
 
-def expected(
-    plan: Plan, wanted: list[Setting], variants: list[Variant], once: float, pixels: int
-) -> Iterator[tuple[str, float]]:
+def expected(plan: Plan, wanted: list[Setting], variants: list[Variant], once: float) -> Iterator[tuple[str, float]]:
     """Yield the steps of the work and the seconds that each is expected to take; `once` is the time of a frame."""
     steps = reference_steps(plan.samples)
     yield from ((step, once * plan.samples / len(steps)) for step in steps)
     for setting in wanted:
         first = once * min(setting.knob.work(setting.value), plan.samples)
-        again = max(RUNS * first, plan.budget.seconds) if first < plan.budget.longest else 0.0
-        yield setting.name, first + again + PERCEIVED * pixels
+        yield setting.name, first + (max(RUNS * first, plan.budget.seconds) if first < plan.budget.longest else 0.0)
     for row, _ in povray.SETTINGS if plan.others else ():
-        yield row.name, povray.RUNS * POVRAY * np.nan_to_num(row.samples, nan=4.0) * pixels
+        yield row.name, RUNS * once * np.nan_to_num(row.samples, nan=4.0)
     for variant in variants:
         yield f"{variant.name} {variant.change}", 4 * PAIRS * once + (0.0 if variant.packing else COMPILING)
 
@@ -147,17 +141,13 @@ def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, 
     """
     renderer = Renderer()
     renderer.specialise(scene)
-    width, height = scaled_size(size, min(1.0, plan.width / size[0]))
+    width, height = (max(1, round(side * min(1.0, plan.width / size[0]))) for side in size)
     pixels = np.zeros((height, width, 4), np.uint8)
     renderer.render(scene, pixels)
     once = min(runs(lambda: renderer.render(scene, pixels), 2, 0.0)).wall
     halvings = max(0, ceil(log2(once * plan.samples / plan.seconds) / 2))
-    return *scaled_size((width, height), 0.5**halvings), once * 0.25**halvings
-
-
-def scaled_size(size: tuple[int, int], factor: float) -> tuple[int, int]:
-    """Scale a size; at least one pixel remains."""
-    return max(1, round(size[0] * factor)), max(1, round(size[1] * factor))
+    width, height = (max(1, round(side * 0.5**halvings)) for side in (width, height))
+    return width, height, once * 0.25**halvings
 
 
 def report(

@@ -126,4 +126,4 @@ def test_charts_show_the_measured_times(tmp_path: Path) -> None:
     assert far - middle == pytest.approx(middle - near, rel=0.02)
     assert middle - near > 100
     charts.growth({("miniRT double", str(n)): [n**0.4] for n in (10, 100, 1000)}, tmp_path / "growth.png")
-    assert Image.open(tmp_path / "growth.png").size[0] > 1000
+    assert np.asarray(Image.open(tmp_path / "growth.png")).std() > 0
