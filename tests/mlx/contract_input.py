@@ -8,8 +8,9 @@ from minirt.mlx import Event, Modifier
 from tests.mlx.contract import scenario
 
 if TYPE_CHECKING:
-    from tests.mlx.contract import Log
-    from tests.mlx.harness import Harness
+    from collections.abc import Callable
+
+    from tests.mlx.contract import Harness, Log
     from tests.mlx.user import User
 
 
@@ -19,11 +20,36 @@ def log_keys(harness: Harness) -> None:
     harness.hook(Event.KEY_RELEASE, "release")
 
 
-@scenario(["press", 97], ["release", 97], ["press", 65307], ["release", 65307])
-def a_key_is_pressed_and_released(harness: Harness) -> None:
-    log_keys(harness)
-    harness.hook(Event.DESTROY_NOTIFY, "Escape is not the close button")
-    harness.run(lambda user: user.keys("+a -a +escape -escape"))
+TYPED = {  # keys that are pressed and released, and the codes that the program gets, negative ones for releases
+    "a_key_is_pressed_and_released": ("+a -a +escape -escape", [97, -97, 65307, -65307]),
+    "shift_tab_is_tab": ("+shift +tab -tab -shift", [65505, 65289, -65289, -65505]),
+    "a_key_has_the_code_that_it_has_without_modifiers": (
+        "+shift +digit_1 -digit_1 +equal -shift -equal +keypad_left -keypad_left",
+        [65505, 49, -49, 61, -65505, -61, 65430, -65430],
+    ),
+    "a_symbol_whose_release_is_lost_is_released_with_shift": (
+        2 * "+shift +equal -shift -equal ",
+        2 * [65505, 43, -65505, -43],
+    ),
+    "a_letter_stays_held_when_shift_is_let_go": ("+shift +w -shift +z -z -w", [65505, 119, -65505, 122, -122, -119]),
+}
+
+
+def typed(name: str) -> Callable[[Harness], None]:
+    """Make the scenario of a row of TYPED."""
+
+    def program(harness: Harness) -> None:
+        harness.m.mlx_set_options(symbols="symbol" in name)
+        log_keys(harness)
+        harness.hook(Event.DESTROY_NOTIFY, "Escape is not the close button")
+        harness.run(lambda user: user.keys(TYPED[name][0]))
+
+    program.__name__ = name
+    return program
+
+
+for scenario_name, (_, codes) in TYPED.items():
+    scenario(*(["press" if code > 0 else "release", abs(code)] for code in codes))(typed(scenario_name))
 
 
 @scenario(["hold"], ["key", 97, "mine"])
@@ -40,37 +66,6 @@ def a_second_hook_replaces_the_first_and_none_removes(harness: Harness) -> None:
     harness.hook(Event.KEY_RELEASE, "removed")
     harness.m.mlx_hook(harness.win, Event.KEY_RELEASE, 0, None, None)
     harness.run(lambda user: user.keys("+a -a"))
-
-
-@scenario(["press", 65505], ["press", 65289], ["release", 65289], ["release", 65505])
-def shift_tab_is_tab(harness: Harness) -> None:
-    log_keys(harness)
-    harness.run(lambda user: user.keys("+shift +tab -tab -shift"))
-
-
-PLUS_LOST = [["press", 65505], ["press", 43], ["release", 65505], ["release", 43]]
-
-
-@scenario(
-    ["press", 65505], ["press", 49], ["release", 49], ["press", 61], ["release", 65505], ["release", 61],
-    ["press", 65430], ["release", 65430],
-)  # fmt: skip
-def a_key_has_the_code_that_it_has_without_modifiers(harness: Harness) -> None:
-    log_keys(harness)
-    harness.run(lambda user: user.keys("+shift +digit_1 -digit_1 +equal -shift -equal +keypad_left -keypad_left"))
-
-
-@scenario(*PLUS_LOST, *PLUS_LOST)
-def a_symbol_whose_release_is_lost_is_released_with_shift(harness: Harness) -> None:
-    harness.m.mlx_set_options(symbols=True)
-    log_keys(harness)
-    harness.run(lambda user: user.keys(2 * "+shift +equal -shift -equal "))
-
-
-@scenario(["press", 65505], ["press", 119], ["release", 65505], ["press", 122], ["release", 122], ["release", 119])
-def a_letter_stays_held_when_shift_is_let_go(harness: Harness) -> None:
-    log_keys(harness)
-    harness.run(lambda user: user.keys("+shift +w -shift +z -z -w"))
 
 
 @scenario(["text", "a"], ["text", "+"], ["text", "?"])

@@ -11,7 +11,7 @@ from minirt.mlx import Event
 from tests.mlx.contract import scenario
 
 if TYPE_CHECKING:
-    from tests.mlx.harness import Harness
+    from tests.mlx.contract import Harness
     from tests.mlx.user import User
 
 
@@ -152,21 +152,6 @@ def the_loop_goes_on_after_an_exception_of_a_hook(harness: Harness) -> None:
     errors = io.StringIO()
     with redirect_stderr(errors):
         harness.run(actions)
-
-
-@scenario(["exit", 3])
-def sys_exit_in_a_hook_is_raised_by_the_loop(harness: Harness) -> None:
-    ticks: list[int] = []
-
-    def leave(_: object) -> None:
-        ticks.append(1)
-        raise SystemExit(3)
-
-    harness.m.mlx_loop_hook(harness.mlx, leave, None)
-    try:
-        harness.run(lambda user: user.wait_until(lambda: bool(ticks), 1.0))
-    except SystemExit as exit_:
-        harness.record("exit", exit_.code)
 
 
 @scenario(["wheel", 4], ["returned", 0], ["again", 98])

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from minirt.mlx import Image
-    from tests.mlx.harness import Harness
+    from tests.mlx.contract import Harness
     from tests.mlx.user import User
 
 RGB = list[int]

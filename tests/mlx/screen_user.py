@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from minirt.mlx import Window
-    from tests.mlx.harness import Harness
+    from tests.mlx.contract import Harness
     from tests.mlx.user import User
 
 

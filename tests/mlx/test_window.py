@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ import pytest
 
 from tests.idle import switches, until_idle
 from tests.lines import next_line
+from tests.paths import PACKAGE
 from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.window
 
-GRADIENT = str(Path(__file__).with_name("gradient.py"))
+GRADIENT = (PACKAGE / "mlx/README.md").read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
 IDLE_LOOKS = 10  # consecutive looks that find the program asleep
 
 SLEEPER = """
@@ -100,7 +100,7 @@ def until_asleep(process: subprocess.Popen[str]) -> None:
 
 @pytest.mark.parametrize("end", ["Escape", "close button"])
 def test_the_gradient_is_shown_until_it_is_ended(desktop: Desktop, end: str) -> None:
-    with desktop.program(sys.executable, "-W", "error", GRADIENT) as process:
+    with desktop.program(sys.executable, "-W", "error", "-c", GRADIENT) as process:
         window = desktop.find("gradient")
         y, x = np.mgrid[:256, :512]
         expected = np.stack([x // 2, y, np.full_like(x, 64)], axis=-1)
@@ -113,7 +113,7 @@ def test_the_gradient_is_shown_until_it_is_ended(desktop: Desktop, end: str) -> 
 
 
 def test_a_program_without_loop_hook_sleeps_while_another_ticks(desktop: Desktop) -> None:
-    with desktop.program(sys.executable, GRADIENT) as process, desktop.program(*sleeper(TICKS)) as other:
+    with desktop.program(sys.executable, "-c", GRADIENT) as process, desktop.program(*sleeper(TICKS)) as other:
         desktop.find("gradient")
         assert next_line(other) == "loops"
         until_idle(process.pid, lambda: switches(other.pid), 30)

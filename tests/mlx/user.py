@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from minirt.mlx import Window
     from minirt.mlx.memory import Memory
-    from tests.mlx.harness import Harness
+    from tests.mlx.contract import Harness
     from tests.mlx.screen_user import ScreenUser
 
     User: TypeAlias = "MemoryUser | ScreenUser"  # a scenario does not know which one
