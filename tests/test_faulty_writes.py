@@ -1,183 +1,165 @@
-"""A full disk, an I/O error or a kill at a write of a picture, a film, a scene or a report: old files or new ones."""
+"""A full disk, an I/O error or short writes while a picture, a film, a scene or a report is written: old or new files.
+
+A kill at any moment, too, leaves the old file or the new one: tried with the functions that write all files.
+"""
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import random
+import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
+from typing import Any
 
 import numpy as np
 import pytest
 
+import minirt
 from minirt.errors import MiniRTError
-from minirt.formats.table import FORMATS, is_installed
+from minirt.formats.table import is_installed
 from minirt.helpers import file_io
 from minirt.movie import save_movie
 from minirt.rendering.image import Image
 from minirt.report.document import write_files
 from minirt.scene import parse
-from tests.faulty_files import CODES, counting, failing_at, faulty_files, is_killed_at, short
 from tests.formats.pictures import picture
+from tests.processes import in_child
 from tests.report.made_up import FINDINGS, ROWS
 
 Writer = Callable[[Path], object]  # writes into an empty folder, or one in which it has written before
+Fault = Callable[[memoryview], memoryview]  # gets the data of a write, and returns what is written
 
-SIZE = HEIGHT, WIDTH = 18, 32
+BUFFER = 256  # bytes of the largest write, so that even a small file takes several
+CODES = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG)
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\n" + "".join(f"sp 0,0,{n} 4 10,20,30\n" for n in range(5, 90))
 BLACK = np.zeros((20, 32, 3))
-
-
-def still(suffix: str) -> Writer:
-    """Return a writer of a picture."""
-    return lambda folder: picture(*SIZE).save(folder / f"still{suffix}")
+OLD = b"old"
 
 
 def film(suffix: str) -> Writer:
     """Return a writer of a film, or of numbered pictures."""
 
     def write(folder: Path) -> None:
-        levels = picture(*SIZE).array
+        levels = picture(18, 32).array
         save_movie((Image(np.roll(levels, 5 * n, axis=1)) for n in range(4)), folder / f"film{suffix}")
 
     return write
 
 
-def scene(folder: Path) -> None:
-    """Save a scene, as the editor does."""
-    parse(SCENE, "scene.rt").scene.save(folder / "scene.rt")
+WRITERS: dict[str, Writer] = {
+    "scene": lambda folder: parse(SCENE, "scene.rt").scene.save(folder / "scene.rt"),
+    "report": lambda folder: write_files(folder, FINDINGS, {ROWS[0].name: BLACK}, BLACK),
+    "png": lambda folder: picture(18, 32).save(folder / "still.png"),
+    "jpg": lambda folder: picture(18, 32).save(folder / "still.jpg"),
+    "exr": lambda folder: picture(18, 32).save(folder / "still.exr"),
+    "streamed": lambda folder: minirt.render_to(folder / "a.tif", minirt.loads(SCENE), 32, 18),
+    "numbered": film(".png"),
+    **{each: film(each) for each in (".gif", ".webp")},
+    **({".mp4": film(".mp4")} if is_installed("MP4") else {}),
+}
+every_writer = pytest.mark.parametrize("writer", WRITERS.values(), ids=list(WRITERS))
 
 
-def report(folder: Path) -> None:
-    """Write the report of a scene."""
-    write_files(folder, FINDINGS, {ROWS[0].name: BLACK}, BLACK)
+class FaultyFile(io.FileIO):
+    """A file whose writes suffer from a fault."""
+
+    fault: Fault
+
+    def write(self, data: Any) -> int:
+        """Write what the fault leaves of the first bytes."""
+        return super().write(self.fault(memoryview(data).cast("B")[:BUFFER]))
 
 
-def writers() -> dict[str, Writer]:
-    """Return the writers by the names of what they write."""
-    found: dict[str, Writer] = {"scene": scene, "report": report, "numbered": film(".png")}
-    for name, each in FORMATS.items():
-        if is_installed(name):
-            if each.is_still:
-                found[f"{name} still"] = still(each.suffixes[0])
-            if each.is_film:
-                found[f"{name} film"] = film(each.suffixes[0])
-    return found
+@contextmanager
+def faulty_files(fault: Fault) -> Iterator[None]:
+    """Let all writes to files that this thread opens by their descriptors suffer from a fault."""
+
+    def open_faulty(descriptor: int, mode: str = "r", *others: Any, **named: Any) -> Any:
+        if mode != "wb":
+            return fdopen(descriptor, mode, *others, **named)
+        raw = FaultyFile(descriptor, "wb")
+        raw.fault = fault
+        return io.BufferedWriter(raw, BUFFER)
+
+    fdopen = os.fdopen
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fdopen", open_faulty)
+        yield
 
 
-OLD = b"old"
-Files = dict[str, bytes]  # name -> content
+def short(data: memoryview) -> memoryview:
+    """Write a part only, as interrupted by a signal."""
+    return data[: len(data) - 1] if len(data) % 5 == 4 else data[: -(-len(data) // 3)]
 
 
-def contents(folder: Path) -> Files:
-    """Return the files of a folder, without what may differ between two writings."""
-    return {each.name: comparable(each.name, each.read_bytes()) for each in sorted(folder.iterdir())}
+def contents(folder: Path) -> dict[str, bytes]:
+    """Return the files of a folder; of an MP4 film, whose bytes differ at times, the number of pictures."""
+    return {each.name: comparable(each) for each in sorted(folder.iterdir())}
 
 
-def comparable(name: str, data: bytes) -> bytes:
-    """Return a whole MP4 or WebM film as its number of pictures, and others as they are: encoders differ in some bytes
-    from time to time."""
-    if not name.endswith((".mp4", ".webm")) or data == OLD:
+def comparable(file: Path) -> bytes:
+    """Return the contents of a file, and of a film what encoders do not vary."""
+    data = file.read_bytes()
+    if file.suffix not in (".mp4", ".webm") or data == OLD:
         return data
     import av
 
-    try:
-        with av.open(io.BytesIO(data)) as film:
-            return f"{sum(1 for _ in film.decode(video=0))} pictures".encode()
-    except av.FFmpegError:
-        return data
+    with av.open(io.BytesIO(data)) as film:
+        return f"{sum(1 for _ in film.decode(video=0))} pictures".encode()
 
 
-def written(writer: Writer, folder: Path) -> Files:
+def written(writer: Writer, folder: Path) -> dict[str, bytes]:
     """Let a writer write into a new folder; return its files."""
     folder.mkdir()
     writer(folder)
     return contents(folder)
 
 
-def moments(writer: Writer, folder: Path, some: int) -> list[int]:
-    """Return the numbers of some random writes, the last among them, or of all if there are no more."""
+def count_writes(writer: Writer, folder: Path) -> int:
+    """Return the number of writes to files of a writer."""
     counted: list[int] = []
-    with faulty_files(counting(counted)):
-        writer(folder)
-    last = len(counted) - 1
-    assert last >= 0, "nothing was written"
-    chosen = {last, *random.Random(some).sample(range(last), min(some - 1, last))}
-    return sorted(chosen)
 
+    def note(data: memoryview) -> memoryview:
+        counted.append(len(data))
+        return data
 
-def put_old(folder: Path, names: Sequence[str]) -> None:
-    """Let a folder hold old files alone."""
-    for each in folder.iterdir():
-        each.unlink()
-    for name in names:
-        (folder / name).write_bytes(OLD)
-
-
-def check_whole(found: Files, new: Files) -> None:
-    """AssertionError unless each file is the old one or the new one, and no other is there."""
-    for name, data in found.items():
-        assert name in new, f"{name} was left"
-        assert data in (OLD, new[name]), f"{name} is half written"
-    assert found.keys() == new.keys(), "a file is gone"
-
-
-def tried_kills(writer: Writer, folder: Path, some: int) -> int:
-    """Kill a writer at some of its writes, and let it write again after each; return how many there were."""
-    new, work = written(writer, folder / "new"), folder / "work"
-    work.mkdir()
-    chosen = moments(writer, work, some)
-    for number in chosen:
-        put_old(work, list(new))
-        assert is_killed_at(lambda: writer(work), number)
-        for each in work.glob(file_io.TEMPORARY):  # which are deleted an hour later
-            each.unlink()
-        check_whole(contents(work), new)
-        writer(work)
-        assert contents(work) == new
-    return len(chosen)
-
-
-def tried_errors(writer: Writer, folder: Path, some: int, codes: Sequence[int]) -> int:
-    """Let some writes of a writer fail; return how many there were."""
-    new, work = written(writer, folder / "new"), folder / "work"
-    work.mkdir()
-    chosen = moments(writer, work, some)
-    for turn, number in enumerate(chosen):
-        put_old(work, list(new))
-        code = codes[turn % len(codes)]
-        told = None
-        try:
-            with faulty_files(failing_at(number, code)):
-                writer(work)
-        except MiniRTError as error:
-            told = str(error)
-        assert told is not None, "the error was lost"
-        assert os.strerror(code).lower() in told.lower(), f"{told} does not tell the reason"
-        check_whole(contents(work), new)
-    return len(chosen)
-
-
-WRITERS = writers()
-SOME = 2  # writes of a sort of file that fail
-
-every_writer = pytest.mark.parametrize("writer", WRITERS.values(), ids=list(WRITERS))
-needs_forks = pytest.mark.skipif(sys.platform == "win32", reason="there are no forks")
-
-
-@needs_forks
-@every_writer
-def test_a_kill_at_a_write_leaves_old_or_new_files_and_the_next_run_clears_up(writer: Writer, tmp_path: Path) -> None:
-    assert tried_kills(writer, tmp_path, SOME) > 0
+    with faulty_files(note):
+        written(writer, folder)
+    return len(counted)
 
 
 @every_writer
 def test_an_error_at_a_write_is_told_and_leaves_old_or_new_files(
     writer: Writer, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    assert tried_errors(writer, tmp_path, SOME, CODES) > 0
+    """At the last write, and at one of those before; as on a full disk all that follow fail, too."""
+    new, last = written(writer, tmp_path / "new"), count_writes(writer, tmp_path / "counted") - 1
+    assert last >= 0
+    for number, code in zip({last, random.Random(last).randint(0, last)}, CODES, strict=False):
+        left = number
+
+        def fail(data: memoryview, code: int = code) -> memoryview:
+            nonlocal left
+            left -= 1
+            if left < 0:
+                raise OSError(code, os.strerror(code))
+            return data
+
+        work = tmp_path / str(number)
+        work.mkdir()
+        for name in new:
+            (work / name).write_bytes(OLD)
+        with faulty_files(fail), pytest.raises(MiniRTError, match=f"(?i){os.strerror(code)}"):
+            writer(work)
+        found = {name: data for name, data in contents(work).items() if not name.endswith(".journal")}
+        assert found.keys() == new.keys()
+        assert all(data in (OLD, new[name]) for name, data in found.items())
     assert capfd.readouterr() == ("", ""), "libraries print nothing of their own"
 
 
@@ -186,3 +168,49 @@ def test_short_writes_are_gone_on_with(writer: Writer, tmp_path: Path) -> None:
     whole = written(writer, tmp_path / "whole")
     with faulty_files(short):
         assert written(writer, tmp_path / "short") == whole
+
+
+def killed_at(work: Callable[[], object], number: int) -> bool:
+    """Do the work in a child process that is killed before a line of `file_io`; False where it ended before that."""
+    left = number
+
+    def trace(frame: FrameType, event: str, _: Any) -> Any:
+        nonlocal left
+        if frame.f_globals.get("__name__") != file_io.__name__:
+            return None
+        if event == "line":
+            if not left:
+                os.kill(os.getpid(), signal.SIGKILL)
+            left -= 1
+        return trace
+
+    def traced() -> None:
+        sys.settrace(trace)
+        work()
+
+    status = in_child(traced)
+    assert status in (0, -signal.SIGKILL), "the work failed"
+    return status != 0
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+@pytest.mark.parametrize(
+    ("write", "old"),
+    [(file_io.write, OLD), (file_io.write, None), (file_io.create, None)],
+    ids=["old", "new", "create"],
+)
+def test_a_kill_at_any_line_leaves_the_old_file_or_the_new_one(
+    write: Callable[[Path, bytes], None], old: bytes | None, tmp_path: Path
+) -> None:
+    path, found, number, is_killed = tmp_path / "scene.rt", set(), 0, True
+    while is_killed:
+        for each in tmp_path.iterdir():
+            assert each == path or each.match(file_io.TEMPORARY), f"{each} was left"
+            each.unlink()
+        if old is not None:
+            path.write_bytes(old)
+        is_killed = killed_at(lambda: write(path, b"new one " * 2000), number)
+        found.add(path.read_bytes() if path.exists() else None)
+        number += 1
+    assert number > 10
+    assert found == {old, b"new one " * 2000}

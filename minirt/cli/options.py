@@ -145,35 +145,23 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
             setattr(changed, name, value)
     if not options.output or changed.samples != "auto":
         changed.error, changed.time = options.error, options.time
-    if not options.region and not is_inside(changed):
+    (x, y, across, down), (width, height) = changed.region or (0, 0, 1, 1), changed.size or (0, 0)
+    if not options.region and (x + across > width or y + down > height):
         changed.region = None
     return changed
 
 
-def is_inside(options: argparse.Namespace) -> bool:
-    """Whether the region of a picture lies in a picture of the size that is asked for."""
-    if not options.region or not options.size:
-        return False
-    (x, y, across, down), (width, height) = options.region, options.size
-    return bool(x + across <= width and y + down <= height)
-
-
 def carried(parser: argparse.ArgumentParser, text: str) -> dict[str, object]:
     """Return the settings in a text by their names, without those that the parser would refuse."""
-    actions = actions_of(parser, CARRIED)
+    actions = {option: action for action in actions_of(parser, CARRIED).values() for option in action.option_strings}
     found: dict[str, object] = {}
     words = text.split()
     for word, value in zip_longest(words, words[1:], fillvalue=""):
-        action = actions.get(word.removeprefix("--").replace("-", "_")) if word.startswith("--") else None
-        if action is None:
-            continue
-        try:
-            result: Any = value_of(action, True if action.nargs == 0 else value)
-        except ValueError:
-            continue
-        if action.dest != "size" or max(result) <= MAX_SIDE:
-            found[action.dest] = result
-    return found
+        if action := actions.get(word):
+            with suppress(ValueError):
+                found[action.dest] = value_of(action, True if action.nargs == 0 else value)
+    size: Any = found.get("size", (1, 1))
+    return found if max(size) <= MAX_SIDE else {name: value for name, value in found.items() if name != "size"}
 
 
 def completion(parser: argparse.ArgumentParser, shell: str) -> str:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 from math import sqrt
 from operator import itemgetter
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from minirt import __version__
 from minirt.formats import tiff
@@ -120,17 +123,12 @@ def whole(parts: Sequence[tuple[Region, Outcome | None]]) -> Outcome | None:
     of them is at most the goal the whole is, too. Seconds are those of all workers together.
     """
     in_order = sorted(parts, key=itemgetter(0))  # so that sums are rounded alike
-    known = [(region.width * region.height, each) for region, each in in_order if each is not None]
-    if not known or len(known) < len(parts):
+    outcomes = [each for _, each in in_order if each is not None]
+    if not outcomes or len(outcomes) < len(parts):
         return None
-    pixels = sum(count for count, _ in known)
-    outcomes = [each for _, each in known]
-
-    def mean(values: list[float]) -> float:
-        return sum(count * value for (count, _), value in zip(known, values, strict=True)) / pixels
-
+    mean = partial(np.average, weights=[region.width * region.height for region, _ in in_order])
     return Outcome(
-        samples=mean([each.samples for each in outcomes]),
+        samples=float(mean([each.samples for each in outcomes])),
         most=max(each.most for each in outcomes),
         error=sqrt(mean([each.error**2 for each in outcomes])),
         seconds=sum(each.seconds for each in outcomes),

@@ -23,37 +23,21 @@ NO_TEXTS: Mapping[str, str] = MappingProxyType({})
 
 
 def encode(array: np.ndarray, texts: Mapping[str, str] = NO_TEXTS) -> bytes:
-    """Return the PNG file of a picture; see `parts`."""
-    return b"".join(parts(array, texts))
-
-
-def parts(array: np.ndarray, texts: Mapping[str, str] = NO_TEXTS) -> Iterator[bytes]:
-    """Yield the parts of the PNG file of a picture, (h, w, 3) uint8 or uint16; ValueError when it has no pixels.
+    """Return the PNG file of a picture, (h, w, 3) uint8 or uint16; ValueError when it has no pixels.
 
     The keywords of `texts` have at most 79 letters of ASCII.
     """
-    yield SIGNATURE + chunk(b"IHDR", header(array))
-    yield from (chunk(b"iTXt", text_data(keyword, text)) for keyword, text in texts.items())
-    yield from (chunk(b"IDAT", part) for part in image_data(array))
-    yield chunk(b"IEND", b"")
-
-
-def header(array: np.ndarray) -> bytes:
-    """Return the size of a picture, its bits a channel, and that it is RGB and not interlaced; ValueError when it has
-    no pixels."""
     height, width = array.shape[:2]
     if not (0 < width <= LARGEST_SIDE and 0 < height <= LARGEST_SIDE):
         raise ValueError(f"a picture of {width}x{height} pixels")
-    return struct.pack(">IIBBBBB", width, height, 8 * array.dtype.itemsize, 2, 0, 0, 0)
-
-
-def image_data(array: np.ndarray) -> Iterator[bytes]:
-    """Yield the parts of a picture's compressed pixels."""
+    header = struct.pack(">IIBBBBB", width, height, 8 * array.dtype.itemsize, 2, 0, 0, 0)  # RGB, not interlaced
+    parts = [SIGNATURE, chunk(b"IHDR", header)]
+    parts += [chunk(b"iTXt", text_data(keyword, text)) for keyword, text in texts.items()]
     compressor = zlib.compressobj(LEVEL, strategy=STRATEGY)
-    for block in filtered(array.reshape(len(array), -1), 3 * array.dtype.itemsize):
+    for block in filtered(array.reshape(height, -1), 3 * array.dtype.itemsize):
         if part := compressor.compress(block):
-            yield part
-    yield compressor.flush()
+            parts.append(chunk(b"IDAT", part))
+    return b"".join([*parts, chunk(b"IDAT", compressor.flush()), chunk(b"IEND", b"")])
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:
@@ -76,7 +60,9 @@ def filtered(rows: np.ndarray, step: int = 3) -> Iterator[bytes]:
     above = np.zeros((1, length), np.uint8)
     count = max(1, min(ROWS, BLOCK // length))
     for start in range(0, len(rows), count):
-        block = big_endian_bytes(rows[start : start + count])
+        block = rows[start : start + count]
+        if rows.dtype.itemsize > 1:  # the high byte comes first
+            block = block.astype(">u2").view(np.uint8)
         candidates = np.stack([block, block, block])
         candidates[SUB, :, step:] -= block[:, :-step]
         candidates[UP] -= np.concatenate([above, block[:-1]])
@@ -87,11 +73,6 @@ def filtered(rows: np.ndarray, step: int = 3) -> Iterator[bytes]:
         chosen[:, 1:] = candidates[best, np.arange(len(block))]
         yield chosen.tobytes()
         above = block[-1:]
-
-
-def big_endian_bytes(rows: np.ndarray) -> np.ndarray:
-    """Return the bytes of rows of uint8 or uint16, the high byte first."""
-    return rows if rows.dtype.itemsize == 1 else rows.astype(">u2").view(np.uint8)
 
 
 BEFORE = 12  # bytes of a chunk besides its data: length, kind, checksum
@@ -121,29 +102,22 @@ def texts(data: bytes, keywords: tuple[str, ...], longest: int) -> dict[str, byt
 def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
     """Yield kind and data of the chunks before the pixels; PngError where the file ends or a checksum is wrong."""
     at = len(SIGNATURE)
-    while data[at + 4 : at + 8] not in (b"IDAT", b"IEND"):
-        if at + BEFORE > len(data):
+    while (kind := data[at + 4 : at + 8]) not in (b"IDAT", b"IEND"):
+        end = at + BEFORE + int.from_bytes(data[at : at + 4], "big")
+        if at + BEFORE > len(data) or end > len(data):
             raise PngError("the PNG picture ends before its pixels")
-        (size,) = struct.unpack_from(">I", data, at)
-        end = at + BEFORE + size
-        if end > len(data):
-            raise PngError("the PNG picture ends before its pixels")
-        (checksum,) = struct.unpack_from(">I", data, end - 4)
-        if zlib.crc32(data[at + 4 : end - 4]) != checksum:
+        if zlib.crc32(data[at + 4 : end - 4]) != int.from_bytes(data[end - 4 : end], "big"):
             raise PngError("the PNG picture is damaged: a checksum is wrong")
-        yield data[at + 4 : at + 8], data[at + 8 : end - 4]
+        yield kind, data[at + 8 : end - 4]
         at = end
 
 
 def text_of(data: bytes, longest: int) -> bytes:
     """Return the text of an iTXt chunk, behind its keyword; PngError where it is damaged or too long."""
-    is_compressed, _, rest = data[:1] == b"\1", data[1:2], data[2:]
-    _, _, rest = rest.partition(b"\0")  # the language
-    _, _, text = rest.partition(b"\0")  # the translated keyword
-    if is_compressed:
-        inflater = zlib.decompressobj()
+    *_, text = data[2:].split(b"\0", 2)  # behind the language and the translated keyword
+    if data[:1] == b"\1":
         try:
-            text = inflater.decompress(text, longest + 1)
+            text = zlib.decompressobj().decompress(text, longest + 1)
         except zlib.error:
             raise PngError("the PNG picture is damaged: its text cannot be decompressed") from None
     if len(text) > longest:

@@ -28,28 +28,6 @@ def rendered(width: int, height: int, samples: int = 1) -> np.ndarray:
     return minirt.render(minirt.load("ball.rt"), width, height, samples=samples).array
 
 
-@pytest.mark.parametrize(
-    ("suffix", "format"),
-    [("png", "PNG"), ("jpg", "JPEG"), ("bmp", "BMP"), ("ppm", "PPM"), ("webp", "WEBP"), ("PNG", "PNG")],
-)
-def test_the_extension_selects_the_format(run: Run, folder: Path, suffix: str, format: str) -> None:
-    target = folder / f"ball.{suffix}"
-    assert run("ball.rt", "-o", str(target), "--size", "40x30") == (0, b"", "")
-    with Image.open(target) as image:
-        assert image.format == format
-    tolerance = 30 if format in ("JPEG", "WEBP") else 0
-    assert np.abs(pixels(target).astype(int) - rendered(40, 30)).mean() <= tolerance
-    assert {path.name for path in folder.iterdir()} == {"ball.rt", target.name}
-
-
-@pytest.mark.parametrize("name", ["x.xyz", "x", "x.", "x.mp3", "x.rt", ".png"])
-def test_an_unknown_extension_is_an_error(run: Run, folder: Path, name: str) -> None:
-    ended = run("ball.rt", "-o", name, "--size", "4x4")
-    assert (ended.status, ended.out) == (1, b"")
-    assert ended.err.startswith(f"Error\n{name}: cannot write pictures with the extension")
-    assert [path.name for path in folder.iterdir()] == ["ball.rt"]
-
-
 def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "x.png").write_bytes(b"old")
 

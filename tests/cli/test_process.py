@@ -121,7 +121,7 @@ def test_a_signal_while_a_file_is_written_leaves_no_temporary(folder: Path, name
 
 def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:
     imports = "from minirt import cli\nfrom minirt.rendering.image import Image\n"
-    code = f"{imports}Image.write = {NO_MEMORY}\nraise SystemExit(cli.main())"
+    code = f"{imports}Image.encode = {NO_MEMORY}\nraise SystemExit(cli.main())"
     ended = run([sys.executable, "-c", code, "ball.rt", "-o", "x.png"], cwd=folder, env=environment(), text=True)
     assert (ended.returncode, ended.stdout) == (1, "")
     assert ended.stderr.startswith("Error\nnot enough memory; ")
