@@ -8,7 +8,6 @@ import json
 import re
 from base64 import b64encode
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import is_dataclass
 from html import escape
 from io import StringIO
 from math import isfinite, isnan
@@ -154,15 +153,14 @@ def as_csv(rows: Sequence[Any]) -> str:
     return text.getvalue()
 
 
-def as_json(record: Any) -> str:
+def as_json(record: dict[str, Any]) -> str:
     """Return a record as JSON, with null for NaN and infinity."""
     return json.dumps(json_value(record), indent=1, allow_nan=False) + "\n"
 
 
 def json_value(value: Any) -> Any:
-    """Convert a value to types that JSON has: records become objects."""
-    if is_dataclass(value) or hasattr(value, "_asdict"):
-        value = vars(value) if is_dataclass(value) else value._asdict()
+    """Convert a value to types that JSON has: NamedTuples become objects."""
+    value = value._asdict() if hasattr(value, "_asdict") else value
     if isinstance(value, dict):
         return {key: json_value(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):

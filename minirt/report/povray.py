@@ -22,7 +22,7 @@ from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
 from minirt.report.metrics import Picture, rmse
-from minirt.report.pictures import TOO_SLOW, Budget, Reference, Row, Step, measure_times
+from minirt.report.pictures import FEW, TOO_SLOW, Budget, Reference, Row, Step, measure_times
 from minirt.scene import Ambient, Lamp, Light, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cone import Cone
@@ -62,18 +62,18 @@ def solid(shape: Shape) -> str:
     """Translate the geometry of a shape, without the closing brace."""
     match shape:
         case Sphere():
-            return f"sphere {{ {vector(shape.centre)}, {number(shape.diameter / 2)}"
+            return f"sphere {{ {vector(shape.centre)}, {shape.diameter / 2}"
         case Plane():
             height = sum(n * p for n, p in zip(shape.normal, shape.point, strict=True))
-            return f"plane {{ {vector(shape.normal)}, {number(height)}"
+            return f"plane {{ {vector(shape.normal)}, {height + 0.0!r}"
         case Cylinder():
             ends = (np.array(shape.centre) + side * shape.height / 2 * np.array(shape.axis) for side in (-1, 1))
-            return f"cylinder {{ {', '.join(map(vector, ends))}, {number(shape.diameter / 2)}"
+            return f"cylinder {{ {', '.join(map(vector, ends))}, {shape.diameter / 2}"
         case Cone():
             base = np.array(shape.apex) + shape.height * np.array(shape.axis)
-            return f"cone {{ {vector(shape.apex)}, 0, {vector(base)}, {number(shape.diameter / 2)}"
+            return f"cone {{ {vector(shape.apex)}, 0, {vector(base)}, {shape.diameter / 2}"
         case Disc():
-            return f"disc {{ {vector(shape.centre)}, {vector(shape.normal)}, {number(shape.diameter / 2)}"
+            return f"disc {{ {vector(shape.centre)}, {vector(shape.normal)}, {shape.diameter / 2}"
         case Triangle():
             return f"triangle {{ {', '.join(map(vector, (shape.a, shape.b, shape.c)))}"
     raise RenderError(f"{shape.plural} are not translated")
@@ -101,17 +101,11 @@ def radiance(source: Ambient | Lamp | None) -> str:
 
 
 def vector(numbers: Iterable[float]) -> str:
-    """Format a vector."""
-    return f"<{', '.join(map(number, numbers))}>"
-
-
-def number(value: float) -> str:
-    """Format a number to all its digits, without a negative zero."""
-    return repr(float(value) + 0.0)
+    """Format a vector to all digits, without negative zeros."""
+    return f"<{', '.join(repr(float(each) + 0.0) for each in numbers)}>"
 
 
 PROGRAM, COMMAND = "POV-Ray", ("povray",)
-RUNS = 3  # of a round
 TICK = 0.005  # seconds by which its processor time may be too small
 CHECKED = 2  # samples along an edge of a pixel, of the picture that shows whether the scene is the same
 SAME = 0.02  # RMSE: a picture of four samples per pixel that is further off is not that of the scene
@@ -168,7 +162,7 @@ class PovRay:
                 yield row._replace(remark="left out: takes too long"), None
                 continue
             first, picture = self.drawn(options)
-            times = measure_times([lambda: self.drawn(options)[0]], first, self.threads, budget, RUNS)  # noqa: B023
+            times = measure_times([lambda: self.drawn(options)[0]], first, self.threads, budget, FEW)  # noqa: B023
             if times.remark == TOO_SLOW:
                 slow.add(row.knob)
             yield row.with_errors(picture, right).with_times(times), picture

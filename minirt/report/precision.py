@@ -15,7 +15,7 @@ from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import NEEDS, WORDS, features
 from minirt.rendering.packing.generic_kernels import precision_of
 from minirt.rendering.queries.rays import Hits, trace
-from minirt.report.metrics import Picture, changed, clamped, rmse
+from minirt.report.metrics import changed, clamped, rmse
 from minirt.report.variants import with_materials
 from minirt.scene import Background, Lamp, Scene
 from minirt.shapes import ALL_KINDS, Kind
@@ -37,26 +37,22 @@ class SingleError(NamedTuple):
 def single_errors(scene: Scene, width: int, height: int, threads: int) -> Iterator[SingleError]:
     """Compare the precisions on the shapes of a scene alone, and with each feature that the scene uses."""
     used = features(scene)
-    double, single = Renderer(threads), Renderer(threads, "single")
+    both = Renderer(threads), Renderer(threads, "single")
     for key in (None, *(feature for feature in WORDS if feature in used)):
-        yield single_error(reduced(scene, key), WORDS[key] if key else "shapes alone", width, height, double, single)
+        yield single_error(reduced(scene, key), WORDS[key] if key else "shapes alone", width, height, *both)
 
 
-def single_error(scene: Scene, words: str, width: int, height: int, double: Renderer, single: Renderer) -> SingleError:
-    """Compare the precisions on a scene."""
-    if precision_of(single.packing.pack(scene, width, height)) == "double":
+def single_error(scene: Scene, words: str, width: int, height: int, *renderers: Renderer) -> SingleError:
+    """Compare the precisions, by a renderer in each, on a scene."""
+    if precision_of(renderers[-1].packing.pack(scene, width, height)) == "double":
         return SingleError(words, remark=NEEDS_DOUBLE)
-    if not (double.is_ready(scene) and single.is_ready(scene)):
+    if not all(each.is_ready(scene) for each in renderers):
         return SingleError(words, remark=NO_KERNEL)
-    one, other = (light(renderer, scene, width, height) for renderer in (double, single))
+    lights, pixels = np.zeros((2, height, width, 3)), np.zeros((height, width, 4), np.uint8)
+    for renderer, light in zip(renderers, lights, strict=True):
+        renderer.render(scene, pixels, 1, light)
+    one, other = clamped(lights)
     return SingleError(words, rmse(one, other), float(np.abs(one - other).max()), changed(one, other))
-
-
-def light(renderer: Renderer, scene: Scene, width: int, height: int) -> Picture:
-    """Return the clamped light of a picture with one sample per pixel."""
-    linear = np.zeros((height, width, 3))
-    renderer.render(scene, np.zeros((height, width, 4), np.uint8), 1, linear)
-    return clamped(linear)
 
 
 def reduced(scene: Scene, feature: Hashable) -> Scene:

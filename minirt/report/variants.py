@@ -52,7 +52,7 @@ def without_lists(scene: Scene) -> Iterator[Variant]:
 def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
     """Yield the scene with each feature, then with each kind of shape, that it lacks; files are put into a folder."""
     used, invisible = features(scene), InvisibleElements(scene, folder)
-    plain = invisible.record(next(iter({type(shape) for shape in scene.shapes}), ALL_KINDS[0].element))
+    plain = invisible.record(type(scene.shapes[0]))
     for feature, added in invisible.features(plain).items():
         if feature not in used:
             yield Variant("feature", WORDS[feature], "added", with_element(scene, added))
