@@ -15,23 +15,7 @@ import numpy as np
 import pytest
 
 import minirt
-from minirt.element import Element
-from minirt.materials import Bump, Checker, Clouds, Glass, Marble, Mirror, Placement, Specular, Tint, Wood
-from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
-from minirt.shapes import Shape
-from minirt.shapes.box import Box
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.disc import Disc
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
-from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Oriented
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
-from minirt.shapes.torus import Torus
-from minirt.shapes.triangle import Triangle
 from tests.compare import off
 from tests.paths import SCENES
 from tests.reference import render, to_bytes
@@ -43,7 +27,7 @@ def colour_of(random: np.random.Generator) -> tuple[int, int, int]:
     return int(red), int(green), int(blue)
 
 
-def material_scene(seed: int) -> Scene:
+def material_scene(seed: int) -> minirt.Scene:
     """Make the scene of a seed."""
     random = np.random.default_rng(seed)
 
@@ -60,27 +44,27 @@ def material_scene(seed: int) -> Scene:
     def size() -> float:
         return float(np.exp(0.5 * random.normal() + 0.5))
 
-    shapes: list[Shape] = [
-        Plane((0, -9, 0), (0, 1, 0), colour()),
-        Sphere(point(), size(), colour()),
-        Sphere(point(), 2 * size(), colour()),
-        Cylinder(point(), direction(), size(), 2 * size(), colour()),
-        Cone(point(), direction(), size(), 2 * size(), colour()),
-        Paraboloid(point(), direction(), size(), size(), colour()),
-        Hyperboloid(point(), direction(), 0.8, 0.8 + size(), 2 * size(), colour()),
-        Torus(point(), direction(), 2 + size(), 1.2, colour()),
-        Box(point(), direction(), (size(), size(), size()), colour()),
-        Square(point(), direction(), 2 * size(), colour()),
-        Disc(point(), direction(), 2 * size(), colour()),
-        Triangle(point(), point(), point(), colour()),
+    shapes: list[minirt.Shape] = [
+        minirt.Plane((0, -9, 0), (0, 1, 0), colour()),
+        minirt.Sphere(point(), size(), colour()),
+        minirt.Sphere(point(), 2 * size(), colour()),
+        minirt.Cylinder(point(), direction(), size(), 2 * size(), colour()),
+        minirt.Cone(point(), direction(), size(), 2 * size(), colour()),
+        minirt.Paraboloid(point(), direction(), size(), size(), colour()),
+        minirt.Hyperboloid(point(), direction(), 0.8, 0.8 + size(), 2 * size(), colour()),
+        minirt.Torus(point(), direction(), 2 + size(), 1.2, colour()),
+        minirt.Box(point(), direction(), (size(), size(), size()), colour()),
+        minirt.Square(point(), direction(), 2 * size(), colour()),
+        minirt.Disc(point(), direction(), 2 * size(), colour()),
+        minirt.Triangle(point(), point(), point(), colour()),
     ]
     materials = [
-        {"specular": Specular(random.random(), 1 + 40 * random.random(), blinn=random.random() < 0.5)},
+        {"specular": minirt.Specular(random.random(), 1 + 40 * random.random(), blinn=random.random() < 0.5)},
         {"mirror": random.random()},
-        {"glass": Glass(1 + random.random(), random.random())},
-        {"checker": Checker(random.uniform(0.1, 0.5), colour())},
+        {"glass": minirt.Glass(1 + random.random(), random.random())},
+        {"checker": minirt.Checker(random.uniform(0.1, 0.5), colour())},
         {"texture": "textures/planet.png"},
-        {"bump": Bump("textures/water-height.png", random.uniform(-0.05, 0.05))},
+        {"bump": minirt.Bump("textures/water-height.png", random.uniform(-0.05, 0.05))},
         {"normal_map": "textures/bricks-normal.png"},
     ]
     # Each material is on at least one shape, and every shape has about two.
@@ -99,11 +83,11 @@ def material_scene(seed: int) -> Scene:
     own = np.random.default_rng([seed, 1])
     with_patterns = int(own.integers(len(shapes)))
     with_materials[with_patterns] = with_materials[with_patterns].replace(
-        marble=Marble(own.uniform(0.5, 3), colour_of(own), height=own.uniform(-0.1, 0.1)),
-        wood=Wood(own.uniform(0.2, 1), colour_of(own), 4),
+        marble=minirt.Marble(own.uniform(0.5, 3), colour_of(own), height=own.uniform(-0.1, 0.1)),
+        wood=minirt.Wood(own.uniform(0.2, 1), colour_of(own), 4),
     )
-    with_materials[0] = with_materials[0].replace(clouds=Clouds(own.uniform(1, 5), colour_of(own)))
-    ellipsoid = Ellipsoid(
+    with_materials[0] = with_materials[0].replace(clouds=minirt.Clouds(own.uniform(1, 5), colour_of(own)))
+    ellipsoid = minirt.Ellipsoid(
         tuple(4 * own.normal(size=3)), (0, 1, 0), tuple(np.exp(own.normal(size=3))), tuple(own.integers(30, 256, 3))
     )
     with_materials.append(ellipsoid.replace(**materials[own.integers(len(materials))]))
@@ -111,32 +95,35 @@ def material_scene(seed: int) -> Scene:
     glass = [shape for shape in with_materials if shape.glass]
     for shape in glass:  # tinted, and with Fresnel reflection, both of all strengths
         changed = shape.replace(
-            tint=Tint(tuple(own.integers(0, 256, 3)), float(np.exp(own.normal()))),
+            tint=minirt.Tint(tuple(own.integers(0, 256, 3)), float(np.exp(own.normal()))),
             fresnel=float(own.choice([0, 1, own.random()])),
             glass=shape.glass.replace(fade=float(own.choice([0, 0, 30]))) if shape.glass else None,
         )
         with_materials[with_materials.index(shape)] = changed
     which = own.integers(12)
-    with_materials[which] = with_materials[which].replace(glow=own.random(), mirror=Mirror(0.3, 12.0), fresnel=1.0)
+    with_materials[which] = with_materials[which].replace(
+        glow=own.random(), mirror=minirt.Mirror(0.3, 12.0), fresnel=1.0
+    )
     eye = np.array(point(9))
-    lights: list[Element] = [
-        Light(point(7), 0.4, colour()),
-        FurtherLight(point(7), 0.5, colour(), fade=30.0),
-        ParallelLight(direction(), 0.3, colour()),
-        SpotLight(tuple(eye), tuple(-eye / np.linalg.norm(eye)), 60, 0.6, colour(), rim=random.random()),
+    lights: list[minirt.Element] = [
+        minirt.Light(point(7), 0.4, colour()),
+        minirt.FurtherLight(point(7), 0.5, colour(), fade=30.0),
+        minirt.ParallelLight(direction(), 0.3, colour()),
+        minirt.SpotLight(tuple(eye), tuple(-eye / np.linalg.norm(eye)), 60, 0.6, colour(), rim=random.random()),
     ]
-    camera = Camera.look_at(tuple(eye), (0, 0, 0), fov=60, roll=30 * random.random())
-    return Scene(
-        [Ambient(0.2, colour()), camera, Background("textures/evening.png"), *lights, *with_materials], SCENES / "x.rt"
+    camera = minirt.Camera.look_at(tuple(eye), (0, 0, 0), fov=60, roll=30 * random.random())
+    return minirt.Scene(
+        [minirt.Ambient(0.2, colour()), camera, minirt.Background("textures/evening.png"), *lights, *with_materials],
+        SCENES / "x.rt",
     )
 
 
-def oriented(shape: Shape, random: np.random.Generator) -> Shape:
+def oriented(shape: minirt.Shape, random: np.random.Generator) -> minirt.Shape:
     """Turn a shape about its own axis, half of the spheres about another one, and half of the pictures on shapes."""
     if random.random() < 0.5:
         scale = np.exp(0.5 * random.normal(size=2))  # finer pictures show how bumpy glass amplifies rounding
-        shape = shape.replace(uv=Placement(*scale, *random.normal(size=2), random.uniform(-360, 360)))
-    if isinstance(shape, Sphere) and random.random() < 0.5:
+        shape = shape.replace(uv=minirt.Placement(*scale, *random.normal(size=2), random.uniform(-360, 360)))
+    if isinstance(shape, minirt.Sphere) and random.random() < 0.5:
         shape = shape.replace(axis=tuple(random.uniform(-1, 1, 3)))
     return shape.replace(roll=random.uniform(-360, 360)) if isinstance(shape, Oriented) else shape
 

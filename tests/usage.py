@@ -59,37 +59,22 @@ class Record:
             self.show(f"{part}/{self.parts}: {self.usages[part]}")
 
     @property
-    def settled(self) -> list[Usage]:
-        """The measurements after the warm-up."""
-        return [usage for part, usage in self.usages.items() if part >= min(WARM_UP, self.parts / 2)]
-
-    @property
-    def compared(self) -> int:
-        """The number of measurements that are compared with as many others."""
-        return max(1, round(THIRD * len(self.settled)))
-
-    @property
-    def before(self) -> Usage:
-        """The usage after the warm-up."""
-        return Usage.typical(self.settled[: self.compared])
-
-    @property
-    def after(self) -> Usage:
-        """The usage at the end."""
-        return Usage.typical(self.settled[-self.compared :])
+    def ends(self) -> tuple[Usage, Usage]:
+        """The usage after the warm-up and at the end."""
+        settled = [usage for part, usage in self.usages.items() if part >= min(WARM_UP, self.parts / 2)]
+        compared = max(1, round(THIRD * len(settled)))
+        return Usage.typical(settled[:compared]), Usage.typical(settled[-compared:])
 
     @property
     def is_flat(self) -> bool:
         """Whether nothing has grown since the warm-up."""
-        before, after = self.before, self.after
-        return (
-            after.memory <= MAX_GROWTH * before.memory
-            and after.files <= before.files
-            and after.threads <= before.threads
-        )
+        before, after = self.ends
+        is_small = after.memory <= MAX_GROWTH * before.memory
+        return is_small and after.files <= before.files and after.threads <= before.threads
 
     @property
     def verdict(self) -> str:
         """The change of the resources since the warm-up, in words."""
-        change = self.after.memory / self.before.memory - 1
-        return f"{'flat' if self.is_flat else 'NOT FLAT'}: {self.before} -> {self.after} ({change:+.1%} memory)"
+        before, after = self.ends
+        change = after.memory / before.memory - 1
+        return f"{'flat' if self.is_flat else 'NOT FLAT'}: {before} -> {after} ({change:+.1%} memory)"

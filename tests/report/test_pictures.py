@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
+from itertools import cycle
 from math import inf, isfinite, isnan
 
 import numpy as np
@@ -10,15 +11,16 @@ import pytest
 
 import minirt
 from minirt.errors import RenderError
+from minirt.helpers.system import Run
 from minirt.rendering import scene_packing
 from minirt.report import pictures
 from minirt.report.pictures import (
     DISTURBED_BY_OTHERS,
-    ENOUGH,
     Budget,
     Reference,
     Row,
     SettingRenderer,
+    measure_times,
     reference,
 )
 from minirt.report.settings import AUTO, KNOBS, Drawn, Knob, Setting, settings
@@ -165,23 +167,16 @@ def test_a_setting_that_takes_too_long_is_left_out() -> None:
             assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
 
 
-@pytest.mark.parametrize(("longest", "runs"), [(7.1, 7), (6.9, 3), (1.1, 3)])
-def test_slow_pictures_have_fewer_runs(longest: float, runs: int) -> None:
-    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest * ONCE))
-    assert (row.runs, row.valid) == (runs, True)
-
-
-def test_disturbed_runs_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every second run is disturbed: seven runs leave four, which is too few, fourteen leave enough."""
-    asked: list[int] = []
-    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: asked.append(threads) or len(asked) % 2 == 0)
-    for tries, runs, valid in ((1, pictures.RUNS, False), (2, pictures.RUNS, True)):
-        asked.clear()
-        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=tries))
-        assert (row.valid, row.remark) == (valid, "" if valid else DISTURBED_BY_OTHERS)
-        assert set(asked) == {1}
-        assert row.runs >= runs if valid else row.runs == pictures.RUNS
-    assert ENOUGH > pictures.RUNS / 2
+def test_slow_pictures_have_fewer_runs_and_disturbed_runs_do_not_count() -> None:
+    """Every second turn of two works is disturbed: seven turns leave four, which is too few, fourteen leave enough."""
+    calm, busy = Run(1.0, 1.0), Run(1.0, 0.5)
+    for longest, least in ((7.1, 7), (6.9, 3), (1.1, 3)):
+        assert len(measure_times([lambda: calm], calm, 1, EASY._replace(longest=longest)).runs) == least
+    for tries, runs, remark in ((1, 7, DISTURBED_BY_OTHERS), (2, 7, "")):
+        works = [lambda: calm, partial(next, cycle([calm, busy]))]
+        found = measure_times(works, calm, 1, EASY._replace(tries=tries))
+        assert (len(found.runs), found.remark) == (runs, remark)
+        assert remark or set(found.runs) == {(calm, calm)}
 
 
 def test_a_disturbed_row_is_measured_again_after_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
