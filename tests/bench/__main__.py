@@ -4,21 +4,58 @@ scenes."""
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from importlib.util import find_spec
+from itertools import cycle
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
+from minirt import load
+from minirt.helpers.system import runs
+from minirt.rendering import Renderer
 from minirt.rendering.threads import usable_cores
+from minirt.report.bench import moved
 from minirt.report.findings import processor
 from tests.bench import scenes, starts
-from tests.bench.measure import Setting, System, available, records, table, take_turns
-from tests.bench.ours import MiniRT
+from tests.bench.measure import Setting, System, available, table, take_turns
 from tests.bench.peers.embree import Embree
 from tests.bench.peers.programs import PovRay, Tachyon
 from tests.bench.yardstick import Yardstick
+
+LEAST_FRAMES = 3
+RECENT = 4  # packed scenes that are kept
+
+read = lru_cache(RECENT)(load)
+
+
+class MiniRT(System):
+    """miniRT in a precision, "double" or "single"."""
+
+    how = "Renderer.render while the camera moves: with what each tile shows; the lists of lamps are kept"
+
+    def __init__(self, setting: Setting, precision: str) -> None:
+        super().__init__(setting)
+        self.name = f"miniRT {precision}"
+        self.precision = precision
+        self.renderer = lru_cache(RECENT)(self.new_renderer)
+
+    def new_renderer(self, path: Path) -> Renderer:
+        """Make a renderer for a scene, with its kernel; a renderer keeps only the last packed scene."""
+        renderer = Renderer(self.setting.threads, self.precision)
+        renderer.prepare(read(path))
+        return renderer
+
+    def frame_times(self, path: Path, seconds: float) -> list[float]:
+        scene, renderer = read(path), self.renderer(path)
+        frames = cycle((scene, moved(scene)))
+        pixels = np.empty((self.setting.height, self.setting.width, 4), np.uint8)
+        renderer.render(next(frames), pixels)
+        timed = runs(lambda: renderer.render(next(frames), pixels), LEAST_FRAMES, seconds)
+        return [run.wall * 1e3 for run in timed]
+
 
 Maker = Callable[[Setting], System]
 
@@ -45,7 +82,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__.split(": ")[1])
     parser.add_argument("--quick", action="store_true", help="fewer rounds, and the growth up to 10,000 spheres")
     parser.add_argument("--threads", type=int, default=usable_cores(), help="of each system (default: %(default)s)")
-    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for bench.json and the pictures")
+    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the charts")
     return parser.parse_args()
 
 
@@ -78,15 +115,6 @@ def main() -> None:
     reasons += more_reasons + start_reasons
     for reason in reasons:
         print(f"not measured: {reason}")
-    found = {
-        "processor": processor(),
-        "processors": usable_cores(),
-        "size": [WIDTH, HEIGHT],
-        "how": {system.name: system.how for system in systems},
-        "not measured": reasons,
-    }
-    found |= {"compared": records(compared), "starts": records(started), "growth": records(growth)}
-    (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
     if find_spec("matplotlib") is None:
         print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
         return
@@ -95,7 +123,7 @@ def main() -> None:
     charts.dots(compared, asked.out / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
     charts.dots(started, asked.out / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
     charts.growth(growth, asked.out / "growth.png")
-    print(f"{asked.out}: bench.json, bench.png, starts.png, growth.png")
+    print(f"{asked.out}: bench.png, starts.png, growth.png")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from statistics import median
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 INSTALL = "`make bench-peers` installs it"  # on Debian and Ubuntu
 
@@ -111,12 +111,3 @@ def text(cells: Cells, system: str, scene: str, first: str) -> str:
         return LACKING
     ms = median(cells[system, scene])
     return f"{figure(ms)} {times(ms / median(cells[first, scene])):>5}"
-
-
-def records(cells: Cells) -> list[dict[str, Any]]:
-    """Return the results for a JSON file."""
-    rounded = {key: [round(each, 3) for each in rounds] for key, rounds in cells.items()}
-    return [
-        {"system": system, "scene": scene, "ms": round(median(cells[system, scene]), 3), "rounds": rounds}
-        for (system, scene), rounds in rounded.items()
-    ]
