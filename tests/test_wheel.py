@@ -50,29 +50,18 @@ def folders(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Path, str]]:
     return compiled
 
 
-def test_a_wheel_has_kernels_for_both_levels(folders: list[tuple[Path, str]]) -> None:
-    data, warnings = built()
-    assert [target for _, target in folders] == [fingerprint.V3, fingerprint.V4]
-    assert data == {"pure_python": False, "tag": wheel_hook.TAG, **SCENES}
-    assert warnings == []
-
-
-def test_the_project_file_includes_them(folders: list[tuple[Path, str]]) -> None:
-    built()
+def test_a_wheel_has_kernels_for_both_levels_which_the_project_file_includes(folders: list[tuple[Path, str]]) -> None:
+    assert built() == ({"pure_python": False, "tag": wheel_hook.TAG, **SCENES}, [])
+    assert folders == [(cache.SHIPPED / target, target) for target in (fingerprint.V3, fingerprint.V4)]
     (pattern,) = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["artifacts"]
-    for folder, target in folders:
-        assert folder == cache.SHIPPED / target
+    for folder, _ in folders:
         assert fnmatch.fnmatch((folder / "0.kernel").relative_to(ROOT).as_posix(), pattern)
 
 
-def test_an_editable_installation_compiles_none(folders: list[tuple[Path, str]]) -> None:
-    assert built("editable") == ({"pure_python": True, "force_include": {}}, [])
-    assert folders == []
-
-
-def test_other_machines_get_a_wheel_without_kernels(
+def test_editable_installations_and_other_machines_get_no_kernels(
     folders: list[tuple[Path, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    assert built("editable") == ({"pure_python": True, "force_include": {}}, [])
     monkeypatch.setattr(fingerprint, "is_linux_on_x86_64", lambda: False)
     assert built() == ({"pure_python": True, **SCENES}, [])
     assert folders == []

@@ -16,7 +16,6 @@ from tests.paths import ROOT
 
 PATH = ROOT / "scenes" / "demo.rt"
 SIZE = (16, 9)
-Measured = dict[str, str | float]
 
 
 @pytest.fixture
@@ -41,18 +40,9 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return log
 
 
-def measure() -> Measured:
-    return bench.measure(str(PATH), load(PATH), SIZE, 1, "double")
-
-
-def frames_without_lists(made: list[str]) -> list[int]:
-    """Return how many frames followed each making of lists."""
-    return [len([*group]) for entry, group in groupby(made) if entry == "frame"]
-
-
 def test_an_eye_at_rest_keeps_the_lists_and_a_moving_one_needs_new_ones_for_each_frame(made: list[str]) -> None:
-    measure()
-    rest, *moving = frames_without_lists(made)
+    bench.measure(str(PATH), load(PATH), SIZE, 1, "double")
+    rest, *moving = (len([*group]) for entry, group in groupby(made) if entry == "frame")
     assert rest == 1 + bench.LEAST_FRAMES  # the first one is not counted
     assert moving == [1] * (1 + bench.LEAST_FRAMES)
 
