@@ -39,12 +39,6 @@ def test_render_gives_bytes_and_linear_radiance_of_the_reference(path: Path | st
     assert image._repr_png_().startswith(b"\x89PNG")
 
 
-def test_save_writes_the_encoded_picture(scene: minirt.Scene, tmp_path: Path) -> None:
-    image = minirt.render(scene, 32, 18)
-    image.save(tmp_path / "a.png")
-    assert (tmp_path / "a.png").read_bytes() == image.encode()
-
-
 def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
     assert minirt.size_of(scene) == minirt.DEFAULT_SIZE
     sized = minirt.Scene((Resolution(40, 20), *scene.items))
@@ -103,10 +97,6 @@ def test_a_goal_that_is_not_positive_or_without_auto_is_an_error(scene: minirt.S
         minirt.render(scene, 4, 4, samples="auto", **goal)
     with pytest.raises(minirt.RenderError, match="needs samples='auto', got 4"):
         minirt.render(scene, 4, 4, samples=4, **goal)
-
-
-def test_threads_do_not_change_the_picture(scene: minirt.Scene) -> None:
-    assert np.array_equal(*(minirt.render(scene, 50, 40, threads=n).linear for n in (1, 3)))
 
 
 def test_an_edit_makes_a_new_scene(scene: minirt.Scene) -> None:

@@ -33,6 +33,7 @@ BAD_ARGUMENTS = [
     ),
     ["ball.rt", "-o", "x.png", "--samples", "auto", "--time", "0"],
     ["ball.rt", "-o", "x.png", "--error", "0.01"],
+    ["ball.rt", "-o", "x.png", "--samples", "auto", "--strict"],
     ["ball.rt", "-o", "x.png", "--samples", "4", "--time", "1"],
     ["ball.rt", "--samples", "auto"],
     ["ball.rt", "--replay", "keys.txt", "-o", "x.png", "--samples", "auto"],

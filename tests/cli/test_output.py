@@ -86,11 +86,6 @@ def test_a_time_that_ends_before_the_error_is_said(run: Run) -> None:
     assert (ended.status, ended.err.splitlines()[1]) == (1, "notice: error 0.0007 not reached: the time was over")
 
 
-def test_strict_needs_an_error(run: Run) -> None:
-    ended = run("ball.rt", "-o", "x.png", "--strict")
-    assert (ended.status, "--strict needs --error" in ended.err) == (2, True)
-
-
 def test_the_scene_may_set_the_size(run: Run, folder: Path) -> None:
     (folder / "sized.rt").write_text("R 33 21\n" + SCENE)
     assert pixels(run("sized.rt", "-o", "-").out).shape == (21, 33, 3)
@@ -146,14 +141,6 @@ def test_verbose_counts_clipped_pixels(run: Run, exposure: str, tone: str) -> No
     count = (light.max(axis=-1) > (7.2417 if tone == "filmic" else 1)).sum()
     assert (count > 0) == ((exposure, tone) == ("2", "plain"))
     assert line.startswith(f"clipped pixels, brighter than the picture can show: {count} of 1200 (")
-
-
-def test_precision_is_an_option(run: Run) -> None:
-    for precision in ("double", "single"):
-        ended = run("ball.rt", "-o", f"{precision}.png", "--size", "80x60", "--precision", precision, "-v")
-        assert f"{precision} precision" in ended.err
-    ended = run("ball.rt", "-o", "x.png", "--precision", "half")
-    assert (ended.status, "must be double or single, got 'half'" in ended.err) == (2, True)
 
 
 def test_a_notice_names_shapes_that_single_precision_cannot_show(run: Run, folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from math import dist
 from pathlib import Path
 from weakref import WeakSet
 
@@ -14,8 +15,12 @@ from PIL import Image as pillow  # noqa: N813
 from minirt.errors import RenderError
 from minirt.movie import save_movie
 from minirt.rendering.image import Image
+from minirt.viewer.app.replay import FPS as ANIMATION_FPS
+from minirt.viewer.app.replay import TICKS, record, turntable
+from minirt.viewer.editing.projection import projection_of, scene_centre
 from tests.processes import in_child
 from tests.test_faulty_writes import comparable
+from tests.viewer.fake import FakeRenderer, scene
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")  # what Python 3.12 says of a fork
@@ -196,3 +201,57 @@ def test_a_film_without_pictures_is_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(RenderError, match="needs a picture"):
         save_movie([], tmp_path / name)
     assert not list(tmp_path.iterdir())
+
+
+def test_other_formats_give_numbered_files(tmp_path: Path) -> None:
+    written = save_movie(film(), tmp_path / "a b.png")
+    assert [path.name for path in written] == [f"a b-000{n}.png" for n in (1, 2, 3, 4)]
+    assert np.array_equal(np.asarray(pillow.open(written[1])), film()[1].array)
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.png"])
+def test_an_interrupted_movie_leaves_no_half_file(tmp_path: Path, name: str) -> None:
+    def pictures() -> Iterator[Image]:
+        yield film()[0]
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        save_movie(pictures(), tmp_path / name)
+    assert [file.name for file in tmp_path.iterdir()] == ([] if name == "a.gif" else ["a-0001.png"])
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.png"])
+def test_a_film_in_no_folder_is_an_error(tmp_path: Path, name: str) -> None:
+    with pytest.raises(RenderError, match="cannot write"):
+        save_movie(film(), tmp_path / "none" / name)
+
+
+def test_a_turntable_circles_the_scene_once() -> None:
+    start = scene()
+    middle = scene_centre(start)
+    views = list(turntable(start, 8))
+    assert views[0] is start
+    cameras = [view.camera for view in views]
+    assert len({camera.position for camera in cameras}) == 8
+    for camera in cameras:
+        assert dist(camera.position, middle) == pytest.approx(dist(start.camera.position, middle))
+        assert camera.position[1] == start.camera.position[1]
+        assert projection_of(camera, 64, 48).pixel(middle) == pytest.approx(
+            projection_of(start.camera, 64, 48).pixel(middle)
+        )
+    opposite = cameras[4].position
+    assert [opposite[0] + 0, opposite[2] + 10] == pytest.approx([2 * middle[0], 2 * middle[2]])
+    assert dist(cameras[7].position, cameras[0].position) == pytest.approx(
+        dist(cameras[1].position, cameras[0].position)
+    )
+
+
+def test_an_animation_has_frames_for_its_whole_duration() -> None:
+    lines = ["wait 1", "move 20,20", "hold d 0.5"]
+    frames: list[Image] = []
+    record(scene(), lines, frames.append, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
+    assert abs(len(frames) - 1.5 * ANIMATION_FPS) <= 2
+    assert TICKS % ANIMATION_FPS == 0
+    assert np.array_equal(frames[0].array, frames[3].array)
+    assert (frames[-3].array[20:40, 20:32] == 255).all(axis=2).any()  # the pointer
+    assert not np.array_equal(frames[-3].array, frames[-2].array)  # the camera moves

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +21,8 @@ STILL = [s for s, name in BY_SUFFIX.items() if FORMATS[name].is_still and name n
 
 @pytest.mark.parametrize("suffix", STILL)
 def test_pillow_reads_back_what_is_written(tmp_path: Path, suffix: str) -> None:
-    path = tmp_path / f"a{suffix}"
-    Image(ARRAY).save(path)
+    path = tmp_path / f"a{suffix.upper()}"
+    Image(ARRAY).save(str(path))
     with pillow.open(path) as image:
         found = np.asarray(image.convert("RGB")).astype(int)
     assert found.shape == ARRAY.shape
@@ -30,7 +31,9 @@ def test_pillow_reads_back_what_is_written(tmp_path: Path, suffix: str) -> None:
     assert error <= (8 if FORMATS[name].is_lossy or name == "GIF" else 0)
 
 
-@pytest.mark.parametrize("suffix", [".pgm", ".pbm", ".ico", ".icns", ".xbm", ".eps", ".spider", ".txt", ".rt", "", "."])
+@pytest.mark.parametrize(
+    "suffix", [".pgm", ".pbm", ".ico", ".icns", ".xbm", ".eps", ".spider", ".txt", ".rt", "", ".", "/.png", ".png/b"]
+)
 def test_other_extensions_are_refused(suffix: str) -> None:
     with pytest.raises(RenderError, match="cannot write pictures with the extension"):
         format_of(f"a{suffix}")
@@ -73,3 +76,28 @@ def test_quality_is_for_lossy_formats() -> None:
     for wrong in (0, 101):
         with pytest.raises(RenderError, match="from 1 to 100"):
             Image(ARRAY).encode("JPEG", quality=wrong)
+
+
+def test_a_frame_buffer_is_copied_to_rgb() -> None:
+    pixels = np.array([[[3, 2, 1, 255], [30, 20, 10, 0]]], np.uint8)
+    image = Image.from_bgra(pixels)
+    assert image.array.tolist() == [[[1, 2, 3], [10, 20, 30]]]
+    pixels[:] = 0
+    assert image.array[0, 0].tolist() == [1, 2, 3]  # a copy
+    assert image.linear is None
+
+
+@pytest.mark.parametrize("encode", [Image.encode, Image._repr_png_])
+def test_a_picture_is_encoded_as_png(encode: object) -> None:
+    with pillow.open(io.BytesIO(encode(Image(ARRAY)))) as image:  # type: ignore[operator]
+        assert image.format == "PNG"
+        assert np.array_equal(np.asarray(image), ARRAY)
+
+
+def test_a_path_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(RenderError, match="No such file or directory"):
+        Image(ARRAY).save(tmp_path / "nowhere" / "a.png")
+    (tmp_path / "a.png").mkdir()
+    with pytest.raises(RenderError, match="not a regular file"):
+        Image(ARRAY).save(tmp_path / "a.png")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]

@@ -101,11 +101,3 @@ def test_the_block_ends_the_thread_also_by_an_error(monkeypatch: pytest.MonkeyPa
     with pytest.raises(KeyboardInterrupt):
         interrupted()
     assert out.getvalue().endswith("\r\x1b[K")
-
-
-def test_the_thread_that_calls_keeps_its_signals() -> None:
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    with progress(lambda: State("x"), Terminal()):
-        pass
-    draw_until(Ended(0), lambda: State("x"), partial(draw, Terminal()), lambda: 0.0)
-    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before
