@@ -14,9 +14,9 @@ import locale
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import IntEnum
+from functools import partial
 from itertools import groupby
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from minirt.mlx import Button, Key, Modifier
 from minirt.mlx.events import KEYS
@@ -32,29 +32,18 @@ FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a not
 SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
 
 
-class Drag(IntEnum):
-    """Drag with a mouse button."""
-
-    LEFT = 0x100 + Button.LEFT
-    MIDDLE = 0x100 + Button.MIDDLE
-    RIGHT = 0x100 + Button.RIGHT
-
-
-MOUSE: dict[str, Button | Drag] = {
-    "left click": Button.LEFT,
-    "right click": Button.RIGHT,
-    "left drag": Drag.LEFT,
-    "middle drag": Drag.MIDDLE,
-    "right drag": Drag.RIGHT,
+MOUSE: dict[str, Button | str] = {
+    **{f"{each.name.lower()} click": each for each in (Button.LEFT, Button.RIGHT)},
+    **{f"{each} drag": f"{each} drag" for each in ("left", "middle", "right")},
     "wheel up": Button.WHEEL_UP,
     "wheel down": Button.WHEEL_DOWN,
 }
 
 
 class Chord(NamedTuple):
-    """A key with held modifiers, typed text, a mouse button or a drag."""
+    """A key with held modifiers, typed text, a mouse button or the name of a drag."""
 
-    code: Key | Button | Drag | str
+    code: int | str
     modifiers: Modifier = Modifier.NONE
 
 
@@ -102,19 +91,13 @@ class Binding:
         return (self.azerty, *self.keys[1:]) if layout == "azerty" and self.azerty else self.keys
 
 
-def on_press(group: str, action: str, help: str, *keys: str) -> Binding:
+def on_press(group: str, action: str, help: str, *keys: str, **options: Any) -> Binding:
     """Binding of an action that happens once for each press."""
-    return Binding(action, group, help, keys)
+    return Binding(action, group, help, keys, **options)
 
 
-def while_held(group: str, action: str, help: str, key: str, azerty: str = "") -> Binding:
-    """Binding of a movement that goes on while its key is held."""
-    return Binding(action, group, help, (key,), azerty, held=True, fine=True)
-
-
-def in_steps(group: str, action: str, help: str, *keys: str) -> Binding:
-    """Binding of a change by one step for each press, or by a tenth of a step with Shift."""
-    return Binding(action, group, help, keys, fine=True)
+# A movement that goes on while its key is held; and a change by one step for each press, or by a tenth with Shift.
+while_held, in_steps = partial(on_press, held=True, fine=True), partial(on_press, fine=True)
 
 
 BINDINGS = (
@@ -123,11 +106,11 @@ BINDINGS = (
     on_press(SELECT, "select at pointer", "select the element under the pointer", "left click"),
     on_press(SELECT, "select camera", "select the camera", "C", "Backspace", "right click"),
     on_press(SELECT, "select light", "select the next light", "L"),
-    while_held(MOVE, "left", "move left", "A", "Q"),
+    while_held(MOVE, "left", "move left", "A", azerty="Q"),
     while_held(MOVE, "right", "move right", "D"),
-    while_held(MOVE, "forward", "move forward", "W", "Z"),
+    while_held(MOVE, "forward", "move forward", "W", azerty="Z"),
     while_held(MOVE, "back", "move back", "S"),
-    while_held(MOVE, "down", "move down", "Q", "A"),
+    while_held(MOVE, "down", "move down", "Q", azerty="A"),
     while_held(MOVE, "up", "move up", "E"),
     while_held(MOVE, "turn left", "turn left", "Left"),
     while_held(MOVE, "turn right", "turn right", "Right"),
@@ -186,11 +169,8 @@ def keys_text(layout: str = "auto") -> str:
     """Text that `--list-keys` prints."""
     listed = [*key_groups(resolve_layout(layout)), ("", [FINE_NOTE])]
     width = max(len(keys) for _, rows in listed for keys, _ in rows)
-    lines = []
-    for title, rows in listed:
-        lines += ["", title] if title else [""]
-        lines += [f"  {keys:{width}}  {help}" for keys, help in rows]
-    return "\n".join(lines[1:])
+    texts = ("\n".join(f"  {keys:{width}}  {help}" for keys, help in rows) for _, rows in listed)
+    return "\n\n".join(f"{title}\n{text}" if title else text for (title, _), text in zip(listed, texts, strict=True))
 
 
 def keys_markdown() -> str:
@@ -226,4 +206,4 @@ class Keymap:
         if modifiers & ~SIGNIFICANT:
             return None
         # Equal integers are one dictionary key, whatever their enumeration; codes of buttons and keys do not overlap.
-        return self._bindings.get(Chord(code, modifiers))  # type: ignore[arg-type]
+        return self._bindings.get(Chord(code, modifiers))

@@ -38,13 +38,8 @@ def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = N
     raise AssertionError("there are endlessly many numbers")
 
 
-def save_copy(scene: Scene, path: Path) -> Path:
-    """Write the scene to a new file beside its own; return the new path. SceneError."""
-    return create_scene_file(path, dump(scene).encode())
-
-
-def create_scene_file(path: Path, data: bytes, first: Path | None = None) -> Path:
-    """Write a new scene file beside another one; return its path. SceneError."""
+def save_copy(path: Path, data: bytes, first: Path | None = None) -> Path:
+    """Write a new scene file beside another one, `first` if that name is free; return its path. SceneError."""
     try:
         return create_numbered(path, SUFFIX, data, first)
     except OSError as error:
@@ -62,31 +57,25 @@ def save_picture(image: Image, path: Path) -> Path:
 def back_up(path: Path) -> Path:
     """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
     try:
-        data = file_io.read(path, MAX_BYTES)
+        return save_copy(path, file_io.read(path, MAX_BYTES))
     except FileError as error:
         raise file_error(path, error.reason) from None
-    return create_scene_file(path, data)
 
 
 def save_recovery(scene: Scene, path: Path) -> Path:
     """Write unsaved changes beside the file, or if that fails into a new temporary folder; return the path."""
-    name = f"{path.stem}.recovered{SUFFIX}"
-    data = dump(scene).encode()
+    beside, data = path.with_name(f"{path.stem}.recovered{SUFFIX}"), dump(scene).encode()
     try:
-        return create_scene_file(path.with_name(name), data, path.with_name(name))
+        return save_copy(beside, data, beside)
     except SceneError:
-        folder = Path(tempfile.mkdtemp(prefix="minirt-"))
-        return create_scene_file(folder / name, data, folder / name)
+        elsewhere = Path(tempfile.mkdtemp(prefix="minirt-")) / beside.name
+        return save_copy(elsewhere, data, elsewhere)
 
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:
     """Whether two scenes differ in more than the camera: looking around is not an unsaved change."""
-    return contents(scene) != contents(saved)
-
-
-def contents(scene: Scene) -> list[object]:
-    """Return the lines of a scene, without the camera's."""
-    return [item for item in scene.items if not isinstance(item, Camera)]
+    one, other = ([item for item in each.items if not isinstance(item, Camera)] for each in (scene, saved))
+    return one != other
 
 
 def error_summary(error: MiniRTError) -> str:
@@ -104,6 +93,7 @@ class WatchedFile:
         self.path = path
         self.known = signature(path)  # as it was last read or written here
         self._reported = self._seen = self.known
+        self.news = threading.Event()  # the file was changed, or deleted
         self._closed = threading.Event()
 
     def accept(self, seen: Signature) -> None:
@@ -122,8 +112,15 @@ class WatchedFile:
         return now is not None and now != self.known
 
     def watch(self, notify: Callable[[], object]) -> None:
-        """Start a thread that calls `notify` when the file was changed or deleted and two checks found it the same."""
-        threading.Thread(target=self._watch, args=(notify,), name="minirt-watch", daemon=True).start()
+        """Start a thread that sets `news`, and calls `notify`, once two checks found the same change."""
+
+        def work() -> None:
+            while not self._closed.wait(INTERVAL):
+                if self.check():
+                    self.news.set()
+                    notify()
+
+        threading.Thread(target=work, name="minirt-watch", daemon=True).start()
 
     def close(self) -> None:
         """Stop watching."""
@@ -137,11 +134,6 @@ class WatchedFile:
             return True
         return False
 
-    def _watch(self, notify: Callable[[], object]) -> None:
-        while not self._closed.wait(INTERVAL):
-            if self.check():
-                notify()
-
 
 def signature(path: Path) -> Signature:
     """Return the numbers that differ when a file has changed."""
@@ -152,61 +144,42 @@ def signature(path: Path) -> Signature:
     return status.st_mtime_ns, status.st_size, status.st_ino
 
 
-def asset_names(scene: Scene, suffixes: Set[str] = PICTURE_SUFFIXES) -> list[str]:
+def asset_names(scene: Scene, suffixes: Set[str]) -> list[str]:
     """Return the files with these suffixes, relative to the scene's folder, those in the folder itself first."""
     top = scene.beside("")
-    inside = sorted(each for each in children(top) if each.is_dir() and not each.name.startswith("."))
-    files = [each for folder in (top, *inside) for each in sorted(children(folder)) if each.suffix.lower() in suffixes]
+
+    def children(folder: Path) -> list[Path]:
+        with suppress(OSError):  # it cannot be read
+            return sorted(folder.iterdir())
+        return []
+
+    inside = [each for each in children(top) if each.is_dir() and not each.name.startswith(".")]
+    files = [each for folder in (top, *inside) for each in children(folder) if each.suffix.lower() in suffixes]
     return [each.relative_to(top).as_posix() for each in files]
 
 
-def children(folder: Path) -> list[Path]:
-    """Return the entries of a folder; an empty list if it cannot be read."""
-    try:
-        return list(folder.iterdir())
-    except OSError:
-        return []
+def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.0) -> Iterator[str | MeshFile]:
+    """Yield the usable pictures, or meshes, beside the scene; cyclically from the one after a name.
 
-
-def read_picture(scene: Scene, name: str) -> str | None:
-    """Return the name; None if a scene line cannot spell it or the file holds no picture."""
+    In reverse order if `steps` is negative. Names that a scene line cannot spell, and files of wrong content, are left
+    out.
+    """
     from minirt.materials.pictures import picture  # loads numpy and Pillow, which no other key needs
 
-    with suppress(FieldError, FileError):
-        picture(scene.beside(file_name(name, ",")))
-        return name
-    return None
-
-
-def read_mesh(scene: Scene, name: str) -> MeshFile | None:
-    """Read a mesh; None if a scene line cannot spell the name or the file holds no mesh."""
-    with suppress(FieldError, FileError):
-        return MeshFile(file_name(name), load_mesh(scene.beside(name)))
-    return None
-
-
-def pictures(scene: Scene) -> Iterator[str]:
-    """Yield the names of the usable pictures."""
-    return filter(None, (read_picture(scene, name) for name in asset_names(scene)))
-
-
-def meshes(scene: Scene) -> Iterator[MeshFile]:
-    """Yield the usable meshes."""
-    return filter(None, (read_mesh(scene, name) for name in asset_names(scene, MESH_SUFFIXES)))
+    names = asset_names(scene, MESH_SUFFIXES if is_mesh else PICTURE_SUFFIXES)
+    if steps < 0:
+        names.reverse()
+    start = names.index(after) + 1 if after in names else 0
+    for name in names[start:] + names[:start]:
+        with suppress(FieldError, FileError):
+            if is_mesh:
+                yield MeshFile(file_name(name), load_mesh(scene.beside(name)))
+            else:
+                picture(scene.beside(file_name(name, ",")))
+                yield name
 
 
 def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
     """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
-    if isinstance(file, MeshFile):
-        names = cycle_after(asset_names(scene, MESH_SUFFIXES), file.name, steps)
-        return next(filter(None, (read_mesh(scene, name) for name in names)), file)
-    names = cycle_after(asset_names(scene), file, steps)
-    return next(filter(None, (read_picture(scene, name) for name in names)), file)
-
-
-def cycle_after(names: list[str], name: str, steps: float) -> list[str]:
-    """Return all names in cyclic order from the one after `name`; in reverse order if `steps` is negative."""
-    if steps < 0:
-        names.reverse()
-    start = names.index(name) + 1 if name in names else 0
-    return names[start:] + names[:start]
+    is_mesh = isinstance(file, MeshFile)
+    return next(usable_files(scene, is_mesh, file.name if isinstance(file, MeshFile) else file, steps), file)

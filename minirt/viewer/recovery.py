@@ -21,11 +21,11 @@ from typing import NamedTuple
 from minirt.errors import FileError, SceneError
 from minirt.helpers import file_io
 from minirt.scene import Scene, dump, files
-from minirt.viewer.files import Signature, contents_differ, signature
+from minirt.viewer.files import contents_differ
 
 INTERVAL = 0.8  # seconds between two writes, which leaves a fifth of a second for the write itself
-KEPT = 30 * 24 * 3600  # seconds that a file is kept which nobody asks for ...
-EARLIEST = 1.7e9  # ... since 1970, in November 2023: no file is older, and one of which a wrong clock says so is kept
+LATEST = 1e11  # seconds since 1970: no calendar has the later times that some file systems hold
+KEPT = 30 * 24 * 3600  # seconds that changes are kept which are older than their scene
 
 
 class Version(NamedTuple):
@@ -34,7 +34,6 @@ class Version(NamedTuple):
     scene: Scene
     saved: Scene
     file: Path
-    signature: Signature  # of the file with `saved`
 
 
 class Recovery:
@@ -52,9 +51,8 @@ class Recovery:
 
     def keep(self, version: Version) -> None:
         """Keep a version, soon; the last one that was given is the one that counts."""
-        newest, self._newest = self._newest, version
-        changed = newest.scene is not version.scene if newest else version.scene is not version.saved
-        if self._timer is None and (changed or (newest and newest.saved is not version.saved)):
+        newest, self._newest = self._newest or version._replace(scene=version.saved), version
+        if self._timer is None and (newest.scene is not version.scene or newest.saved is not version.saved):
             self._timer = threading.Timer(INTERVAL, self.flush)
             self._timer.daemon = True
             self._timer.start()
@@ -95,8 +93,14 @@ class Recovery:
             self._end_file()
         if unsaved:
             if self.path is None:
-                self.path, self._lock = create_locked(version)
+                folder = state_folder()
+                folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
+                path = folder / f"{name_of(version.file)}-{os.urandom(6).hex()}.rt"
+                self.path, self._lock = path, open_lock(path)
             file_io.write(self.path, dump(version.scene).encode(), file_io.PRIVATE_FILE)
+            with suppress(OSError):  # clocks are set back, too: what was changed is never newer than its changes
+                file, kept = version.file.stat(), self.path.stat()
+                os.utime(self.path, ns=(kept.st_atime_ns, max(file.st_mtime_ns, kept.st_mtime_ns)))
         if unsaved or before:
             self._delete_obsolete()
         self._written = version if unsaved else None
@@ -124,36 +128,24 @@ class FoundChanges(NamedTuple):
     @property
     def title(self) -> str:
         """Their name in messages: time of day, with the date unless it is today."""
-        try:
-            when = datetime.fromtimestamp(self.time)  # in the user's own time
-        except (OSError, OverflowError, ValueError):  # beyond the year 9999, which some file systems hold
-            return f"unsaved changes ({self.path.name})"
+        when = datetime.fromtimestamp(min(max(self.time, 0.0), LATEST))  # in the user's own time
         date = "" if when.date() == datetime.now().date() else f"{when:%Y-%m-%d} "
         return f"unsaved changes of {date}{when:%H:%M}{f' ({self.path.name})' if self.beside else ''}"
 
 
 def find_changes(file: Path) -> FoundChanges | None:
-    """Return the last unsaved changes of a scene file that are newer than the file and differ from it.
-
-    Changes of just the text that the file has are newer, whatever the times say: clocks are set back, too.
-    """
+    """Return the last unsaved changes of a scene file that are newer than the file and differ from it."""
     with suppress(OSError, FileError, UnicodeDecodeError):
-        data, saved = file_io.read(file, files.MAX_BYTES), file.stat().st_mtime
-        text, base = data.decode(), digest(data)
-        newest = sorted(candidates(file), key=lambda each: each.time, reverse=True)
-        return next((each for each in newest if is_newer(each, base, saved) and each.text != text), None)
+        text, saved = file_io.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
+        newest = sorted(candidates(file, saved), key=lambda each: each.time, reverse=True)
+        return next((each for each in newest if each.time >= saved and each.text != text), None)
     return None
 
 
-def is_newer(changes: FoundChanges, base: str, saved: float) -> bool:
-    """Whether changes were made after the file got the text with the digest `base`, at the time `saved`."""
-    return changes.time >= saved or (not changes.beside and changes.path.name.split("-")[1] == base)
-
-
-def candidates(file: Path) -> Iterator[FoundChanges]:
-    """Yield all unsaved changes of a scene file that can be read."""
+def candidates(file: Path, saved: float) -> Iterator[FoundChanges]:
+    """Yield all unsaved changes that can be read, of a scene file that was saved at a time."""
     beside = sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt"))
-    for path in [*abandoned(file), *beside]:
+    for path in [*abandoned(file, saved), *beside]:
         with suppress(OSError, SceneError, UnicodeDecodeError):
             yield FoundChanges(path, path.stat().st_mtime, files.read(path).decode(), path in beside)
 
@@ -163,30 +155,9 @@ def state_folder() -> Path:
     return file_io.user_folder("XDG_STATE_HOME", "Application Support", ".local/state") / "minirt" / "unsaved"
 
 
-def digest(data: bytes) -> str:
-    """Return letters and digits that tell texts, and paths, apart."""
-    return hashlib.sha256(data).hexdigest()[:24]
-
-
 def name_of(file: Path) -> str:
     """Return how the names of the files with unsaved changes of a scene file begin."""
-    return digest(os.fsencode(os.path.realpath(file)))
-
-
-def create_locked(version: Version) -> tuple[Path, int]:
-    """Return a new name for the unsaved changes of a scene file, and the descriptor of its lock. OSError, RuntimeError.
-
-    The second part of the name is the digest of the text that was changed, if the file still holds it.
-    """
-    base = ""
-    with suppress(FileError):
-        data = file_io.read(version.file, files.MAX_BYTES)
-        is_its_file = version.saved.file == version.file and signature(version.file) == version.signature
-        base = digest(data) if is_its_file else ""
-    folder = state_folder()
-    folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
-    path = folder / f"{name_of(version.file)}-{base}-{os.urandom(6).hex()}.rt"
-    return path, open_lock(path)
+    return hashlib.sha256(os.fsencode(os.path.realpath(file))).hexdigest()[:24]
 
 
 def open_lock(path: Path) -> int:
@@ -198,18 +169,17 @@ def open_lock(path: Path) -> int:
     return descriptor
 
 
-def abandoned(file: Path) -> Iterator[Path]:
+def abandoned(file: Path, saved: float) -> Iterator[Path]:
     """Yield the files with unsaved changes of a scene file that no running program writes; delete very old ones."""
     with suppress(OSError, RuntimeError):
         for lock in sorted(state_folder().glob(f"{name_of(file)}-*.lock")):
             path = lock.with_suffix(".rt")
             with suppress(OSError):
                 os.close(open_lock(path))  # which also frees the lock
-                changed = path.stat().st_mtime if path.exists() else EARLIEST
-                if EARLIEST <= changed < time.time() - KEPT:
-                    delete(path)
-                else:
+                if not path.exists() or path.stat().st_mtime >= min(saved, time.time() - KEPT):
                     yield path
+                else:
+                    delete(path)
 
 
 def delete(path: Path) -> None:

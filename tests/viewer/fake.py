@@ -28,6 +28,15 @@ pl 0,-1,0 0,1,0 0,255,0
 cy 3,0,0 0,1,0 1 4 0,0,255
 """
 
+SPHERE_ON_PLANE = """\
+A 0.2 255,255,255
+C 0,1,8 0,-0.1,-0.995 60
+L 5,5,5 0.6 255,255,255
+sp 0,0,0 2 255,60,60
+pl 0,-1,0 0,1,0 90,200,90
+"""
+WITH_CYLINDER = SPHERE_ON_PLANE + "cy 2,0,0 0,1,0 1 2 60,60,255\n"  # these two are for real windows
+
 MARK = (1, 2, 3, 255)  # BGRA of a refined pixel
 
 
@@ -66,8 +75,8 @@ class FakeRenderer:
             raise self.prepare_error
         self.ready = True
 
-    def specialise_early(self, notify: Callable[[], object]) -> None:
-        self.specialised = notify
+    def specialise_early(self) -> None:
+        pass
 
     def stop(self) -> None:
         if self.stops:
@@ -139,3 +148,10 @@ def played(
 ) -> Session:
     """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
     return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys, watch=watch)
+
+
+def write(path: Path, text: str) -> None:
+    """Replace a file, as another program does."""
+    new = path.with_name("new")
+    new.write_text(text)
+    new.replace(path)

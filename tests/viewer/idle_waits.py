@@ -43,21 +43,6 @@ def has_ended(process: int) -> bool:
     return state(process)[0] in "ZX"
 
 
-def until_only_one_runs(process: int, times: int) -> None:
-    """Wait until one thread, not the main one, has run `times` times while no other thread ran."""
-    before: dict[int, Thread] = {}
-
-    def one_runs() -> bool:
-        nonlocal before
-        now = threads(process)
-        ran = [number for number in now if now[number] != before.get(number) or not now[number].asleep]
-        if len(ran) > 1 or process in ran or now.keys() != before.keys():
-            before = now
-        return any(now[number].switches - before[number].switches >= times for number in ran)
-
-    until(one_runs, f"a stretch in which only one thread of process {process} runs, {times} times")
-
-
 # Child processes and process groups of a program, read from /proc (Linux).
 
 

@@ -21,8 +21,8 @@ from PIL import Image
 from minirt.scene import load
 from minirt.viewer.bindings import BINDINGS, MOUSE
 from tests.usage import Record, Usage
+from tests.viewer.fake import WITH_CYLINDER, write
 from tests.viewer.idle_waits import until_at_rest, until_compiled, until_events_are_done
-from tests.viewer.scenes import WITH_CYLINDER
 from tests.viewer.xdotool import do
 from tests.waiting import HANG_LIMIT
 from tests.windows import SCREEN, Desktop, open_desktop
@@ -130,7 +130,7 @@ class Monkey:
             raise
         self.done += len(batch)
         if self.chance.random() < FILE_CHANGES:
-            self.write(self.chance.choice(FILE_VERSIONS))
+            write(self.path, self.chance.choice(FILE_VERSIONS))
         for written in self.path.parent.glob("scene-*"):
             written.unlink()
 
@@ -168,12 +168,6 @@ class Monkey:
         self.resize(self.requested_size)
         self.do("move 0,0")
 
-    def write(self, text: str) -> None:
-        """Replace the file as another program would."""
-        new = self.path.with_name("new")
-        new.write_text(text)
-        new.replace(self.path)
-
     def idle_usage(self) -> Usage:
         """Return what the program uses with the first scene at the first size; then restore the window's size."""
         size = self.requested_size
@@ -181,7 +175,7 @@ class Monkey:
         if self.full_screen:
             self.do(FULL_SCREEN[0])
             self.await_full_screen()
-        self.write(WITH_CYLINDER)
+        write(self.path, WITH_CYLINDER)
         self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
         until_compiled(self.process.pid)
         until_at_rest(self.process.pid)

@@ -11,7 +11,7 @@ from PIL import Image
 
 from minirt.scene import load
 from minirt.viewer.files import WatchedFile, contents_differ, save_recovery, signature
-from tests.viewer.fake import TEXT, colour_of, played, scene
+from tests.viewer.fake import TEXT, colour_of, played, scene, write
 from tests.waiting import until
 
 SELECT_SPHERE = ("press Tab", "press Tab")
@@ -28,10 +28,11 @@ def test_save_changes_one_line(path):
     assert str(path) in session.state.message
 
 
-def test_a_save_that_fails_gives_a_message(tmp_path):
+def test_a_scene_or_picture_that_cannot_be_written_gives_a_message(tmp_path):
     session = played("press d", "press Ctrl+S", path=tmp_path / "none" / "scene.rt")
     assert "cannot be written" in session.state.message
     assert session.saved is not session.state.scene
+    assert "cannot write" in played("press P", path=tmp_path / "none" / "scene.rt").state.message
 
 
 def test_copies_are_numbered(path):
@@ -50,55 +51,42 @@ def test_the_picture_is_saved_without_the_hud(path):
     assert (second == colour_of(session.state.scene)[2::-1]).all()
 
 
-def test_a_screenshot_that_cannot_be_written_gives_a_message(tmp_path):
-    assert "cannot write" in played("press P", path=tmp_path / "none" / "scene.rt").state.message
+def test_reading_again_shows_the_scene_of_the_file(path):
+    path.write_text(OTHER)
+    session = played(*SELECT_SPHERE, "press d", "press F5", path=path)
+    assert session.state.scene.spheres[0].diameter == 7
+    assert session.state.element.title == "sphere"
+    assert (session.picture == colour_of(session.state.scene)).all()
+    assert not contents_differ(session.state.scene, session.saved)
+    path.write_text("A 0 0,0,0\nC 0,0,0 0,0,1 60\n")  # which has fewer elements
+    assert played("press Shift+Tab", "press Shift+Tab", "press F5", path=path).state.element.title == "camera"
 
 
-class TestReload:
-    def test_shows_the_scene_of_the_file(self, path):
-        path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7"))
-        session = played(*SELECT_SPHERE, "press d", "press F5", path=path)
-        assert session.state.scene.spheres[0].diameter == 7
-        assert session.state.element.title == "sphere"
-        assert (session.picture == colour_of(session.state.scene)).all()
-        assert not contents_differ(session.state.scene, session.saved)
-
-    def test_of_a_broken_file_keeps_the_picture_and_shows_the_error(self, path):
-        path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
-        session = played("press d", "press F5", path=path)
-        assert f"{path}:5:10: sphere diameter must be > 0" in session.state.message
-        assert "and 1 more" in session.state.message
-        assert session.state.scene.camera.position[0] > 0
-        assert (session.picture == colour_of(session.state.scene)).all()
-        assert not np.array_equal(session.screen.frame, played("press d", path=path).screen.frame)
-
-    def test_of_a_file_with_fewer_elements_selects_the_camera(self, path):
-        path.write_text("A 0 0,0,0\nC 0,0,0 0,0,1 60\n")
-        assert played("press Shift+Tab", "press Shift+Tab", "press F5", path=path).state.element.title == "camera"
+def test_reading_a_broken_file_keeps_the_picture_and_shows_the_error(path):
+    path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
+    session = played("press d", "press F5", path=path)
+    assert f"{path}:5:10: sphere diameter must be > 0" in session.state.message
+    assert "and 1 more" in session.state.message
+    assert session.state.scene.camera.position[0] > 0
+    assert (session.picture == colour_of(session.state.scene)).all()
+    assert not np.array_equal(session.screen.frame, played("press d", path=path).screen.frame)
 
 
-class TestRecovery:
-    @pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
-    def test_goes_to_a_temporary_folder_if_that_fails(self, tmp_path):
-        copy = save_recovery(scene(), tmp_path / "none" / "scene.rt")
-        assert copy.name == "scene.recovered.rt"
-        assert load(copy).scene.items == scene().items
-        copy.unlink()
-        copy.parent.rmdir()
+@pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
+def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the_file(tmp_path):
+    copy = save_recovery(scene(), tmp_path / "none" / "scene.rt")
+    assert copy.name == "scene.recovered.rt"
+    assert load(copy).scene.items == scene().items
+    copy.unlink()
+    copy.parent.rmdir()
 
-    def test_a_moved_camera_is_no_unsaved_change(self):
-        assert not contents_differ(played("press d", "press Left").state.scene, scene())
-        assert contents_differ(played("press Tab", "press d").state.scene, scene())
+
+def test_a_moved_camera_is_no_unsaved_change():
+    assert not contents_differ(played("press d", "press Left").state.scene, scene())
+    assert contents_differ(played("press Tab", "press d").state.scene, scene())
 
 
 # File watching: changes by other programs are reported once, as soon as the file is stable.
-
-
-def write(path, text: str) -> None:
-    """Replace the file, as many text editors do."""
-    new = path.with_suffix(".new")
-    new.write_text(text)
-    new.replace(path)
 
 
 def reports(watched: WatchedFile, checks: int) -> list[int]:
@@ -127,6 +115,7 @@ def test_writes_of_the_viewer_itself_are_not_reported(path):
 def test_a_deleted_file_is_reported_once_and_again_when_it_is_back(path):
     watched = WatchedFile(path)
     assert not watched.missing
+    assert not WatchedFile(path.with_name("none.rt")).missing
     path.unlink()
     assert reports(watched, 4) == [2]
     assert watched.missing
@@ -143,7 +132,3 @@ def test_a_thread_checks_the_file_until_it_is_closed(path):
     until(notified.is_set, "the report")
     watched.close()
     until(lambda: all(each.name != "minirt-watch" for each in threading.enumerate()), "the end of the thread")
-
-
-def test_a_file_that_never_was_there_is_not_missing(tmp_path):
-    assert not WatchedFile(tmp_path / "none.rt").missing

@@ -6,29 +6,20 @@ Files are saved, read again and followed without loss of work when other program
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
 from minirt.errors import SceneError
-from minirt.rendering.queries.pick import surface_point
-from minirt.scene import describe, load, parse
+from minirt.scene import describe, dump, load, parse
 from minirt.scene.files import check_name
+from minirt.viewer import files
 from minirt.viewer.app.session import Session
-from minirt.viewer.bindings import platform_spelling
+from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.state import initial_state, state_after_reading
-from minirt.viewer.files import (
-    WatchedFile,
-    back_up,
-    contents_differ,
-    error_summary,
-    save_copy,
-    save_recovery,
-    signature,
-)
-from minirt.viewer.recovery import find_changes
+from minirt.viewer.files import contents_differ
+from minirt.viewer.recovery import FoundChanges, find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
 TEXT_STEP = 2**0.25  # factor of a key press
@@ -38,15 +29,16 @@ UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and ke
 
 def save_a_copy(session: Session) -> None:
     """Write the scene to a new file. SceneError."""
-    session.state = session.state.with_message(f"saved a copy: {save_copy(session.state.scene, session.path)}")
+    session.say(f"saved a copy: {files.save_copy(session.path, dump(session.state.scene).encode())}")
 
 
 def reload(session: Session) -> None:
     """Take the unsaved changes of an earlier run where there are some, read the file again otherwise. SceneError."""
     if session.found_changes:
-        take_found(session)
+        take_found(session, session.found_changes)
     else:
-        read_again(session)
+        read_file(session)  # undo restores the previous scene
+        session.say(f"read again: {session.path}")
 
 
 def screenshot(session: Session) -> None:
@@ -59,16 +51,18 @@ def copy_camera(session: Session) -> None:
     """Copy the camera's line of the scene to the clipboard."""
     line = describe(session.state.scene.camera)
     session.mlx.mlx_set_clipboard(session.window, line)
-    session.state = session.state.with_message(f"copied: {line}")
+    session.say(f"copied: {line}")
 
 
 def focus(session: Session) -> None:
     """Focus the camera's lens on the shape under the pointer. RenderError where nothing can be picked."""
-    state, window, at = session.state, session.window, session.pointer
-    camera = state.scene.camera
-    shape = session.pick(state.scene, window.width, window.height, *at)
-    point = surface_point(shape, camera, window.width, window.height, *at) if shape else None
-    session.state = motion.focus(state, point, session.now)
+    _, point = session.surface_at(*session.pointer)
+    session.state = motion.focus(session.state, point, session.now)
+
+
+def toggle_icons(session: Session) -> None:
+    """Show or hide the icons of all lights."""
+    session.screen.marks.icons = not session.screen.marks.icons
 
 
 def toggle_hud(session: Session) -> None:
@@ -80,7 +74,7 @@ def scale_text(session: Session, factor: float) -> None:
     """Make the text larger or smaller; 0 gives it its usual size."""
     screen = session.screen
     screen.text_scale = min(max(screen.text_scale * factor, TEXT_SCALES[0]), TEXT_SCALES[-1]) if factor else 1.0
-    session.state = session.state.with_message(f"text: {screen.text_scale:.0%}")
+    session.say(f"text: {screen.text_scale:.0%}")
 
 
 def toggle_full_screen(session: Session) -> None:
@@ -92,29 +86,14 @@ def toggle_full_screen(session: Session) -> None:
 def save_scene(session: Session) -> None:
     """Write the scene to its file; if another program has changed the file, copy it first. SceneError."""
     check_name(session.path)
-    copy = back_up(session.path) if session.file.changed else None
-    linked = has_other_links(session.path)
+    copy = files.back_up(session.path) if session.file.changed else None
     session.state.scene.save(session.path)
-    session.file.accept(signature(session.path))
+    session.file.accept(files.signature(session.path))
     session.saved = session.state.scene
     session.screen.banner = ""
     session.found_changes = None
     kept = f"; what another program had written is in {copy}" if copy else ""
-    cut = "; its other hard links keep the old scene" if linked else ""
-    session.state = session.state.with_message(f"saved: {session.path}{kept}{cut}")
-
-
-def has_other_links(path: Path) -> bool:
-    """Whether a file has more than one name, of which saving replaces one."""
-    with suppress(OSError):
-        return path.stat().st_nlink > 1
-    return False
-
-
-def read_again(session: Session) -> None:
-    """Read the file again; undo restores the previous scene. SceneError."""
-    read_file(session)
-    session.state = session.state.with_message(f"read again: {session.path}")
+    session.say(f"saved: {session.path}{kept}")
 
 
 def follow_change(session: Session) -> None:
@@ -123,29 +102,23 @@ def follow_change(session: Session) -> None:
     If the file has errors or is gone, the last picture stays and a banner says so.
     """
     if session.file.missing:
-        session.screen.banner = DELETED.format(session.path.name, platform_spelling("Ctrl+S"))
+        session.screen.banner = DELETED.format(session.path.name, named("Ctrl+S"))
         return
     if contents_differ(session.state.scene, session.saved):
-        session.screen.banner = UNSAVED.format(
-            session.path.name, platform_spelling("Ctrl+R"), platform_spelling("Ctrl+S")
-        )
+        session.screen.banner = UNSAVED.format(session.path.name, named("Ctrl+R"), named("Ctrl+S"))
         return
     try:
         read_file(session, keep_camera=True)
     except SceneError as error:
-        session.screen.banner = error_summary(error)
+        session.screen.banner = files.error_summary(error)
 
 
 def read_file(session: Session, keep_camera: bool = False) -> None:
     """Show the scene in the file. `keep_camera`: keep the current camera unless the file changed it. SceneError."""
-    seen = signature(session.path)
+    seen = files.signature(session.path)
     scene = load(session.path, session.lenient, session.state.scene.camera.left_handed).scene
     session.file.accept(seen)
-    session.release_button()
-    session.state = state_after_reading(session.state, scene, session.saved if keep_camera else None)
-    session.saved = scene
-    session.screen.banner = ""
-    session.has_unused_memory = True
+    session.show_file(state_after_reading(session.state, scene, session.saved if keep_camera else None), scene)
 
 
 def open_another(session: Session, path: Path) -> None:
@@ -153,38 +126,30 @@ def open_another(session: Session, path: Path) -> None:
     scene = load(path, session.lenient, session.state.scene.camera.left_handed).scene
     kept = ""
     if contents_differ(session.state.scene, session.saved):
-        kept = f"; the changes that were not saved are in {save_recovery(session.state.scene, session.path)}"
+        kept = f"; the changes that were not saved are in {files.save_recovery(session.state.scene, session.path)}"
     session.file.close()
-    session.release_button()
-    session.path, session.file = path, WatchedFile(path)
-    session.watch_file()
+    session.watch_file(path)
     session.mlx.mlx_set_window_title(session.window, f"miniRT - {path.name}")
-    session.saved = scene
-    session.screen.banner = ""
-    session.has_unused_memory = True
-    session.state = initial_state(scene).with_message(f"opened: {path}{kept}")
+    session.show_file(initial_state(scene).with_message(f"opened: {path}{kept}"), scene)
 
 
 def offer_found(session: Session) -> None:
     """Say that there are unsaved changes of the scene's file from an earlier run, if there are."""
     session.found_changes = find_changes(session.path)
     if session.found_changes:
-        session.screen.banner = f"{session.found_changes.title} found: {platform_spelling('Ctrl+R')} takes them"
+        session.screen.banner = f"{session.found_changes.title} found: {named('Ctrl+R')} takes them"
 
 
-def take_found(session: Session) -> None:
+def take_found(session: Session, found: FoundChanges) -> None:
     """Show the scene with the unsaved changes that were found, as an edit. SceneError where they cannot be read."""
-    found, session.found_changes, session.screen.banner = session.found_changes, None, ""
-    if found:
-        scene = parse(found.text, session.path, session.lenient).scene
-        if session.state.scene.camera.left_handed:
-            scene = scene.replace(scene.camera, left_handed=True)
-        session.release_button()
-        session.state = state_after_reading(session.state, scene, None).with_message(
-            f"{found.title}: {platform_spelling('Ctrl+S')} saves them, {platform_spelling('Ctrl+Z')} takes them back"
-        )
-        if session.recovery and not found.beside:
-            session.recovery.replace(found.path)
+    session.found_changes, session.screen.banner = None, ""
+    scene = parse(found.text, session.path, session.lenient).scene
+    if session.state.scene.camera.left_handed:
+        scene = scene.replace(scene.camera, left_handed=True)
+    session.show_file(state_after_reading(session.state, scene, None), session.saved)
+    session.say(f"{found.title}: {named('Ctrl+S')} saves them, {named('Ctrl+Z')} takes them back")
+    if session.recovery and not found.beside:
+        session.recovery.replace(found.path)
 
 
 COMMANDS: dict[str, Callable[[Session], None]] = {
@@ -195,7 +160,7 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "copy camera": copy_camera,
     "focus": focus,
     "toggle HUD": toggle_hud,
-    "toggle icons": lambda session: session.screen.marks.toggle_icons(),
+    "toggle icons": toggle_icons,
     "toggle help": lambda session: session.screen.turn_help_page(),
     "larger text": partial(scale_text, factor=TEXT_STEP),
     "smaller text": partial(scale_text, factor=1 / TEXT_STEP),

@@ -20,7 +20,7 @@ from minirt.scene import Scene, size_of
 from minirt.viewer.app.commands import offer_found
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.background_painter import BackgroundPainter
+from minirt.viewer.display.painter import BackgroundPainter
 from minirt.viewer.display.screen import use_one_heap
 from minirt.viewer.files import contents_differ, save_recovery
 from minirt.viewer.recovery import Recovery
@@ -47,32 +47,24 @@ def run(
     scene: Scene,
     *,
     path: str | os.PathLike[str],
+    renderer: Renderer,
     size: tuple[int, int] | None = None,
-    threads: int | None = None,
-    keys: str = "auto",
-    lenient: bool = False,
-    samples: int = 1,
     text_scale: float = 1.0,
-    renderer: Renderer | None = None,
     mlx: Mlx | None = None,
-    watch: bool = True,
-    saved: Scene | None = None,
+    **options: Any,
 ) -> int:
     """Show a scene until the user quits; return the exit status: 0, or 128 + n after signal n (Ctrl+C: 130).
 
-    `path` is the scene's file, which holds `saved` if not the scene itself; with `watch` it is read again when another
-    program changes it. Unsaved changes are kept in a recovery file, whose name is printed; those of a program that was
-    killed are offered at the next start.
-    When nothing moves, the edges in the picture are refined to `samples` rays per pixel. `text_scale`: a factor for the
-    size of text and icons.
+    `path` is the scene's file. Unsaved changes are kept in a recovery file, whose name is printed; those of a program
+    that was killed are offered at the next start. `text_scale`: a factor for the size of text and icons; `options`:
+    those of `Session`.
 
     MlxError if no window can be opened, RenderError if the pictures cannot be rendered.
 
     If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
     use_one_heap()
-    options = {"keys": keys, "lenient": lenient, "samples": samples, "watch": watch, "saved": saved}
-    session = open_session(scene, Path(path), size, renderer or shared_renderer(threads), mlx or Mlx(), **options)
+    session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), **options)
     session.screen.text_scale = text_scale
     session.recovery = Recovery()
     offer_found(session)

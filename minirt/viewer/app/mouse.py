@@ -7,23 +7,20 @@ from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError
 from minirt.mlx import Button, Cursor
-from minirt.rendering.queries.pick import surface_point
-from minirt.scene import Camera
-from minirt.shapes import Shape
 from minirt.viewer.app.session import PressedButton, Session
-from minirt.viewer.bindings import Binding, Drag
-from minirt.viewer.display.marks import icon_at
+from minirt.viewer.bindings import Binding
+from minirt.viewer.display.marks import SIZE
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.editing.dragging import PIXEL_CENTRE, apply_drag, start_drag
-from minirt.viewer.editing.projection import Aim, aim, projection_of
-from minirt.viewer.editing.state import position_of, select_shape
+from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart
+from minirt.viewer.editing.projection import Aim, aim, extent
+from minirt.viewer.editing.state import index_of
 
 if TYPE_CHECKING:
     from minirt.fields import Triple
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
 CURSORS = {"move by hand": Cursor.MOVE, "pan": Cursor.GRAB}  # while a drag goes on; other drags turn something
-DRAGS = {Button.LEFT: Drag.LEFT, Button.MIDDLE: Drag.MIDDLE, Button.RIGHT: Drag.RIGHT}
+BUTTON_DRAGS = {each: f"{each.name.lower()} drag" for each in (Button.LEFT, Button.MIDDLE, Button.RIGHT)}
 
 
 class Mouse:
@@ -43,7 +40,7 @@ class Mouse:
         session = self.session
         session.pointer = x, y
         session.release_button()
-        drag = session.keymap.find(DRAGS[Button(button)], session.modifiers) if button in DRAGS else None
+        drag = session.keymap.find(BUTTON_DRAGS[Button(button)], session.modifiers) if button in BUTTON_DRAGS else None
         if drag is None:
             self.click(button)
             return
@@ -53,8 +50,10 @@ class Mouse:
             session.show_error(error)
             session.show(session.state)
             return
-        grip = start_drag(session.state.end_merging(), session.window.width, session.window.height, x, y, point)
-        session.pressed = PressedButton(button, x, y, drag, grip)
+        state = session.state
+        session.pressed = PressedButton(
+            button, drag, DragStart(session.view, x, y, state.element, state.scene.camera, point)
+        )
 
     def on_crossing(self, inside: bool) -> None:
         """The pointer enters the window or leaves it."""
@@ -65,12 +64,13 @@ class Mouse:
         session = self.session
         session.pointer = x, y
         pressed = session.pressed
-        if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
+        if pressed and (pressed.dragging or max(abs(x - pressed.grip.x), abs(y - pressed.grip.y)) > CLICK_SLACK):
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
                 session.mlx.mlx_set_cursor(session.window, self.cursor(pressed))
                 session.state = session.state.end_merging()
-            session.show(apply_drag(session.state, pressed.drag.action, pressed.grip, x, y))
+            session.say("")
+            session.show(DRAGS[pressed.drag.action](session.state, pressed.grip, x, y))
 
     def cursor(self, pressed: PressedButton) -> Cursor:
         """Return the shape of the pointer during a drag; a drag on nothing turns the camera."""
@@ -94,38 +94,31 @@ class Mouse:
 
     def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
         """Return the point of the scene under the pointer, None if there is none; select the element there."""
-        session = self.session
-        state, window, scale = session.state, session.window, session.screen.scale
-        view = projection_of(state.scene.camera, window.width, window.height)
-        has_icons = session.screen.level > HudLevel.NOTHING
-        icons = session.screen.marks.visible_icons(state.scene, state.selected, view, scale) if has_icons else []
-        icon = icon_at(icons, x, y, scale)
-        if icon:
+        session, state, screen = self.session, self.session.state, self.session.screen
+        icons = screen.marks.visible_icons(state.scene, state.selected, session.view, screen.scale)
+        reach = SIZE * screen.scale / 2 if screen.level > HudLevel.NOTHING else -1.0
+        under = [each for each in icons if max(abs(each.x - x), abs(each.y - y)) <= reach]
+        if under:
+            icon = under[-1]  # which is drawn on top
             if selecting:
                 session.show(state.with_message("").select(icon.owner))
-            element = state.scene.elements[icon.owner]
-            return None if isinstance(element, Camera) else position_of(element)
-        shape, point = self.surface_at(x, y)
+            around = extent(state.scene.elements[icon.owner])
+            return around[0] if around else None
+        shape, point = session.surface_at(x, y)
         if selecting:
-            session.show(select_shape(state, shape))
+            state = state.with_message("" if shape else "there is nothing")
+            session.show(state.select(index_of(state.scene, shape)) if shape else state)
         return point
-
-    def surface_at(self, x: int, y: int) -> tuple[Shape | None, Triple | None]:
-        """Return the shape at a pixel and the point on it, None for both where the background is."""
-        scene, window = self.session.state.scene, self.session.window
-        shape: Shape | None = self.session.pick(scene, window.width, window.height, x, y)
-        return shape, surface_point(shape, scene.camera, window.width, window.height, x, y) if shape else None
 
     def aim(self) -> Aim | None:
         """Return the place under the pointer, where a new element goes; None while the pointer is elsewhere."""
-        session, window = self.session, self.session.window
-        (x, y), state = window.pointer, session.state
+        session = self.session
+        x, y = session.window.pointer
         if (x, y) == (0, 0) or not self.inside:
             return None
         try:
-            shape, point = self.surface_at(x, y)
+            at = session.surface_at(x, y)
         except MiniRTError as error:
             session.show_error(error)
             return None
-        view = projection_of(state.scene.camera, window.width, window.height)
-        return aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, shape, point)
+        return aim(session.view, session.state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *at)

@@ -7,16 +7,13 @@ any key that means nothing to the list leaves it there, as the last change.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
-from typing import NamedTuple
 
 from minirt.mlx import Key
 from minirt.viewer.app.session import Session
+from minirt.viewer.bindings import SIGNIFICANT, Binding
 from minirt.viewer.display.overlay import Panel
 from minirt.viewer.editing import structure
-from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import CHARACTERS, set_typed
 from minirt.viewer.editing.state import State
 
@@ -24,7 +21,7 @@ ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 TYPE = "type value"  # the action that begins with =
 MAX_LENGTH = 40  # characters
 ADDING = ("add", "add previous")  # actions that open the list of elements
-LISTS = (*ADDING, "add attribute")  # actions that open a list
+LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
 
 
 class Typing:
@@ -34,35 +31,40 @@ class Typing:
         self.session = session
         self.text = ""
 
+    @property
+    def is_open(self) -> bool:
+        """Whether a value is being typed."""
+        return bool(self.text)
+
     def begin(self, character: str) -> None:
         """Begin with a digit or =."""
         self.session.release_button()
-        self.session.state = self.session.state.with_message("")
+        self.session.say("")
         self.show(character)
 
-    def on_text(self, characters: str) -> None:
+    def end(self) -> None:
+        """Leave what was typed."""
+        if self.text:
+            self.show("")
+
+    def on_text(self, character: str) -> None:
         """Add what was typed, as far as values are made of it; a minus behind a number changes its sign."""
         text = self.text
-        for character in characters:
-            if character == "-" and not text.startswith("="):
-                text = text.removeprefix("-") if text.startswith("-") else f"-{text}"
-            elif character in CHARACTERS:
-                text += character
+        if character == "-" and not text.startswith("="):
+            text = text.removeprefix("-") if text.startswith("-") else f"-{text}"
+        elif character in CHARACTERS:
+            text += character
         self.show(text[:MAX_LENGTH])
 
-    def on_key(self, key: int) -> bool:
+    def takes(self, key: int, _pressed: Binding | None) -> bool:
         """Take a key press; False if the key is not one of those that end or correct what is typed."""
-        if key in ENTER:
-            session = self.session
-            text, self.text = self.text, ""
-            self.show("")
-            session.show(set_typed(session.state.with_message(""), text, session.now))
-        elif key == Key.ESCAPE:
-            self.show("")
-        elif key == Key.BACKSPACE:
-            self.show(self.text[:-1])
-        else:
+        if key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
             return False
+        text = self.text
+        self.show(text[:-1] if key == Key.BACKSPACE else "")
+        if key in ENTER:
+            self.session.say("")
+            self.session.show(set_typed(self.session.state, text, self.session.now))
         return True
 
     def show(self, text: str) -> None:
@@ -75,42 +77,27 @@ class Typing:
         session.refresh()
 
 
-class Choice(NamedTuple):
-    """A row of a list."""
-
-    title: str
-    key: int | str  # number of a kind of element, or name of an attribute
-    make: Callable[[float], State]  # adds it at a time
-
-
 class Choosing:
     """The list that is open; it is so as long as its last choice is the last change of the scene."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
         self._letters = ""
-        self._choices: list[Choice] = []
-        self._of_elements = True
+        self._choices: list[State] = []  # with the last change in place of the last choice
+        self._group = structure.ELEMENT
         self._before: State | None = None
 
     @property
     def is_open(self) -> bool:
         """Whether the list is open."""
-        kind = structure.ELEMENT if self._of_elements else structure.ATTRIBUTE
-        return self._before is not None and structure.is_adding(self.session.state, kind)
-
-    @property
-    def is_filtered(self) -> bool:
-        """Whether letters were typed into the open list."""
-        return self.is_open and bool(self._letters)
+        return self._before is not None and structure.is_adding(self.session.state, self._group)
 
     def begin(self, action: str, before: State) -> None:
         """Show the list after an action of LISTS has added the first choice, or the next one, to `before`."""
-        if not self.is_open or self._of_elements != (action in ADDING):
-            self._letters = ""
-            self._of_elements = action in ADDING
-            self._before = before
-            self._choices = element_choices(before) if self._of_elements else attribute_choices(before)
+        group = LISTS[action]
+        if not self.is_open or self._group != group:
+            self._letters, self._group, self._before = "", group, before
+            self._choices = list(structure.choices(structure.before_adding(before, group), group))
         self.show()
 
     def end(self) -> None:
@@ -119,14 +106,19 @@ class Choosing:
             self._before = None
             self.show()
 
-    def on_key(self, key: int) -> bool:
-        """Take a key press; False if the key means nothing to the list."""
+    def takes(self, key: int, pressed: Binding | None) -> bool:
+        """Take a key press; False if the key means nothing to the list, or is to add the next choice."""
+        if self.goes_on(pressed) or self.session.modifiers & SIGNIFICANT:
+            return False
         rows = self.rows()
         if key in ENTER:
             self.session.state = self.session.state.end_merging()
             self.end()
         elif key == Key.ESCAPE:
-            self.cancel()
+            assert self._before
+            before, self._before = self._before, None
+            self.session.screen.panel = None
+            self.session.show(replace(before, aim=None, message=""))
         elif key in (Key.UP, Key.DOWN):
             if rows:
                 self.choose(rows[(self.chosen(rows) + (1 if key == Key.DOWN else -1)) % len(rows)])
@@ -138,6 +130,10 @@ class Choosing:
             return False
         return True
 
+    def goes_on(self, pressed: Binding | None) -> bool:
+        """Whether a key adds the next choice, while the list stays open."""
+        return bool(pressed and pressed.action in LISTS and not self._letters)
+
     def filter(self, letters: str) -> None:
         """Show the choices that contain some letters, and choose the first of them."""
         self._letters = letters
@@ -147,64 +143,38 @@ class Choosing:
         else:
             self.show()
 
-    def choose(self, choice: Choice) -> None:
+    def choose(self, choice: State) -> None:
         """Replace the last choice in the scene by another one."""
-        session = self.session
-        session.state = choice.make(session.now)
+        self.session.state = choice
         self.show()
-        session.show(session.state)
+        self.session.show(choice)
 
-    def cancel(self) -> None:
-        """Take the last choice out of the scene again, and close the list."""
-        before, self._before = self._before, None
-        assert before
-        self.session.screen.panel = None
-        self.session.show(replace(before, aim=None).with_message(""))
+    def title(self, choice: State) -> str:
+        """What a choice is called in the list."""
+        of_attribute = self._group == structure.ATTRIBUTE and choice.active
+        return of_attribute.field.title if of_attribute else choice.element.title
 
-    def rows(self) -> list[Choice]:
+    def rows(self) -> list[State]:
         """The choices that contain the letters: first those that begin with them, then those of which a word does."""
         letters = self._letters
-        if not letters:
-            return self._choices
-        found = [choice for choice in self._choices if letters in choice.title]
-        return sorted(
-            found, key=lambda choice: (not choice.title.startswith(letters), f" {letters}" not in choice.title)
-        )
+        found = [(title, choice) for choice in self._choices if letters in (title := self.title(choice))]
+        if letters:
+            found.sort(key=lambda row: (not row[0].startswith(letters), f" {letters}" not in row[0]))
+        return [choice for _, choice in found]
 
-    def chosen(self, rows: list[Choice]) -> int:
+    def chosen(self, rows: list[State]) -> int:
         """Index of the last choice in `rows`, or 0."""
-        state = self.session.state
-        active = state.active.field.name if state.active else ""
-        key = state.kind_index if self._of_elements else active
-        return next((index for index, row in enumerate(rows) if row.key == key), 0)
+        element = self.session.state.element
+        return next((index for index, row in enumerate(rows) if row.element == element), 0)
 
     def show(self) -> None:
         """Show the list, or nothing if it is closed."""
         screen = self.session.screen
-        if not self.is_open:
-            screen.panel = None
-        else:
+        screen.panel = None
+        if self.is_open:
             rows = self.rows()
-            noun = "element" if self._of_elements else "attribute"
+            noun = "element" if self._group == structure.ELEMENT else "attribute"
             hint = "" if rows else "    nothing is called so"
             title = f"{noun}: {self._letters}_{hint}    type, arrows, Enter    Esc: none"
-            screen.panel = Panel(title, tuple(row.title for row in rows), self.chosen(rows))
+            screen.panel = Panel(title, tuple(map(self.title, rows)), self.chosen(rows))
         self.session.refresh()
-
-
-def element_choices(state: State) -> list[Choice]:
-    """The kinds of elements that can be added to a scene."""
-    before = structure.before_adding(state, structure.ELEMENT)
-    kinds = addable_kinds(before.scene)
-    made = structure.default_elements(kinds, range(len(kinds)), before)
-    return [Choice(kinds[number].title, number, partial(structure.added, before, number, new)) for number, new in made]
-
-
-def attribute_choices(state: State) -> list[Choice]:
-    """The attributes that the selected element lacks."""
-    before = structure.before_adding(state, structure.ATTRIBUTE)
-    missing = structure.missing_attributes(before.element, before)
-    return [
-        Choice(field.title, field.name, partial(structure.with_attribute, before, field.name, value))
-        for field, value in missing
-    ]

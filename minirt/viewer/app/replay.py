@@ -31,16 +31,14 @@ ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # corn
 
 
 def replay(scene: Scene, lines: Iterable[str], *, hud: bool = True, **settings: Any) -> Pixels:
-    """Play `lines` as `play` does, and return the last frame, (h, w, 4) BGRA; without `hud` the picture alone."""
+    """Play `lines` as `play` does, and return the last frame, (h, w, 4) BGRA; without `hud` the picture alone.
+
+    The error of the first command that failed is raised.
+    """
     session = play(scene, lines, **settings)
-    raise_failure(session)
-    return session.screen.frame if hud else session.picture
-
-
-def raise_failure(session: Session) -> None:
-    """Raise the error of the first command that failed, if there is one."""
     if session.failures:
         raise session.failures[0]
+    return session.screen.frame if hud else session.picture
 
 
 def play(
@@ -92,7 +90,7 @@ def turntable(scene: Scene, count: int) -> Iterator[Scene]:
 def record(scene: Scene, lines: Iterable[str], add: Callable[[Image], object], **settings: Any) -> None:
     """Give the frames of a replay to a function, FPS per simulated second, with the pointer while it is used.
 
-    The other arguments and the errors are those of `play`.
+    The other arguments and the errors are those of `replay`.
     """
     ticks = itertools.count()
 
@@ -100,9 +98,7 @@ def record(scene: Scene, lines: Iterable[str], add: Callable[[Image], object], *
         if next(ticks) % (TICKS // FPS) == 0:
             add(Image.from_bgra(with_pointer(session.screen.frame, session.window.pointer)))
 
-    session = play(scene, lines, watch=add_frame, **settings)
-    raise_failure(session)
-    add(Image.from_bgra(session.screen.frame))
+    add(Image.from_bgra(replay(scene, lines, watch=add_frame, **settings)))
 
 
 def with_pointer(pixels: Pixels, at: tuple[int, int]) -> Pixels:

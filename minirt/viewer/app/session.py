@@ -1,15 +1,11 @@
 """Session: one scene in one window, with its file, its editor state and its pictures.
 
-A session renders only when its scene or the size of its window has changed. `minirt.viewer.app.events` passes the
-events of the window to it.
-
-Words describe the current state, which may be newer than the picture. Words of a new scene are drawn together with its
-first picture, because one frame costs less than two; if that picture is late, they are drawn over the old one.
+It renders only when its scene or the size of its window has changed. Words describe the current state, which may be
+newer than the picture: those of a new scene are drawn with its first picture, or over the old one if that is late.
 """
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
@@ -25,15 +21,16 @@ from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart
+from minirt.viewer.editing.editor import HeldKey
+from minirt.viewer.editing.projection import Pick, Projection, projection_of, surface_at
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.files import WatchedFile, error_summary, save_picture
-from minirt.viewer.key_repeat import KeyRepeat
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 if TYPE_CHECKING:
+    from minirt.fields import Triple
     from minirt.mlx.display import Display
 
-Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 FINE_STEP = 0.1  # of a step, while Shift is held
 WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
 
@@ -42,8 +39,6 @@ class PressedButton(NamedTuple):
     """A mouse button that is down on the picture."""
 
     button: int
-    x: int  # pixel where it was pressed
-    y: int
     drag: Binding  # its row in the table
     grip: DragStart
     dragging: bool = False  # whether the pointer has moved far enough since
@@ -75,18 +70,16 @@ class Session:
         """
         self.mlx = mlx
         self.display = display
-        self.path = path
         self.lenient = lenient
         self.pick = pick
         self.state = initial_state(scene)
         self.opened = scene  # the first scene
         self.saved = saved or scene  # the scene as the file holds it
-        self.file = WatchedFile(path)
         self.watches_file = watch
         self.recovery: Recovery | None = None  # of unsaved changes
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
         self.keymap = Keymap(keys)
-        self.key_repeat = KeyRepeat()
+        self.held_keys: dict[int, HeldKey] = {}  # by their codes
         self.pressed: PressedButton | None = None
         self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
         self.failures: list[MiniRTError] = []  # of commands
@@ -94,7 +87,7 @@ class Session:
         self.has_unused_memory = False  # of pictures or scenes that are gone
         self.full_screen = False
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
-        mlx.mlx_do_key_autorepeatoff(display)  # `key_repeat` repeats what is worth it
+        mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
         self.refinement = Refinement(painter(lambda: mlx.mlx_wake(display)), self.window, samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
@@ -102,7 +95,7 @@ class Session:
         self._drawn: Outcome | None = None  # the picture in the window
         self._drawn_at = -inf
         self._judged: Scene | None = None  # the scene of the file whose first picture was searched for shapes
-        self.watch_file()
+        self.watch_file(path)
 
     def show(self, state: State) -> None:
         """Make `state` the current one."""
@@ -113,8 +106,8 @@ class Session:
     def update(self) -> None:
         """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
         if self.recovery:
-            self.recovery.keep(Version(self.state.scene, self.saved, self.path, self.file.known))
-        self.refinement.request_missing(self.state.scene, moving=bool(self.key_repeat))
+            self.recovery.keep(Version(self.state.scene, self.saved, self.path))
+        self.refinement.request_missing(self.state.scene, moving=bool(self.held_keys))
 
     def refresh(self) -> None:
         """Draw the window, unless words wait for their picture and it has not come."""
@@ -133,14 +126,14 @@ class Session:
         if self.screen.draw(self.state, self._drawn, self.refinement.resolution.rate):
             self.mlx.mlx_sync(self.display, self.mlx.SYNC_WIN_FLUSH, self.window)
             self._drawn_at = self.now
-            self.refinement.resolution.record_display_time(self._drawn_at - start)
+            self.refinement.resolution.display_times.append(self._drawn_at - start)
 
     def take_screenshot(self) -> None:
         """Save the picture if a screenshot is pending and the picture is complete. RenderError."""
         if self.screenshot_pending and self.refinement.complete:
             self.screenshot_pending = False
             file = save_picture(Image.from_bgra(self.picture), self.path)
-            self.state = self.state.with_message(f"picture: {file}")
+            self.say(f"picture: {file}")
 
     def give_back_memory(self) -> None:
         """Give the memory of earlier sizes and files back to the system as soon as a picture of the new is complete."""
@@ -159,7 +152,7 @@ class Session:
         if latest.pixels is not None and not self.state.message:
             from minirt.rendering.queries.preview import notice_about
 
-            self.state = self.state.with_message(notice_about(latest.job.scene, latest.pixels[..., :3]))
+            self.say(notice_about(latest.job.scene, latest.pixels[..., :3]))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""
@@ -173,7 +166,22 @@ class Session:
         """Show an error of miniRT over the picture; raise RenderError for any other exception."""
         if not isinstance(error, MiniRTError):
             raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
-        self.state = self.state.with_message(error_summary(error))
+        self.say(error_summary(error))
+
+    def say(self, message: str) -> None:
+        """Show a message over the next frame."""
+        self.state = self.state.with_message(message)
+
+    def show_file(self, state: State, saved: Scene) -> None:
+        """Make `state` the current one, of a file that was read or opened and holds the scene `saved`."""
+        self.release_button()
+        self.state, self.saved = state, saved
+        self.screen.banner = ""
+        self.has_unused_memory = True
+
+    def surface_at(self, x: int, y: int) -> tuple[Shape | None, Triple | None]:
+        """Return the shape at a pixel and the point on it, None for both where the background is."""
+        return surface_at(self.pick, self.state.scene, self.window.width, self.window.height, x, y)
 
     def release_button(self) -> None:
         """Forget the mouse button that is down; the edits of a drag are then one undo step."""
@@ -182,16 +190,11 @@ class Session:
             self.mlx.mlx_set_cursor(self.window, Cursor.ARROW)
         self.pressed = None
 
-    def watch_file(self) -> None:
-        """Start to watch the file for changes by other programs, if the session was asked to."""
-        self.file_changed = threading.Event()
+    def watch_file(self, path: Path) -> None:
+        """Take another file as that of the scene, and watch it for changes by other programs if it was asked for."""
+        self.path, self.file = path, WatchedFile(path)
         if self.watches_file:
-            self.file.watch(self.notify_file_changed)
-
-    def notify_file_changed(self) -> None:
-        """Wake the event loop because the file has changed; callable from any thread."""
-        self.file_changed.set()
-        self.mlx.mlx_wake(self.display)
+            self.file.watch(lambda: self.mlx.mlx_wake(self.display))
 
     def quit(self) -> None:
         """End the event loop."""
@@ -201,6 +204,11 @@ class Session:
     def words_wait(self) -> bool:
         """Whether the words in the window describe an older scene than the current one."""
         return self._described is not self.state.scene
+
+    @property
+    def view(self) -> Projection:
+        """The projection of the current scene to the window."""
+        return projection_of(self.state.scene.camera, self.window.width, self.window.height)
 
     @property
     def picture(self) -> Pixels:

@@ -2,32 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from math import hypot
+from math import ceil, hypot
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour, Triple
 from minirt.mlx.text import draw_text, measure
+from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
-from minirt.viewer.display.outline import PixelIndices, outline_pixels
+from minirt.shapes.mesh import Mesh
 from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, projection_of, subtract
-from minirt.viewer.editing.state import Frame, State, can_edit, position_of
+from minirt.viewer.editing.state import Frame, State, can_edit
 
-GOLD, BLACK, WHITE = 0xFFD75F, 0x000000, 0xFFFFFF
-AXIS_COLOURS = {Frame.X: 0xFF5050, Frame.Y: 0x60E060, Frame.Z: 0x6090FF}
+GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
+AXIS_COLOURS = {Frame.X: 0xFFFF5050, Frame.Y: 0xFF60E060, Frame.Z: 0xFF6090FF}
 MOVING_RAYS, STILL_RAYS = 20_000, 60_000  # rays for an outline, while something moves and when nothing does
+MARGIN = 4  # pixels around the projected bounds of a shape
 SIZE = 20  # pixels of a side, times the screen's scale
 MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
 KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
 LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
-FILL, RIM = (0x5F, 0xD7, 0xFF, 255), (0, 0, 0, 255)  # BGRA: golden, with a black rim
+
+
+PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
+Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are exclusive
 
 
 class Marks:
@@ -50,8 +55,9 @@ class Marks:
             if isinstance(element, Shape):
                 rays = MOVING_RAYS if moving else STILL_RAYS
                 draw_outline(pixels, *self.outline(element, scene.camera, pixels, rays))
-            draw_axis(pixels, element, state.frame, view)
-            around = None if isinstance(element, Camera) else extent(element)
+            around, axis = extent(element), WORLD_AXES.get(state.frame)
+            if around and axis and (ends := view.visible_segment(around[0], axis)):
+                draw_line(pixels, *ends, AXIS_COLOURS[state.frame])
             outside = arrow_direction(view, *around) if around else None
             if outside and not (isinstance(element, Shape) and element.infinite):
                 draw_arrow(pixels, outside, scale)
@@ -66,22 +72,14 @@ class Marks:
             self._outline, self._outline_key = outline_pixels(shape, camera, width, height, rays), key
         return self._outline
 
-    def toggle_icons(self) -> None:
-        """Show or hide the icons of all lights."""
-        self.icons = not self.icons
-
     def visible_icons(self, scene: Scene, selected: int | None, view: Projection, scale: float) -> list[Icon]:
         """Return the icons that are shown: all if the user wants them, else that of the selected element."""
-        return place_icons(scene, icon_owners(scene, selected, self.icons), view, scale)
-
-
-def icon_owners(scene: Scene, selected: int | None, every: bool) -> list[int]:
-    """Return the indices of the elements whose icons are shown."""
-    if every:
-        return elements_with_icon(scene)
-    if selected is None or isinstance(scene.elements[selected], (Shape, Camera)):
-        return []
-    return [selected]
+        owners = []
+        if self.icons:
+            owners = sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
+        elif selected is not None and not isinstance(scene.elements[selected], (Shape, Camera)):
+            owners = [selected]
+        return place_icons(scene, owners, view, scale)
 
 
 def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) -> None:
@@ -92,20 +90,6 @@ def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) ->
             around = np.clip(rows + down, 0, height - 1), np.clip(columns + right, 0, width - 1)
             pixels[around] = bgra(BLACK)
     pixels[inside] = pixels[outside] = bgra(GOLD)
-
-
-def draw_axis(pixels: Pixels, element: Element, frame: Frame, view: Projection) -> None:
-    """Draw the axis along which the selected element moves, if its movement is bound to one."""
-    axis, point = WORLD_AXES.get(frame), anchor(element)
-    ends = view.visible_segment(point, axis) if axis and point else None
-    if ends:
-        draw_line(pixels, *ends, AXIS_COLOURS[frame])
-
-
-def anchor(element: Element) -> tuple[float, float, float] | None:
-    """Return the centre of an element, None for the camera and for elements without a position."""
-    around = None if isinstance(element, Camera) else extent(element)
-    return around[0] if around else None
 
 
 def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
@@ -135,23 +119,18 @@ def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
 def draw_icon(pixels: Pixels, icon: Icon, scale: float, selected: bool) -> None:
     """Draw a square in the element's colour with its identifier; the frame is golden if it is selected."""
     half, frame = round(SIZE * scale / 2), max(1, round(2 * scale))
-    fill_square(pixels, icon, half + frame, GOLD if selected else BLACK)
-    fill_square(pixels, icon, half, icon.colour)
+    for reach, colour in ((half + frame, GOLD if selected else BLACK), (half, icon.colour)):
+        top, bottom, left, right = (max(0, at + way) for at in (icon.y, icon.x) for way in (-reach, reach))
+        pixels[top:bottom, left:right] = bgra(colour)
     bright = sum(icon.colour >> shift & 0xFF for shift in (0, 8, 16)) > 3 * 110
     size = round(14 * scale)
     width, height = measure(icon.code, size)
     draw_text(pixels, icon.x - width // 2, icon.y - height // 2, icon.code, BLACK if bright else WHITE, size=size)
 
 
-def fill_square(pixels: Pixels, icon: Icon, half: int, colour: int) -> None:
-    """Fill a square around the centre of an icon; `half` is half its side, in pixels."""
-    left, top = max(0, icon.x - half), max(0, icon.y - half)
-    pixels[top : max(0, icon.y + half), left : max(0, icon.x + half)] = bgra(colour)
-
-
-def bgra(colour: int) -> tuple[int, int, int, int]:
-    """Convert 0xRRGGBB to an opaque pixel: blue, green, red, alpha."""
-    return colour & 0xFF, colour >> 8 & 0xFF, colour >> 16 & 0xFF, 255
+def bgra(colour: int) -> tuple[int, ...]:
+    """Split 0xAARRGGBB into the four bytes of a pixel."""
+    return tuple(colour.to_bytes(4, "little"))
 
 
 class Icon(NamedTuple):
@@ -161,40 +140,29 @@ class Icon(NamedTuple):
     x: int  # centre, in pixels
     y: int
     code: str
-    colour: int  # 0xRRGGBB
+    colour: int  # 0xFFRRGGBB
 
 
-def elements_with_icon(scene: Scene) -> list[int]:
-    """Return the indices of the elements that have an icon."""
-    return sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
-
-
-def place_icons(scene: Scene, indices: Iterable[int], view: Projection, scale: float) -> list[Icon]:
+def place_icons(scene: Scene, owners: list[int], view: Projection, scale: float) -> list[Icon]:
     """Return the icons of the elements with these indices, as far as they lie within the picture."""
     size = round(SIZE * scale)
     corner = view.width - size
     placed: list[Icon] = []
-    for index in indices:
+    for index in owners:
         element = scene.elements[index]
-        point = None if isinstance(element, Camera) else position_of(element)
-        at: Pixel | None = view.pixel(point) if point else (corner, size)
-        corner -= 0 if point else round(1.5 * size)
+        around = extent(element)
+        at: Pixel | None = view.pixel(around[0]) if around else (corner, size)
+        corner -= 0 if around else round(1.5 * size)
         if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:
             placed.append(Icon(index, round(at[0]), round(at[1]), element.code, colour_of(element)))
     return placed
 
 
-def icon_at(icons: list[Icon], x: int, y: int, scale: float) -> Icon | None:
-    """Return the icon under the pointer; if several overlap, the last, which is drawn on top."""
-    reach = SIZE * scale / 2
-    return next((each for each in reversed(icons) if max(abs(each.x - x), abs(each.y - y)) <= reach), None)
-
-
 def colour_of(element: Element) -> int:
-    """Return the element's own colour as 0xRRGGBB, white if it has none."""
+    """Return the element's own colour as 0xFFRRGGBB, white if it has none."""
     colours = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
     red, green, blue = map(int, next((each for each in colours if not isinstance(each, str)), (255, 255, 255)))
-    return red << 16 | green << 8 | blue
+    return 0xFF << 24 | red << 16 | green << 8 | blue
 
 
 def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tuple[float, float] | None:
@@ -224,5 +192,67 @@ def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> 
     y, x = np.ogrid[:height, :width]
     along = (tip[0] - x - 0.5) * direction[0] + (tip[1] - y - 0.5) * direction[1]  # back from the tip
     beside = np.abs((x + 0.5 - tip[0]) * direction[1] - (y + 0.5 - tip[1]) * direction[0])
-    pixels[(along >= -2 * scale) & (along <= size + 2 * scale) & (beside <= along / 2 + 3 * scale)] = RIM
-    pixels[(along >= 0) & (along <= size) & (beside <= along / 2)] = FILL
+    pixels[(along >= -2 * scale) & (along <= size + 2 * scale) & (beside <= along / 2 + 3 * scale)] = bgra(BLACK)
+    pixels[(along >= 0) & (along <= size) & (beside <= along / 2)] = bgra(GOLD)
+
+
+# The outline of a shape, whether it is hidden or not.
+
+
+def outline_pixels(
+    shape: Shape, camera: Camera, width: int, height: int, rays: int
+) -> tuple[PixelIndices, PixelIndices]:
+    """Return the pixels just outside and just inside the silhouette that the shape would have alone in the scene.
+
+    Coverage is evaluated on a coarse grid of about `rays` points, of which few may miss parts of thin shapes, and then
+    on all pixels of the cells in which it changes.
+    """
+    if isinstance(shape, Mesh):
+        return mask_outline(covers(shape, camera, width, height, *np.meshgrid(np.arange(width), np.arange(height))))
+    left, top, right, bottom = screen_bounds(shape, projection_of(camera, width, height))
+    step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
+    x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
+    grid = covers(shape, camera, width, height, x, y)
+    corners = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
+    mixed = np.logical_or.reduce(corners) & ~np.logical_and.reduce(corners)
+    mixed[:, 1:] |= mixed[:, :-1].copy()  # an edge on the border of two cells belongs to both
+    mixed[1:] |= mixed[:-1].copy()
+    rows, columns = (step * each[:, None, None] for each in np.nonzero(mixed))
+    reach = np.arange(-1, step + 1)
+    y = np.clip(top + rows + reach[:, None], 0, height - 1)
+    x = np.clip(left + columns + reach, 0, width - 1)
+    y, x = np.broadcast_arrays(y, x)
+    mask = covers(shape, camera, width, height, x, y)
+    around = mask[:, :-2, 1:-1], mask[:, 2:, 1:-1], mask[:, 1:-1, :-2], mask[:, 1:-1, 2:]
+    middle = mask[:, 1:-1, 1:-1]
+    outside, inside = np.logical_or.reduce(around) & ~middle, middle & ~np.logical_and.reduce(around)
+    y, x = y[:, 1:-1, 1:-1], x[:, 1:-1, 1:-1]
+    return (y[outside], x[outside]), (y[inside], x[inside])
+
+
+def mask_outline(mask: NDArray[np.bool_]) -> tuple[PixelIndices, PixelIndices]:
+    """Return the pixels just outside and just inside of a mask, (h, w), that is true where a shape is."""
+    down, right = np.nonzero(mask[1:] != mask[:-1]), np.nonzero(mask[:, 1:] != mask[:, :-1])
+    rows = np.concatenate([down[0], down[0] + 1, right[0], right[0]])
+    columns = np.concatenate([down[1], down[1], right[1], right[1] + 1])
+    inside = mask[rows, columns]
+    return (rows[~inside], columns[~inside]), (rows[inside], columns[inside])
+
+
+def screen_bounds(shape: Shape, view: Projection) -> Box:
+    """Return a box of pixels that encloses the projection of a shape; all of them if it is near the eye's plane."""
+    columns, rows = [], []
+    for centre, radius in shape.balls():
+        depth, middle = view.depth(centre), view.pixel(centre)
+        if middle is None or depth <= 2 * radius:
+            return 0, 0, view.width, view.height
+        # A projected sphere is an ellipse, longer the farther it is from the picture's centre; the square bounds it.
+        slant = hypot(*subtract(centre, view.eye)) / depth
+        reach = view.width / 2 / hypot(*view.right) * radius / (depth - radius) * slant + MARGIN
+        columns += [middle[0] - reach, middle[0] + reach]
+        rows += [middle[1] - reach, middle[1] + reach]
+    if not columns:
+        return 0, 0, view.width, view.height
+    left, right = (round(min(max(each, 0), view.width)) for each in (min(columns), max(columns)))
+    top, bottom = (round(min(max(each, 0), view.height)) for each in (min(rows), max(rows)))
+    return left, top, right, bottom

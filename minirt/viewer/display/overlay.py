@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from enum import IntEnum
+from functools import partial
 from typing import NamedTuple
 
 from minirt.element import fields_of
@@ -168,6 +169,9 @@ def short_numbers(text: str) -> str:
     return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", text)
 
 
+draw_on_dark = partial(draw_text, background=PANEL_BACKGROUND, padding=PADDING)
+
+
 class Panel(NamedTuple):
     """A title with rows below, of which one is chosen."""
 
@@ -180,18 +184,13 @@ def draw_panel(pixels: Pixels, panel: Panel, size: int) -> None:
     """Draw a panel in text of a size, above the messages; of a long list the rows around the chosen one."""
     line = measure(" ", size)[1]
     top = MARGIN + TOP * line
-    draw_panel_line(pixels, MARGIN, top, panel.title, MESSAGE_COLOUR, size)
+    draw_on_dark(pixels, MARGIN, top, panel.title, MESSAGE_COLOUR, size=size)
     count = max(1, (pixels.shape[0] - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM)
     first = min(max(panel.chosen - count // 2, 0), max(len(panel.rows) - count, 0))
     rows = panel.rows[first : first + count]
     if rows:
         top, left = top + line + 2 * PADDING, MARGIN + measure(MARK, size)[0]
-        draw_panel_line(pixels, left, top, "\n".join(rows), ROW_COLOUR, size)
+        draw_on_dark(pixels, left, top, "\n".join(rows), ROW_COLOUR, size=size)
         chosen = panel.chosen - first
         draw_text(pixels, MARGIN, top + chosen * line, MARK, MESSAGE_COLOUR, size=size)
         draw_text(pixels, left, top + chosen * line, rows[chosen], MESSAGE_COLOUR, size=size)
-
-
-def draw_panel_line(pixels: Pixels, x: int, y: int, text: str, colour: int, size: int) -> None:
-    """Draw text on a dark ground."""
-    draw_text(pixels, x, y, text, colour, size=size, background=PANEL_BACKGROUND, padding=PADDING)

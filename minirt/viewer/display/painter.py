@@ -1,7 +1,13 @@
-"""Render jobs and their outcomes, and a painter that renders at once."""
+"""Painters: they render jobs at once, or in a thread that cancels pictures which are no longer wanted.
+
+Until the kernel for a scene is compiled, its pictures in the background are previews; the last one is then rendered
+again.
+"""
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias
@@ -18,6 +24,7 @@ if TYPE_CHECKING:
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 IsWanted: TypeAlias = Callable[[], bool]  # whether a picture is still wanted
 
+PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview appears: loading one takes less
 PASS_GROWTH = 4  # ratio of samples from one refinement pass to the next
 
 
@@ -40,11 +47,6 @@ class Job:
         """Shape of the picture's array, which is smaller than the window if the picture is coarse."""
         return -(-self.height // self.divisor), -(-self.width // self.divisor), 4
 
-    @property
-    def pixels(self) -> int:
-        """Number of pixels to render."""
-        return self.shape[0] * self.shape[1]
-
     def shows(self, scene: Scene, width: int, height: int) -> bool:
         """Whether this is a picture, however coarse, of that scene at that size."""
         return self.scene is scene and (self.width, self.height) == (width, height)
@@ -61,17 +63,10 @@ class Job:
         samples = min(PASS_GROWTH * self.samples, self.goal)
         return replace(self, urgent=False, samples=samples, base=pixels, base_samples=self.samples)
 
-    def outlives(self, newer: Job) -> bool:
-        """Whether this job is worth finishing although a newer one waits."""
-        return self.urgent and (self.width, self.height) == (newer.width, newer.height)
-
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """The result of a job: a picture, or an error, or neither if it was cancelled.
-
-    Notes without a picture replace those of the latest picture: the renderer has changed, and the pixels would not.
-    """
+    """The result of a job: a picture, or an error, or neither if it was cancelled."""
 
     job: Job
     pixels: Pixels | None = None
@@ -114,27 +109,140 @@ class Painter:
         return True
 
 
-def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: IsWanted = lambda: True) -> Outcome:
-    """Render a job: all pixels, or only the edges in a copy of `base`."""
-    pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
+def paint(
+    renderer: Renderer,
+    job: Job,
+    base: Pixels | None = None,
+    is_wanted: IsWanted = lambda: True,
+    preview: bool = False,
+) -> Outcome:
+    """Render a job: all pixels, or only the edges in a copy of `base`; or its preview, while its kernel is missing."""
     try:
+        if preview:
+            return Outcome(job, renderer.preview(job.scene, job.width, job.height), preview=True)
+        pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
         render = renderer.render if base is None else renderer.refine
         done = render(job.scene, pixels, job.samples, is_wanted=is_wanted)
     except Exception as error:  # of any kind: the session raises it in the main thread
         return Outcome(job, error=error)
-    if not done:
-        return Outcome(job)
-    about = () if job.urgent else tuple(renderer.about)
-    if base is None:
-        return Outcome(job, pixels, about=about)
-    tone = job.scene.camera.tone
-    estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted, tone)
-    return Outcome(job) if estimate is None else Outcome(job, pixels, error_estimate=estimate, about=about)
+    about = () if job.urgent or not done else tuple(renderer.about)
+    estimate = None
+    if done and base is not None:
+        tone = job.scene.camera.tone
+        estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted, tone)
+        done = estimate is not None
+    return Outcome(job, pixels, error_estimate=estimate, about=about) if done else Outcome(job)
 
 
-def preview(renderer: Renderer, job: Job) -> Outcome:
-    """Render the preview of a job whose kernel is not ready."""
-    try:
-        return Outcome(job, renderer.preview(job.scene, job.width, job.height), preview=True)
-    except Exception as error:
-        return Outcome(job, error=error)
+class BackgroundPainter(Painter):
+    """A painter with a thread for rendering, started by the first request, and another for compiling kernels.
+
+    Both threads call `notify`.
+    """
+
+    def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
+        super().__init__(renderer, lambda: self._closed or notify())
+        renderer.give_way()
+        renderer.specialise_early()
+        self._changed = threading.Condition()
+        self._waiting: Job | None = None
+        self._running: Job | None = None
+        self._previewed: Job | None = None  # to be rendered again when the kernel is ready
+        self._closed = False
+        self._preparing = False
+        self._threads = [threading.Thread(target=self._work, name="minirt-painter", daemon=True)]
+
+    @property
+    def busy(self) -> bool:
+        with self._changed:
+            return bool(self._waiting or self._running or self._previewed or self.outcomes)
+
+    def request(self, job: Job) -> None:
+        with self._changed:
+            self._waiting, self._previewed = job, None
+            self._changed.notify_all()
+            if self._running and self._is_superseded(self._running):
+                self.renderer.cancel()
+        if self._threads[0].ident is None:
+            self._threads[0].start()
+
+    def take(self) -> list[Outcome]:
+        with self._changed:
+            return super().take()
+
+    def close(self, patience: float) -> bool:
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        if self._threads[0].ident is None:
+            return True
+        self.renderer.stop()
+        self.renderer.cancel()
+        end = time.monotonic() + patience
+        for thread in self._threads:
+            thread.join(max(0.0, end - time.monotonic()))
+        return not any(thread.is_alive() for thread in self._threads)
+
+    def _work(self) -> None:
+        """Render requests until the painter is closed: the body of the thread."""
+        while True:
+            with self._changed:  # wait for a request, and take the latest
+                self._changed.wait_for(lambda: self._waiting or self._closed)
+                job = self._running = self._waiting
+                self._waiting = None
+            if self._closed or not job:
+                return
+            outcome = self._render(job)
+            with self._changed:
+                self._running = None
+                if outcome and outcome.pixels is not None:  # it replaces older ones that nobody took
+                    self.outcomes = [each for each in self.outcomes if each.pixels is None]
+                if outcome:
+                    self.outcomes.append(outcome)
+            self.notify()
+
+    def _render(self, job: Job) -> Outcome | None:
+        """Render a job, or its preview while its kernel is missing; None if it has neither."""
+        if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
+            outcome = paint(self.renderer, job, preview=True)
+            return outcome if outcome.pixels is not None or outcome.error else None
+        start = time.perf_counter()
+        outcome = paint(self.renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
+        return replace(outcome, seconds=time.perf_counter() - start)
+
+    def _is_soon_prepared(self, job: Job) -> bool:
+        """Start to prepare the kernel, unless that has begun; return whether it is ready within PREVIEW_DELAY."""
+        with self._changed:
+            if not self._preparing:
+                self._preparing = True
+                self._threads[1:] = [threading.Thread(target=self._prepare, args=(job,), daemon=True)]
+                self._threads[1].start()
+                self._changed.wait_for(lambda: not self._preparing or self._closed, PREVIEW_DELAY)
+            if not self._preparing:
+                return self.renderer.is_ready(job.scene)
+            self._previewed = None if self._waiting else job
+        return False
+
+    def _prepare(self, job: Job) -> None:
+        """Prepare the kernel, then request the picture that was only previewed: the body of the second thread."""
+        error = None
+        try:
+            self.renderer.prepare(job.scene)
+        except Exception as reason:
+            error = reason
+        with self._changed:
+            self._preparing = False
+            if error:
+                self.outcomes.append(Outcome(job, error=error))
+            elif not self._waiting:
+                self._waiting = self._previewed
+            self._previewed = None
+            self._changed.notify_all()
+        self.notify()
+
+    def _is_superseded(self, job: Job) -> bool:
+        """Whether a newer request makes this picture useless."""
+        waiting = self._waiting
+        if waiting is None:
+            return False
+        return not job.urgent or (job.width, job.height) != (waiting.width, waiting.height)

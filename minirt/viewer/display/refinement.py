@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
+from math import prod
 from statistics import median_low
 
 from minirt.mlx import Window
@@ -52,9 +52,6 @@ class Refinement:
             if outcome.error:
                 errors.append(outcome.error)
                 continue
-            if outcome.pixels is None and outcome.about:
-                self._renew_notes(outcome)
-                continue
             if not outcome.preview:
                 self.resolution.record(outcome)
             if outcome.pixels is not None:
@@ -62,12 +59,6 @@ class Refinement:
             elif outcome.job is self._requested:
                 self._request(outcome.job)  # it was cancelled, but no other request replaced it
         return errors
-
-    def _renew_notes(self, outcome: Outcome) -> None:
-        """Replace the notes of the latest picture if it shows the same scene: the picture stays as it is."""
-        latest = self.latest
-        if latest and latest.job.scene is outcome.job.scene:
-            self.latest = replace(latest, about=outcome.about)
 
     @property
     def _answer(self) -> Outcome | None:
@@ -83,16 +74,14 @@ class Refinement:
 class AdaptiveResolution:
     """Choose the resolution from the measured time of rendering and of displaying pictures.
 
-    A picture that is twice as coarse costs a quarter, plus a constant cost per picture. So the cost of coarse pictures
-    overestimates that of finer ones; a finer one is tried now and then, ever less often until nothing moves. And the
-    cost of a still picture underestimates that of the coarse one which follows it, whose rays are less alike, too: how
-    far is learned from the last movements.
+    Coarse pictures cost more a pixel: a finer one is tried now and then, ever less often until nothing moves. How much
+    more than the still picture before them is learned from the last movements.
     """
 
     def __init__(self) -> None:
         # The median of the last times counts: a single slow picture changes nothing.
         self._costs: deque[float] = deque(maxlen=3)  # seconds per pixel
-        self._display_times: deque[float] = deque(maxlen=3)  # seconds per picture
+        self.display_times: deque[float] = deque(maxlen=3)  # seconds per picture
         self._excesses: deque[float] = deque(maxlen=3)  # cost of the first coarse picture by that of the still one
         self._measured = 0  # the divisor that had these costs; 0 while nothing is known
         self._chosen = DIVISORS[-1]
@@ -101,7 +90,7 @@ class AdaptiveResolution:
 
     def record(self, outcome: Outcome) -> None:
         """Record the time of a picture that was finished, or was cancelled and would have taken longer."""
-        job, cost = outcome.job, outcome.seconds / outcome.job.pixels
+        job, cost = outcome.job, 4 * outcome.seconds / prod(outcome.job.shape)  # of a pixel, which has four bytes
         if job.samples > 1:
             return
         if outcome.pixels is None:
@@ -122,10 +111,6 @@ class AdaptiveResolution:
         """Primary rays per second, 0 while nothing is known."""
         cost = median_low(self._costs) if self._costs else 0.0
         return 1 / cost if cost else 0.0
-
-    def record_display_time(self, seconds: float) -> None:
-        """Record how long it took to bring a picture to the window."""
-        self._display_times.append(seconds)
 
     def divisor(self, width: int, height: int) -> int:
         """Return the least divisor that is fast enough; the greatest if none is, or while nothing is known."""
@@ -153,7 +138,7 @@ class AdaptiveResolution:
     @property
     def _time(self) -> float:
         """Seconds left for rendering: at least half a frame, since coarser pictures do not help a slow screen."""
-        display_time = median_low(self._display_times) if self._display_times else 0.0
+        display_time = median_low(self.display_times) if self.display_times else 0.0
         return max(FRAME_TIME - display_time, FRAME_TIME / 2)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from functools import lru_cache
 from itertools import zip_longest
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -16,21 +16,9 @@ from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import FINE_NOTE, key_groups
+from minirt.viewer.display import overlay
 from minirt.viewer.display.marks import Marks
-from minirt.viewer.display.overlay import (
-    MARGIN,
-    MESSAGE_COLOUR,
-    MIN_TEXT_SIZE,
-    TEXT_COLOUR,
-    HudLevel,
-    Panel,
-    draw_hud,
-    draw_message,
-    draw_panel,
-    overlay_scale,
-    text_size,
-    wrap,
-)
+from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, Panel, wrap
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
 
@@ -39,25 +27,7 @@ INDENT = "  "  # of keys below their title
 M_ARENA_MAX = -8  # the parameter of `mallopt` for the number of heaps
 
 
-class Row(NamedTuple):
-    """A row of the table: a title, or keys with their help."""
-
-    keys: str
-    help: str = ""
-
-
-class Column(NamedTuple):
-    """Rows below each other, and the widths of their two parts in pixels."""
-
-    rows: list[Row]
-    widths: tuple[int, int]
-
-
-class Help(NamedTuple):
-    """The whole table, as it fits a window."""
-
-    size: int  # of the text, in pixels
-    pages: list[list[Column]]
+Column = tuple[str, str]  # lines of keys, titles among them, and of their help
 
 
 def draw_help(pixels: Pixels, layout: str, max_size: int, number: int) -> None:
@@ -68,11 +38,9 @@ def draw_help(pixels: Pixels, layout: str, max_size: int, number: int) -> None:
     size, pages = help_pages(layout, width, height, max_size)
     number = min(number, len(pages))
     x = MARGIN
-    for rows, widths in pages[number - 1]:
-        texts = zip(*rows, strict=True)
-        for lines, text_width, colour in zip(texts, widths, (MESSAGE_COLOUR, TEXT_COLOUR), strict=True):
-            draw_text(pixels, x, MARGIN, "\n".join(lines), colour, size=size)
-            x += text_width
+    for column in pages[number - 1]:
+        for text, colour in zip(column, (MESSAGE_COLOUR, overlay.TEXT_COLOUR), strict=True):
+            x += draw_text(pixels, x, MARGIN, text, colour, size=size)[0] + size
     if len(pages) > 1:
         key = "next page" if number < len(pages) else "back to the picture"
         footer = height - MARGIN // 2 - measure(" ", size)[1]
@@ -80,64 +48,64 @@ def draw_help(pixels: Pixels, layout: str, max_size: int, number: int) -> None:
 
 
 @lru_cache(maxsize=4)
-def help_pages(layout: str, width: int, height: int, max_size: int) -> Help:
-    """Arrange the table with as few pages as readable text allows, in the largest text of so many pages."""
-    least = min(max_size, max(READABLE[0], round(READABLE[1] * max_size), MIN_TEXT_SIZE))
+def help_pages(layout: str, width: int, height: int, max_size: int) -> tuple[int, list[list[Column]]]:
+    """Arrange the table with as few pages as readable text allows, in the largest text of so many pages.
+
+    Returns the size of the text in pixels, and the columns of each page.
+    """
+    least = min(max_size, max(READABLE[0], round(READABLE[1] * max_size), overlay.MIN_TEXT_SIZE))
     fewest = len(arrange(layout, width, height, least))
-    sizes = range(max_size, least - 1, -1)
-    arranged = ((size, arrange(layout, width, height, size)) for size in sizes)
-    return next(Help(size, pages) for size, pages in arranged if len(pages) <= fewest)
+    arranged = ((size, arrange(layout, width, height, size)) for size in range(max_size, least - 1, -1))
+    return next((size, pages) for size, pages in arranged if len(pages) <= fewest)
 
 
 def arrange(layout: str, width: int, height: int, size: int) -> list[list[Column]]:
     """Fill columns from top to bottom, and pages from left to right."""
     line = measure(" ", size)[1]
-    capacity = max(3, (height - 2 * MARGIN) // line)
-    columns = list(filled_columns(layout, width, size, capacity))
-    if sum(map(width_of, columns)) > width - 2 * MARGIN and height > 4 * line:  # several pages: the last line is taken
-        columns = list(filled_columns(layout, width, size, max(3, (height - MARGIN * 3 // 2 - line) // line)))
+    columns = list(filled_columns(layout, width, size, (height - 2 * MARGIN) // line))
+    if width_of(columns, size) > width - 2 * MARGIN and height > 4 * line:  # several pages: the last line is taken
+        columns = list(filled_columns(layout, width, size, (height - MARGIN * 3 // 2 - line) // line))
     pages: list[list[Column]] = [[]]
     for column in columns:
-        if pages[-1] and sum(map(width_of, (*pages[-1], column))) > width - 2 * MARGIN:
+        if pages[-1] and width_of([*pages[-1], column], size) > width - 2 * MARGIN:
             pages.append([])
         pages[-1].append(column)
     return pages
 
 
 def filled_columns(layout: str, width: int, size: int, capacity: int) -> Iterator[Column]:
-    """Yield columns of at most `capacity` rows; no title is the last row of one."""
-    rows: list[Row] = []
-    for title, lines in [*key_groups(layout), ("", [FINE_NOTE])]:
-        for index, (keys, help) in enumerate(lines):
-            block = wrapped(Row(keys, help), width, size)
+    """Yield columns of at most `capacity` lines, but at least 3; no title is the last line of one."""
+    lines: list[tuple[str, str]] = []
+    for title, rows in [*key_groups(layout), ("", [FINE_NOTE])]:
+        for index, row in enumerate(rows):
+            block = wrapped(row, width, size)
             if index == 0:
-                block = [*([Row("")] if rows else []), *([Row(title)] if title else []), *block]
-            if rows and len(rows) + len(block) > capacity:
-                yield column_of(rows, size)
-                rows, block = [], [row for row in block if row.keys or row.help]
-            rows += block
-    yield column_of(rows, size)
+                block = [*([("", "")] if lines else []), *([(title, "")] if title else []), *block]
+            if lines and len(lines) + len(block) > max(3, capacity):
+                yield joined(lines)
+                lines, block = [], [line for line in block if any(line)]
+            lines += block
+    yield joined(lines)
 
 
-def wrapped(row: Row, width: int, size: int) -> list[Row]:
-    """Return a row whose texts are wrapped where they take more than their share of a narrow window."""
+def wrapped(row: tuple[str, str], width: int, size: int) -> list[tuple[str, str]]:
+    """Return the lines of a row whose texts are wrapped where they take more than their share of a narrow window."""
     share = (width - 2 * MARGIN - 2 * size) // 5
     keys, help = (
         wrap(text, part * share + 2 * MARGIN, size).split("\n") for text, part in zip(row, (2, 3), strict=True)
     )
     keys = [INDENT + keys[0].strip(), *(2 * INDENT + line.strip() for line in keys[1:])]
-    return [Row(*texts) for texts in zip_longest(keys, help, fillvalue="")]
+    return list(zip_longest(keys, help, fillvalue=""))
 
 
-def column_of(rows: list[Row], size: int) -> Column:
-    """Return a column with its widths."""
-    keys, helps = ("\n".join(texts) for texts in zip(*rows, strict=True))
-    return Column(rows, (measure(keys, size)[0] + size, measure(helps, size)[0] + size))
+def joined(lines: list[tuple[str, str]]) -> Column:
+    """Return lines as a column."""
+    return "\n".join(keys for keys, _ in lines), "\n".join(help for _, help in lines)
 
 
-def width_of(column: Column) -> int:
-    """Width of a column in pixels, with the blank to its right."""
-    return sum(column.widths)
+def width_of(columns: list[Column], size: int) -> int:
+    """Width of columns in pixels, with the blanks to their right."""
+    return sum(measure(text, size)[0] + size for column in columns for text in column)
 
 
 class Screen:
@@ -164,16 +132,16 @@ class Screen:
     @property
     def scale(self) -> float:
         """The scale of text and icons, 1 in a usual window."""
-        return overlay_scale(self.window.width, self.window.height, self.window.scale, self.text_scale)
+        return overlay.overlay_scale(self.window.width, self.window.height, self.window.scale, self.text_scale)
 
     @property
     def text_size(self) -> int:
         """The size of text, in pixels."""
-        return text_size(self.window.width, self.window.height, self.scale)
+        return overlay.text_size(self.window.width, self.window.height, self.scale)
 
     def turn_help_page(self) -> None:
         """Show the first page of the help, the next one, or after the last one the picture."""
-        pages = help_pages(self.layout, self.window.width, self.window.height, self.text_size).pages
+        pages = help_pages(self.layout, self.window.width, self.window.height, self.text_size)[1]
         self.help = self.help + 1 if self.help < len(pages) else 0
 
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0) -> bool:
@@ -185,18 +153,8 @@ class Screen:
         width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        contents = (
-            described,
-            picture,
-            message,
-            self.panel,
-            self.level,
-            self.help,
-            self.marks.icons,
-            width,
-            height,
-            scale,
-        )
+        shown = self.panel, self.level, self.help, self.marks.icons
+        contents = described, picture, message, *shown, width, height, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
@@ -207,10 +165,10 @@ class Screen:
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 self.marks.draw(self.frame, state, picture.job.scene, scale, moving=picture.job.urgent)
-            bottom = draw_hud(self.frame, state, picture, self.level, rate, size)
+            bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
         if self.panel and not self.help:
-            draw_panel(self.frame, self.panel, size)
-        draw_message(self.frame, message, bottom, size)
+            overlay.draw_panel(self.frame, self.panel, size)
+        overlay.draw_message(self.frame, message, bottom, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 
@@ -225,9 +183,7 @@ class Screen:
 
 def use_one_heap() -> None:
     """Let all threads allocate from one heap, all of which can be given back. Call it before threads start."""
-    with suppress(OSError, AttributeError):
-        if sys.platform == "linux":
-            ctypes.CDLL(None).mallopt(M_ARENA_MAX, 1)
+    call_glibc("mallopt", M_ARENA_MAX, 1)
 
 
 def give_back_memory() -> None:
@@ -236,6 +192,11 @@ def give_back_memory() -> None:
     The frames of a large window return to glibc's heap, between smaller blocks that stay. Without this a window that
     was full screen (2560x1600) once, and is small again, keeps 70 to 110 MB that nothing uses.
     """
+    call_glibc("malloc_trim", ctypes.c_size_t(0))
+
+
+def call_glibc(function: str, *arguments: Any) -> None:
+    """Call a function that only glibc has."""
     with suppress(OSError, AttributeError):
         if sys.platform == "linux":
-            ctypes.CDLL(None).malloc_trim(ctypes.c_size_t(0))
+            getattr(ctypes.CDLL(None), function)(*arguments)

@@ -5,7 +5,6 @@ Shapes stand on surfaces, drop onto what lies beneath, and snap to a grid.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import cos, dist, hypot, isfinite, pi, sin
 from typing import Any, TypeVar
 
@@ -31,11 +30,11 @@ from minirt.scene import Light, Scene
 from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
-from minirt.viewer.editing.motion import clamp_point, translate
-from minirt.viewer.editing.projection import UP, Aim, aim_ahead, dot, extent, subtract
-from minirt.viewer.editing.state import State, can_edit, field_names, position_of
-from minirt.viewer.editing.values import leading_decimal, nice_number, round_length, round_point
-from minirt.viewer.files import meshes, pictures
+from minirt.viewer.editing.motion import clamp_point, shifted
+from minirt.viewer.editing.projection import UP, Aim, aim_ahead, dot, extent, field_names, position_of, subtract
+from minirt.viewer.editing.state import State, can_edit
+from minirt.viewer.editing.values import leading_decimal, round_length, round_point
+from minirt.viewer.files import usable_files
 
 LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes still come to rest
 POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a standing shape are rounded
@@ -68,7 +67,7 @@ def settled(shape: Shape, aim: Aim, scene: Scene, stride: float) -> Shape:
         return shape
     normal, (middle, _) = aim.normal, middle_of(shape)
     point = tidy_point(aim.point, normal, stride)
-    at, _ = translate(shape, subtract(point, middle), 1.0)
+    at = shifted(shape, subtract(point, middle))
     rests = LEVEL < normal[1] < 1
     standing = stand(at, point, UP if rests else normal)
     if rests:
@@ -106,30 +105,11 @@ def lowest_along(shape: Shape, direction: Triple) -> float | None:
     return max(by_box, min(by_balls, default=by_box))
 
 
-def shifted(shape: Shape, direction: Triple, distance: float) -> Shape:
-    """Move a shape along a direction."""
-    return translate(shape, direction, distance)[0]
-
-
 def middle_of(shape: Shape) -> tuple[Triple, float]:
     """Middle and radius of a bounded shape."""
     found = extent(shape)
     assert found
     return found
-
-
-def aligned(shape: Shape, x: float, z: float) -> Shape:
-    """Move a shape horizontally so that its middle lies above or below x, z."""
-    middle, _ = middle_of(shape)
-    return shifted(shifted(shape, (1.0, 0.0, 0.0), x - middle[0]), (0.0, 0.0, 1.0), z - middle[2])
-
-
-def above(shape: Shape, support: Shape) -> Shape:
-    """Raise a bounded shape until all of it is above another one."""
-    box, other = shape.bounds(), support.bounds()
-    assert box
-    assert other
-    return shifted(shape, UP, max(0.0, other[1][1] - box[0][1]))
 
 
 def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
@@ -140,15 +120,19 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
     (x, _, z), radius = middle_of(shape)
     others = [each for each in scene.shapes if each is not shape]
     _, support = clearance(shape, others)
-    centre = middle_of(support)[0] if support and support.bounds() else None
-    if support and centre and hypot(centre[0] - x, centre[2] - z) <= radius:
-        there = above(aligned(shape, centre[0], centre[2]), support)
+    box, below = shape.bounds(), support.bounds() if support else None
+    assert box
+    centre = middle_of(support)[0] if support and below else None
+    rise = 0.0
+    if below and centre and hypot(centre[0] - x, centre[2] - z) <= radius:
+        x_to, z_to, rise = centre[0], centre[2], max(0.0, below[1][1] - box[0][1])  # all of it is above the other
     else:
-        there = shape if grid is None else aligned(shape, grid * round(x / grid), grid * round(z / grid))
+        x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
+    there = shifted(shape, (x_to - x, rise, z_to - z))
     gap, support = clearance(there, others)
-    box = there.bounds()
-    if support is None and box and box[1][1] > 0:
-        gap = box[0][1]
+    low, high = box[0][1] + rise, box[1][1] + rise
+    if support is None and high > 0:
+        gap = low
     return shifted(there, DOWN, gap) if isfinite(gap) else None
 
 
@@ -168,20 +152,11 @@ def addable_kinds(scene: Scene) -> list[type[Element]]:
 
     Left out are kinds of which a scene has one and has it already, and kinds that need a mesh file where there is none.
     """
-    missing = [kind for kind in ELEMENTS.values() if can_edit(kind) and not (kind.once and contains_kind(scene, kind))]
-    files = next(meshes(scene), None) is not None
-    useful = [kind for kind in missing if files or not needs_mesh(kind)]
-    return sorted(useful, key=lambda kind: (needs_mesh(kind), not issubclass(kind, Shape)))
-
-
-def needs_mesh(kind: type[Element]) -> bool:
-    """Whether elements of the kind are made from a mesh file."""
-    return any(isinstance(field, MeshField) for field in fields_of(kind))
-
-
-def contains_kind(scene: Scene, kind: type[Element]) -> bool:
-    """Whether a scene has an element of exactly this kind."""
-    return any(type(each) is kind for each in scene.of(kind))
+    there = {type(each) for kind in ELEMENTS.values() if kind.once for each in scene.of(kind)}
+    missing = [kind for kind in ELEMENTS.values() if can_edit(kind) and not (kind.once and kind in there)]
+    has_file = next(usable_files(scene, is_mesh=True), None) is not None
+    useful = [kind for kind in missing if has_file or not field_names(kind, MeshField)]
+    return sorted(useful, key=lambda kind: (bool(field_names(kind, MeshField)), not issubclass(kind, Shape)))
 
 
 def default_element(kind: type[Element], state: State) -> Element:
@@ -190,26 +165,28 @@ def default_element(kind: type[Element], state: State) -> Element:
     LookupError if it needs a picture or mesh file and there is none beside the scene.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
-    made = kind(**dict(required_values(kind, state, one_digit(aim.size))))
+    made = default_record(kind, state, one_digit(aim.size))
     return settled(made, aim, state.scene, state.stride) if isinstance(made, Shape) else made
 
 
-def default_record(kind: type[RecordType], state: State) -> RecordType:
-    """Make a record of default values, such as the value of an attribute. LookupError as in `default_element`."""
-    return kind(**dict(required_values(kind, state, nice_number(SIZE * state.size))))
+def default_record(kind: type[RecordType], state: State, length: float) -> RecordType:
+    """Make a record of default values, such as the value of an attribute; `length` is the usual one.
+
+    LookupError as in `default_element`.
+    """
+    fields = [field for field in fields_of(kind) if field.required]
+    points = iter(default_points(kind, state, sum(isinstance(field, Point) for field in fields)))
+    return kind(
+        **{
+            field.name: next(points) if isinstance(field, Point) else default_value(field, state, length)
+            for field in fields
+        }
+    )
 
 
 def one_digit(length: float) -> float:
     """Round a length to its leading digit."""
     return clamp(round(length, leading_decimal(length)), LEAST_LENGTH, FARTHEST)
-
-
-def required_values(kind: type[Record], state: State, length: float) -> Iterator[tuple[str, Any]]:
-    """Yield names and default values of the required fields; `length` is the usual one."""
-    fields = [field for field in fields_of(kind) if field.required]
-    points = iter(default_points(kind, state, sum(isinstance(field, Point) for field in fields)))
-    for field in fields:
-        yield field.name, next(points) if isinstance(field, Point) else default_value(field, state, length)
 
 
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
@@ -237,34 +214,21 @@ def first_lamp(state: State) -> Light:
     return Light(position=round_point(position, state.stride), brightness=LAMP_BRIGHTNESS)
 
 
-def default_value(field: Field, state: State, length: float | None = None) -> Any:
-    """Default value of a field that is not a point; LookupError as in `default_record`."""
+def default_value(field: Field, state: State, length: float) -> Any:
+    """Default value of a field that is not a point; LookupError as in `default_element`."""
     if isinstance(field, Compound):
-        return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state)
+        return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state, length)
     if isinstance(field, (Picture, MeshField)):
-        noun, files = ("picture", pictures) if isinstance(field, Picture) else ("mesh", meshes)
-        return first_file(noun, files(state.scene))
-    length = nice_number(SIZE * state.size) if length is None else length
+        for file in usable_files(state.scene, isinstance(field, MeshField)):
+            return file
+        raise LookupError(f"there is no file for {field.name} beside the scene")
     if isinstance(field, Lengths):
         return length, length, length
     if isinstance(field, Length) and field.unit:
         return round_length(clamp(length * (field.initial or 1), LEAST_LENGTH, FARTHEST))
-    return constant_default(field)
-
-
-def constant_default(field: Field) -> Any:
-    """Default value of a field, independent of the scene; LookupError if it has none."""
-    if field.initial is not None:
-        return field.initial
-    if isinstance(field, Direction):
-        return field.instead
-    if isinstance(field, Real):
-        return (field.low + field.high) / 2
-    raise LookupError(f"{field.name} has no default value")
-
-
-def first_file(noun: str, files: Iterator[Any]) -> Any:
-    """Return the first file beside the scene; LookupError if there is none."""
-    for file in files:
-        return file
-    raise LookupError(f"there is no {noun} beside the scene")
+    usual = field.instead if field.initial is None and isinstance(field, Direction) else field.initial
+    if usual is None and isinstance(field, Real):
+        usual = (field.low + field.high) / 2
+    if usual is None:
+        raise LookupError(f"{field.name} has no default value")
+    return usual

@@ -11,23 +11,22 @@ from typing import NamedTuple
 
 from minirt.element import Element
 from minirt.fields import Triple
-from minirt.rendering.queries.pick import pick, surface_point
+from minirt.rendering.queries.pick import pick
 from minirt.scene import Camera
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
-from minirt.viewer.editing.adding import dropped, stand
-from minirt.viewer.editing.motion import (
-    WORLD_AXES,
-    can_turn,
-    clamp_point,
-    handedness,
-    orbit_camera,
-    rotate,
-    translate,
-    turn_axis,
-    turn_camera,
+from minirt.viewer.editing import motion
+from minirt.viewer.editing.adding import dropped, middle_of, stand
+from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, shifted
+from minirt.viewer.editing.projection import (
+    UP,
+    Projection,
+    aim,
+    extent,
+    scene_centre,
+    subtract,
+    surface_at,
 )
-from minirt.viewer.editing.projection import UP, Projection, aim, extent, projection_of, scene_centre, subtract
 from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels
@@ -51,16 +50,6 @@ class DragStart(NamedTuple):
         return self.point is None or isinstance(self.element, Camera)
 
 
-def start_drag(state: State, width: int, height: int, x: int, y: int, point: Triple | None) -> DragStart:
-    """Start a drag at pixel x, y of a picture of this size."""
-    return DragStart(projection_of(state.scene.camera, width, height), x, y, state.element, state.scene.camera, point)
-
-
-def apply_drag(state: State, action: str, start: DragStart, x: int, y: int) -> State:
-    """The state with the pointer at x, y. KeyError if `action` is not in DRAGS."""
-    return DRAGS[action](state.with_message(""), start, x, y)
-
-
 def move(state: State, start: DragStart, x: int, y: int) -> State:
     """Move the element parallel to the image plane, or along an axis, with its point under the pointer."""
     if start.point is None or start.moves_camera:
@@ -70,14 +59,8 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
         distance = start.projection.distance_along(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.point, axis)
         if distance is None:
             return state.with_message("the view is along the axis: nothing moves")
-        offset = linear_combination(distance, axis, 0.0, axis)
-    else:
-        offset = subtract(
-            point_under_pointer(start, x, y, start.point), point_under_pointer(start, start.x, start.y, start.point)
-        )
-    moved, clamped = translate(start.element, offset, 1.0)
-    state = state.edit_element(moved, *CHANGE)
-    return state.with_message("the end of the range: no further") if clamped else state
+        return motion.move(state, start.element, axis, distance, *CHANGE)
+    return motion.move(state, start.element, pointer_offset(start, x, y, start.point), 1.0, *CHANGE)
 
 
 def place(state: State, start: DragStart, x: int, y: int) -> State:
@@ -86,40 +69,40 @@ def place(state: State, start: DragStart, x: int, y: int) -> State:
     if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
         return move(state, start, x, y)
     others, view = state.scene.edit(state.selected), start.projection
-    behind = pick(others, view.width, view.height, x, y)
-    point = surface_point(behind, start.camera, view.width, view.height, x, y) if behind else None
-    there = aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, behind, point)
-    middle = extent(shape)
-    assert middle
-    at, _ = translate(shape, subtract(there.point, middle[0]), 1.0)
-    standing = stand(at, there.point, UP)
+    there = aim(
+        view,
+        state.size,
+        x + PIXEL_CENTRE,
+        y + PIXEL_CENTRE,
+        *surface_at(pick, others, view.width, view.height, x, y),
+    )
+    standing = stand(shifted(shape, subtract(there.point, middle_of(shape)[0])), there.point, UP)
     return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)
 
 
-def point_under_pointer(start: DragStart, x: int, y: int, point: Triple) -> Triple:
-    """The point under the pointer at the depth of `point`."""
-    return start.projection.point_at_depth(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.projection.depth(point))
+def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
+    """The way of the pointer to x, y, at the depth of `point`."""
+    depth = start.projection.depth(point)
+    there, here = (
+        start.projection.point_at_depth(column + PIXEL_CENTRE, row + PIXEL_CENTRE, depth)
+        for column, row in ((x, y), (start.x, start.y))
+    )
+    return subtract(there, here)
 
 
 def turn(state: State, start: DragStart, x: int, y: int) -> State:
     """Turn the element about the picture's vertical and horizontal axes, or about an axis of the scene."""
     if isinstance(start.element, Camera):
         return look(state, start, x, y)
-    if not can_turn(start.element):
-        return state.with_message(f"{start.element.title} looks the same from all sides: nothing to turn")
     right, down = drag_angles(start, x, y)
-    axis = WORLD_AXES.get(state.frame)
-    if axis:
-        return state.edit_element(rotate(start.element, axis, right), *CHANGE)
-    across, up = turn_axis(start.camera, 0), turn_axis(start.camera, 1)
-    hand = handedness(start.camera)
-    return state.edit_element(rotate(rotate(start.element, up, right * hand), across, down * hand), *CHANGE)
+    turns = [(UPWARD, right), (RIGHT, -down)]
+    return motion.turn(state, start.element, turns[: 1 if state.frame in WORLD_AXES else 2], *CHANGE)
 
 
 def look(state: State, start: DragStart, x: int, y: int) -> State:
     """Turn the camera so that distant objects follow the pointer."""
     step = start.camera.fov / start.projection.width
-    camera = turn_camera(start.camera, (start.x - x) * step, (y - start.y) * step)
+    camera = motion.turn_camera(start.camera, (start.x - x) * step, (y - start.y) * step)
     return state.edit_camera(camera, *CHANGE)
 
 
@@ -128,20 +111,16 @@ def orbit(state: State, start: DragStart, x: int, y: int) -> State:
 
     The pivot stays where it is in the picture, and everything in front of it follows the pointer.
     """
-    selected = None if isinstance(start.element, Camera) else extent(start.element)
-    pivot = selected[0] if selected else scene_centre(state.scene)
+    pivot, _ = extent(start.element) or (scene_centre(state.scene), 0.0)
     right, down = drag_angles(start, x, y)
-    return state.edit_camera(orbit_camera(start.camera, pivot, right, -down), *CHANGE)
+    return state.edit_camera(motion.orbit_camera(start.camera, pivot, right, -down), *CHANGE)
 
 
 def pan(state: State, start: DragStart, x: int, y: int) -> State:
     """Move the camera parallel to its image plane, so that the point under the pointer stays there."""
     ahead = linear_combination(1.0, start.camera.position, state.size, start.camera.direction)
-    point = start.point or ahead
-    offset = subtract(point_under_pointer(start, start.x, start.y, point), point_under_pointer(start, x, y, point))
-    return state.edit_camera(
-        start.camera.replace(position=clamp_point(linear_combination(1.0, start.camera.position, 1.0, offset))), *CHANGE
-    )
+    x_way, y_way, z_way = pointer_offset(start, x, y, start.point or ahead)
+    return state.edit_camera(shifted(start.camera, (-x_way, -y_way, -z_way)), *CHANGE)
 
 
 def drag_angles(start: DragStart, x: int, y: int) -> tuple[float, float]:

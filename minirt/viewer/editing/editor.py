@@ -13,8 +13,9 @@ A typed value is a number, or after = a change of the present one:
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
+from math import fmod
 from operator import add, mul, sub, truediv
 from typing import Any
 
@@ -23,27 +24,11 @@ from minirt.fields import Colour, Count, Field, MeshFile, Point, number
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
 from minirt.viewer.editing import motion, structure
+from minirt.viewer.editing import state as states
 from minirt.viewer.editing.adding import drop, keep_standing
-from minirt.viewer.editing.motion import (
-    WORLD_AXES,
-    can_turn,
-    handedness,
-    roll_camera,
-    rotate,
-    translate,
-    turn_axis,
-    turn_camera,
-)
-from minirt.viewer.editing.state import (
-    Frame,
-    State,
-    field_names,
-    redo,
-    select_camera,
-    select_neighbour,
-    select_next_light,
-    undo,
-)
+from minirt.viewer.editing.motion import FORWARD, RIGHT, UPWARD, WORLD_AXES
+from minirt.viewer.editing.projection import field_names
+from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import values
 from minirt.viewer.files import next_file
 
@@ -51,7 +36,10 @@ OPERATIONS: dict[str, Callable[[float, float], float]] = {"*": mul, "/": truediv
 CHARACTERS = "0123456789.,+-*/="  # of which typed values are made
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
 TURN_STEP = 5.0  # degrees
-RIGHT, UP, FORWARD = range(3)  # axes of `camera_frame`
+RATE = 8.0  # steps a second, at first
+PATIENCE = 1.0  # seconds after which the steps of a held key begin to grow
+GROWTH = 2.0  # of the rate in each further second, as a multiple of the first rate
+FIRST_PART = 0.5  # of the first step, which comes with the press
 
 
 def set_typed(state: State, text: str, now: float) -> State:
@@ -102,6 +90,45 @@ def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> S
         return state.with_message(str(error))
 
 
+@dataclass
+class HeldKey:
+    """A key that is held down. Its steps are proportional to time and independent of the frame rate.
+
+    A part of the first step comes with the press, the rest follows until it is time for the second one: nothing stands
+    still meanwhile. Each part of it replaces the part before: a tap leaves what one whole step leaves, to the last
+    digit. After t seconds, at most PATIENCE, a key has taken max(1, RATE t) steps; after that its rate grows.
+    """
+
+    action: str
+    since: float  # seconds
+    size: float  # of its first step
+    is_typed: bool  # a character, of which Shift may be a part: its steps are whole ones
+    done: float = 0.0  # steps until now
+    first: tuple[State, State] | None = None  # states before the first step and after a part of it
+
+    def steps(self, now: float) -> float:
+        """Return the steps until now."""
+        seconds = now - self.since
+        steps = RATE * (seconds + GROWTH / 2 * max(0.0, seconds - PATIENCE) ** 2)
+        return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
+
+    def advance(self, state: State, steps: float, size: float, now: float) -> State:
+        """Return the state after so many steps since the press; those that were taken stay. `size`: of a step."""
+        done, self.done = self.done, max(self.done, steps)
+        if self.done == done:
+            return state
+        if self.first and self.first[1] is state:
+            done, state, size = 0.0, self.first[0], self.size
+        size = 1.0 if self.is_typed else size
+        before = state
+        if done < 1:
+            state = apply(before, self.action, (min(self.done, 1.0) - done) * size, now)
+        if self.done > 1:
+            state = apply(state, self.action, (self.done - max(done, 1.0)) * size, now)
+        self.first = (before, state) if done == 0.0 and self.done < 1 else None
+        return state
+
+
 def move(axis: int, sign: float, state: State, amount: float, now: float) -> State:
     """Move the selected element: the camera along its own axes, any other element along those of the frame."""
     element = state.element
@@ -109,29 +136,22 @@ def move(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
         return state.with_message(f"{element.title} has no position to move")
     frame = Frame.VIEW if isinstance(element, Camera) else state.frame
     direction = WORLD_AXES.get(frame) or camera_frame(state.scene.camera)[axis]
-    moved, clamped = translate(element, direction, sign * amount * state.stride)
-    state = state.edit_element(moved, "move", now)
-    return state.with_message("the end of the range: no further") if clamped else state
+    return motion.move(state, element, direction, sign * amount * state.stride, "move", now)
 
 
 def turn(axis: int, sign: float, state: State, amount: float, now: float) -> State:
-    """Turn the selected element: to the right about UP, upwards about RIGHT, clockwise about FORWARD."""
+    """Turn the selected element: to the right about UPWARD, upwards about RIGHT, clockwise about FORWARD."""
     element, angle = state.element, sign * amount * TURN_STEP
     if isinstance(element, Camera):
         if axis == FORWARD:
-            return state.edit_element(roll_camera(element, angle), "roll", now)
-        return state.edit_element(turn_camera(element, angle * (axis == UP), angle * (axis == RIGHT)), "turn", now)
-    if not can_turn(element):
-        return state.with_message(f"{element.title} looks the same from all sides: nothing to turn")
-    about = WORLD_AXES.get(state.frame)
-    if not about:
-        # Seen from the camera the front goes right, up or clockwise: only up is opposite to the right-handed rotation.
-        about, angle = turn_axis(state.scene.camera, axis), angle * handedness(state.scene.camera)
-        angle = -angle if axis == RIGHT else angle
-    turned = state.edit_element(rotate(element, about, angle), "turn", now)
-    if turned is state:
+            roll = fmod(element.roll + angle * motion.handedness(element), 360.0)
+            return state.edit_element(element.replace(roll=roll), "roll", now)
+        turned = motion.turn_camera(element, angle * (axis == UPWARD), angle * (axis == RIGHT))
+        return state.edit_element(turned, "turn", now)
+    after = motion.turn(state, element, [(axis, angle)], "turn", now)
+    if after is state:
         return state.with_message(f"{element.title} looks the same after a turn about its own axis")
-    return turned
+    return after
 
 
 def change_value(sign: float, state: State, amount: float, now: float) -> State:
@@ -175,18 +195,18 @@ def next_frame(state: State, _amount: float, _now: float) -> State:
 
 
 EDITS: dict[str, Edit] = {
-    "select next": partial(select_neighbour, 1),
-    "select previous": partial(select_neighbour, -1),
-    "select camera": select_camera,
-    "select light": select_next_light,
+    "select next": partial(states.select_neighbour, 1),
+    "select previous": partial(states.select_neighbour, -1),
+    "select camera": states.select_camera,
+    "select light": states.select_next_light,
     "left": partial(move, RIGHT, -1.0),
     "right": partial(move, RIGHT, 1.0),
     "forward": partial(move, FORWARD, 1.0),
     "back": partial(move, FORWARD, -1.0),
-    "down": partial(move, UP, -1.0),
-    "up": partial(move, UP, 1.0),
-    "turn left": partial(turn, UP, -1.0),
-    "turn right": partial(turn, UP, 1.0),
+    "down": partial(move, UPWARD, -1.0),
+    "up": partial(move, UPWARD, 1.0),
+    "turn left": partial(turn, UPWARD, -1.0),
+    "turn right": partial(turn, UPWARD, 1.0),
     "turn up": partial(turn, RIGHT, 1.0),
     "turn down": partial(turn, RIGHT, -1.0),
     "roll left": partial(turn, FORWARD, -1.0),
@@ -198,15 +218,15 @@ EDITS: dict[str, Edit] = {
     "farther": partial(turn_wheel, -1.0),
     "drop": drop,
     "next value": next_value,
-    "add attribute": structure.add_attribute,
+    "add attribute": partial(structure.add, structure.ATTRIBUTE, 1),
     "remove attribute": structure.remove_attribute,
     "next tone": motion.next_tone,
     "look at": motion.look_at,
     "reset camera": motion.reset_camera,
-    "undo": undo,
-    "redo": redo,
-    "add": partial(structure.add, 1),
-    "add previous": partial(structure.add, -1),
+    "undo": states.undo,
+    "redo": states.redo,
+    "add": partial(structure.add, structure.ELEMENT, 1),
+    "add previous": partial(structure.add, structure.ELEMENT, -1),
     "duplicate": structure.duplicate,
     "delete": structure.delete,
 }

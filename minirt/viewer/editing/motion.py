@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from math import atan, atan2, copysign, cos, degrees, dist, fmod, fsum, hypot, pi, radians, sin, tan
+from collections.abc import Sequence
+from math import atan, atan2, copysign, cos, degrees, dist, fsum, hypot, pi, radians, sin, tan
 from typing import Any, TypeVar
 
-from minirt.element import Element, fields_of
+from minirt.element import Element
 from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Point, Triple, clamp, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
 from minirt.scene.elements import TONES, linear_combination
 from minirt.shapes.shape import Oriented
-from minirt.viewer.editing.projection import dot, extent, scene_centre, subtract
-from minirt.viewer.editing.state import Frame, State, field_names
+from minirt.viewer.editing.projection import dot, extent, field_names, scene_centre, subtract
+from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import NOISE, neat_direction, round_length, shows_roll
 
 Moved = TypeVar("Moved", bound=Element)
 
+RIGHT, UPWARD, FORWARD = range(3)  # axes of `camera_frame`
 STEEPEST = pi / 2 - 1e-8  # radians: nobody sees the difference to straight up, which would have no heading
 WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
@@ -49,33 +51,65 @@ def clamp_point(point: Triple) -> Triple:
     return x, y, z
 
 
-def rotate(element: Element, axis: Triple, degrees: float) -> Element:
+def shifted(element: Moved, axis: Triple, distance: float = 1.0) -> Moved:
+    """Move an element as `translate` does."""
+    return translate(element, axis, distance)[0]
+
+
+def rotate(element: Element, axis: Triple, angle: float) -> Element:
     """Rotate the directions of an element about a unit vector, right-handed, and its points about their mean.
 
-    An element that looks the same from all sides stays as it is.
+    angle: degrees. The roll of the element keeps its frame whole.
     """
-    if not can_turn(element):
-        return element
     directions = {name: getattr(element, name) for name in field_names(type(element), Direction)}
-    rotated = {name: neat_rotation(direction, axis, degrees) for name, direction in directions.items()}
-    changes = with_directions(element, rotated, axis, degrees)
+    changes: dict[str, Any] = {name: neat_rotation(each, axis, angle) for name, each in directions.items()}
+    if isinstance(element, Oriented) and shows_roll(element):
+        # Compared with the frame without a roll about the new axis, however far that is from the one before.
+        u, v = across(element.replace(**changes, roll=0.0))
+        rotated = rodrigues(across(element)[0], axis, angle)
+        changes["roll"] = degrees(atan2(dot(rotated, v), dot(rotated, u)))
     points = {name: getattr(element, name) for name in field_names(type(element), Point)}
     if len(points) > 1:
         x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
         for name, point in points.items():
-            offset = rodrigues(linear_combination(1.0, point, -1.0, (x, y, z)), axis, degrees)
+            offset = rodrigues(linear_combination(1.0, point, -1.0, (x, y, z)), axis, angle)
             changes[name] = clamp_point(linear_combination(1.0, (x, y, z), 1.0, offset))
     return element.replace(**changes)
 
 
-def rotate_direction(direction: Triple, axis: Triple, degrees: float) -> Triple:
-    """Rotate a unit vector about the unit vector `axis`, and normalise it."""
-    return unit(rodrigues(direction, axis, degrees))
+def move(state: State, element: Element, axis: Triple, distance: float, kind: str, now: float) -> State:
+    """Move the selected element along an axis from where it was as `element`."""
+    moved, clamped = translate(element, axis, distance)
+    state = state.edit_element(moved, kind, now)
+    return state.with_message("the end of the range: no further") if clamped else state
 
 
-def neat_rotation(direction: Triple, axis: Triple, degrees: float) -> Triple:
+def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kind: str, now: float) -> State:
+    """Turn the selected element from what it was as `element`, about axes of the view or the one of the frame.
+
+    turns: the number of an axis in `camera_frame`, and the angle in degrees by which the front goes right about UPWARD,
+    up about RIGHT, or clockwise about FORWARD.
+    """
+    if not can_turn(element):
+        return state.with_message(f"{element.title} looks the same from all sides: nothing to turn")
+    camera, world = state.scene.camera, WORLD_AXES.get(state.frame)
+    for axis, angle in turns:
+        if world:
+            element = rotate(element, world, angle)
+        else:  # seen from the camera, only up is opposite to the right-handed rotation
+            seen = handedness(camera) * (-angle if axis == RIGHT else angle)
+            element = rotate(element, turn_axis(camera, axis), seen)
+    return state.edit_element(element, kind, now)
+
+
+def rotate_direction(direction: Triple, axis: Triple, angle: float) -> Triple:
+    """Rotate a unit vector about the unit vector `axis` by degrees, and normalise it."""
+    return unit(rodrigues(direction, axis, angle))
+
+
+def neat_rotation(direction: Triple, axis: Triple, angle: float) -> Triple:
     """Rotate a unit vector about another, and round it; a direction along the axis keeps all its digits."""
-    rotated = rotate_direction(direction, axis, degrees)
+    rotated = rotate_direction(direction, axis, angle)
     return direction if dist(rotated, direction) < NOISE else neat_direction(rotated, keep_heading=False)
 
 
@@ -103,11 +137,6 @@ def orbit_camera(camera: Camera, pivot: Triple, right: float, up: float) -> Came
     return turned.replace(position=clamp_point(position))
 
 
-def roll_camera(camera: Camera, degrees: float) -> Camera:
-    """Roll the camera about its direction, clockwise."""
-    return camera.replace(roll=fmod(camera.roll + degrees * handedness(camera), 360.0))
-
-
 def handedness(camera: Camera) -> float:
     """Return -1 for a mirrored picture, in which right and clockwise are the opposite in the scene, otherwise 1."""
     return -1.0 if camera.left_handed else 1.0
@@ -115,11 +144,10 @@ def handedness(camera: Camera) -> float:
 
 def can_turn(element: Element) -> bool:
     """Whether some rotation of an element can be seen."""
+    kind = type(element)
     if isinstance(element, Oriented):
         return element.shows_axis
-    fields = fields_of(type(element))
-    points = sum(isinstance(field, Point) for field in fields)
-    return points > 1 or any(isinstance(field, Direction) for field in fields)
+    return len(field_names(kind, Point)) > 1 or bool(field_names(kind, Direction))
 
 
 def turn_axis(camera: Camera, axis: int) -> Triple:
@@ -129,21 +157,7 @@ def turn_axis(camera: Camera, axis: int) -> Triple:
     turns on its foot, as on a turntable, and does not tip over.
     """
     direction = camera_frame(camera)[axis]
-    return (0.0, copysign(1.0, direction[1]), 0.0) if axis == 1 and abs(direction[1]) > LEVEL else direction
-
-
-def with_directions(element: Element, directions: dict[str, Any], about: Triple, angle: float) -> dict[str, Any]:
-    """The changed fields of an element that was rotated: its `directions`, and the roll that keeps its frame whole.
-
-    `directions` are rotated and rounded already. The rotated frame is compared with the frame without a roll about the
-    new axis, however far that frame is from the one before.
-    """
-    if not (isinstance(element, Oriented) and shows_roll(element)):
-        return directions
-    first, _ = across(element)
-    rotated = rodrigues(first, about, angle)
-    u, v = across(element.replace(**directions, roll=0.0))
-    return directions | {"roll": degrees(atan2(dot(rotated, v), dot(rotated, u)))}
+    return (0.0, copysign(1.0, direction[1]), 0.0) if axis == UPWARD and abs(direction[1]) > LEVEL else direction
 
 
 def across(shape: Oriented) -> tuple[Triple, Triple]:
@@ -164,7 +178,7 @@ def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
 def look_at(state: State, _amount: float, now: float) -> State:
     """Move the camera, without turning it, so that the selected element is centred and fills the picture."""
     element, camera = state.element, state.scene.camera
-    bounds = None if isinstance(element, Camera) else extent(element)
+    bounds = extent(element)
     if bounds is None:
         return state.with_message(f"select an element with a position to look at: {element.title} has none")
     centre, radius = bounds
@@ -181,8 +195,7 @@ def approach(state: State, steps: float, now: float) -> State:
     _, _, forward = camera_frame(camera)
     ahead = dot(subtract(scene_centre(state.scene), camera.position), forward)
     distance = max(ahead, state.size * NEAREST) * (1 - (1 - APPROACH) ** steps)
-    moved = camera.replace(position=clamp_point(linear_combination(1.0, camera.position, distance, forward)))
-    return state.edit_camera(moved, "approach", now)
+    return state.edit_camera(shifted(camera, forward, distance), "approach", now)
 
 
 def next_tone(state: State, _amount: float, now: float) -> State:
@@ -197,12 +210,10 @@ def focus(state: State, point: Triple | None, now: float) -> State:
     if point is None:
         return state.with_message("nothing there to focus on")
     camera = state.scene.camera
-    distance = sum(f * (p - e) for f, p, e in zip(camera.direction, point, camera.position, strict=True))
-    distance = round_length(max(distance, LEAST_LENGTH))
+    distance = round_length(max(dot(camera.direction, subtract(point, camera.position)), LEAST_LENGTH))
     lens = camera.lens or round_length(LENS * distance)
-    focused = camera.replace(focus=distance, lens=lens)
-    changed = state.change(state.scene.replace(camera, focused), "focus", now)
-    return changed.with_message(f"focus: {spelled(distance)}, lens: {spelled(lens)}")
+    state = state.edit_camera(camera.replace(focus=distance, lens=lens), "focus", now)
+    return state.with_message(f"focus: {spelled(distance)}, lens: {spelled(lens)}")
 
 
 def reset_camera(state: State, _amount: float, now: float) -> State:

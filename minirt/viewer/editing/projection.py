@@ -2,31 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import dist, hypot
+from collections.abc import Callable, Sequence
+from math import dist, hypot, inf
 from statistics import median
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
 from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp, unit
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.queries.pick import surface_normal
+from minirt.rendering.queries.pick import surface_normal, surface_point
 from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 
 Pixel = tuple[float, float]
+Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 
 MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in front of the eye are on no picture
 NEAR = 1e-3  # of the distance to the eye: depth at which a line is clipped
 FAR = 1e3  # times that distance: length to which a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
 Extent = tuple[Triple, float]  # centre and radius
-Item = TypeVar("Item")
 UP: Triple = (0.0, 1.0, 0.0)
 FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
 UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
-SAMPLE_SIZE = 4096  # items; their median is within some per cent of that of a million
+SAMPLE_SIZE = 4096  # elements, evenly spaced in the file; their median is within some per cent of that of a million
 BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
 SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
 PICTURE = 640, 360  # pixels of a usual window, where none is known
@@ -114,25 +114,35 @@ def subtract(a: Triple, b: Triple) -> Triple:
 
 
 def extent(element: Element) -> Extent | None:
-    """Centre and radius of an element: half the longest side of its bounding box, or 0 at its point, or None."""
+    """Centre and radius of an element: half the longest side of its box, or 0 at its point; None for a camera."""
     box = element.bounds() if isinstance(element, Shape) else None
     if box is not None:
         (a, b, c), (x, y, z) = box
         return ((a + x) / 2, (b + y) / 2, (c + z) / 2), max(x - a, y - b, z - c) / 2
-    points = [getattr(element, each.name) for each in fields_of(type(element)) if isinstance(each, Point)]
-    return (points[0], 0.0) if points else None
+    point = None if isinstance(element, Camera) else position_of(element)
+    return (point, 0.0) if point else None
 
 
-def sample(items: Sequence[Item]) -> Sequence[Item]:
-    """Select at most SAMPLE_SIZE items, evenly spaced in the file."""
-    return items[:: max(1, -(-len(items) // SAMPLE_SIZE))]
+def field_names(kind: type[Element], field_type: type[Any]) -> tuple[str, ...]:
+    """Names of the fields of a type, such as the points or the directions."""
+    return tuple(each.name for each in fields_of(kind) if isinstance(each, field_type))
+
+
+def position_of(element: Element) -> Triple | None:
+    """Position of an element: its first point, None if it has no points."""
+    names = field_names(type(element), Point)
+    position: Triple | None = getattr(element, names[0]) if names else None
+    return position
 
 
 def extents(scene: Scene) -> list[Extent]:
     """Extents of the bounded shapes of a scene or, if there are none, of all elements with a position."""
-    bounded: list[Element] = [each for each in sample(scene.shapes) if each.bounds() is not None]
-    elements = bounded or [each for each in sample(scene.elements) if not isinstance(each, Camera)]
-    return list(filter(None, map(extent, elements)))
+
+    def sampled(elements: Sequence[Element]) -> Sequence[Element]:
+        return elements[:: max(1, -(-len(elements) // SAMPLE_SIZE))]
+
+    bounded = [each for each in sampled(scene.shapes) if isinstance(each, Shape) and each.bounds() is not None]
+    return list(filter(None, map(extent, bounded or sampled(scene.elements))))
 
 
 def scene_size(scene: Scene) -> float:
@@ -142,8 +152,8 @@ def scene_size(scene: Scene) -> float:
     camera looks at.
     """
     distances = [max(dist(scene.camera.position, centre), radius) for centre, radius in extents(scene)]
-    known = any(distances)
-    usual = median(distance for distance in distances if distance > 0) if known else looked_at_distance(scene.camera)
+    apart = [distance for distance in distances if distance > 0]
+    usual = median(apart) if apart else looked_at_distance(scene.camera)
     return clamp(usual, LEAST_LENGTH, FARTHEST)
 
 
@@ -183,35 +193,27 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
 
     size: of the scene.
     """
-    ray = view.ray(x, y)
+    ray, height = view.ray(x, y), view.eye[1]
+    to_ground = -height / ray[1] if height * ray[1] < 0 else inf
     normal: Triple | None = None
     if shape and point and dist(view.eye, point) <= BACKGROUND * size:
         normal = surface_normal(shape, point, ray)
+    elif shape or to_ground > BACKGROUND * size:
+        point = linear_combination(1.0, view.eye, size, ray)
     else:
-        distance = ground_distance(view.eye, ray)
-        point = linear_combination(1.0, view.eye, size if distance is None else distance, ray)
-        if distance is None or shape or distance > BACKGROUND * size:
-            point = linear_combination(1.0, view.eye, size, ray)
-        else:
-            point, normal = (point[0], 0.0, point[2]), UP if view.eye[1] > 0 else (0.0, -1.0, 0.0)
-    return Aim(view.eye, point, normal, SHARE * picture_side(view, point))
+        x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
+        point, normal = (x, 0.0, z), UP if height > 0 else (0.0, -1.0, 0.0)
+    return Aim(view.eye, point, normal, 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up)))
+
+
+def surface_at(pick: Pick, scene: Scene, width: int, height: int, x: int, y: int) -> tuple[Shape | None, Triple | None]:
+    """The shape at a pixel of a picture of that size, and the point on it; None for both where the background is."""
+    shape = pick(scene, width, height, x, y)
+    return shape, surface_point(shape, scene.camera, width, height, x, y) if shape else None
 
 
 def aim_ahead(camera: Camera, size: float) -> Aim:
     """Aim through the middle of the picture, a little below it, without a look at the shapes."""
     width, height = PICTURE
     view = projection_of(camera, width, height)
-    return aim(view, size or looked_at_distance(camera), width / 2, 0.55 * height, None, None)
-
-
-def ground_distance(eye: Triple, ray: Triple) -> float | None:
-    """Distance along a ray to the ground y = 0; None where the ray does not reach it."""
-    return -eye[1] / ray[1] if eye[1] * ray[1] < 0 else None
-
-
-def picture_side(view: Projection, point: Triple) -> float:
-    """Length of the picture's shorter side in the scene, at the depth of a point."""
-    depth = view.depth(point)
-    middle = view.point_at_depth(view.width / 2, view.height / 2, depth)
-    sides = view.point_at_depth(0.0, view.height / 2, depth), view.point_at_depth(view.width / 2, 0.0, depth)
-    return 2 * min(dist(middle, side) for side in sides)
+    return aim(view, size, width / 2, 0.55 * height, None, None)

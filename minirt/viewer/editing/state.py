@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import partial
 from operator import indexOf
-from typing import Any
+from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
-from minirt.fields import Direction, Point, Triple
+from minirt.fields import Direction, Point
 from minirt.scene import Camera, Lamp, Scene
-from minirt.shapes import Shape
-from minirt.viewer.editing.projection import Aim, scene_size
+from minirt.viewer.editing.projection import Aim, field_names, scene_size
 from minirt.viewer.editing.values import Value, is_editable, nice_number, round_changes, values
 
 STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
@@ -29,8 +29,7 @@ class Frame(Enum):
     Z = "Z axis"
 
 
-@dataclass(frozen=True)
-class Snapshot:
+class Snapshot(NamedTuple):
     """An entry of the undo and redo stacks."""
 
     scene: Scene
@@ -51,7 +50,7 @@ class State:
     kind_index: int = 0  # of the last added element in `addable_kinds`
     aim: Aim | None = field(default=None, repr=False)  # where the next element goes; None: straight ahead
     undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
-    redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # latest first
+    redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # the next is the last
     last_change: tuple[str, float] | None = None  # its kind and time, while further changes may be merged with it
 
     @property
@@ -69,6 +68,11 @@ class State:
     def stride(self) -> float:
         """One step of a movement in scene units: a nice number."""
         return nice_number(STEP_SHARE * self.size)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The current scene and selection."""
+        return Snapshot(self.scene.drop_caches(), self.selected)
 
     def index_in(self, scene: Scene) -> int | None:
         """Index of the selected element in an older or newer version of the scene; None if that lacks the element."""
@@ -98,27 +102,20 @@ class State:
         """
         last = self.last_change
         merged = bool(kind) and last is not None and last[0] == kind and now - last[1] <= MERGE_SECONDS
-        past = (
-            self.undo_stack
-            if merged
-            else (*self.undo_stack[1 - MAX_UNDO :], Snapshot(self.scene.drop_caches(), self.selected))
-        )
+        past = self.undo_stack if merged else (*self.undo_stack[1 - MAX_UNDO :], self.snapshot)
         selected = self.selected if selected is None else selected
         return replace(self, scene=scene, selected=selected, undo_stack=past, redo_stack=(), last_change=(kind, now))
 
-    def edit_element(self, element: Element, kind: str, now: float) -> State:
-        """Replace the selected element by `element`, whose changed numbers are rounded."""
-        element = round_changes(self.element, element, self.stride)
-        if element == self.element:
-            return self
-        return self.change(self.scene.edit(self.selected, element), kind, now)
+    def edit_element(self, element: Element, kind: str, now: float, index: int | None = None) -> State:
+        """Replace the selected element, or another one, by `element`, whose changed numbers are rounded."""
+        index = self.selected if index is None else index
+        old = self.scene.elements[index]
+        element = round_changes(old, element, self.stride)
+        return self if element == old else self.change(self.scene.edit(index, element), kind, now)
 
     def edit_camera(self, camera: Camera, kind: str, now: float) -> State:
         """Replace the scene's camera by `camera`, whose changed numbers are rounded."""
-        camera = round_changes(self.scene.camera, camera, self.stride)
-        if camera == self.scene.camera:
-            return self
-        return self.change(self.scene.replace(self.scene.camera, camera), kind, now)
+        return self.edit_element(camera, kind, now, next(self.scene.indices_of(Camera)))
 
 
 def initial_state(scene: Scene) -> State:
@@ -129,18 +126,6 @@ def initial_state(scene: Scene) -> State:
 def index_of(scene: Scene, element: Element) -> int:
     """Index in `scene.elements` of this very object."""
     return indexOf(map(id, scene.elements), id(element))
-
-
-def field_names(kind: type[Element], field_type: type[Any]) -> tuple[str, ...]:
-    """Names of the fields of a type, such as the points or the directions."""
-    return tuple(each.name for each in fields_of(kind) if isinstance(each, field_type))
-
-
-def position_of(element: Element) -> Triple | None:
-    """Position of an element: its first point, None if it has no points."""
-    names = field_names(type(element), Point)
-    position: Triple | None = getattr(element, names[0]) if names else None
-    return position
 
 
 def can_edit(kind: type[Element]) -> bool:
@@ -168,55 +153,35 @@ def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> 
     return state.select(next((index for index in lights if index > state.selected), lights[0]))
 
 
-def select_shape(state: State, shape: Shape | None) -> State:
-    """Select the shape that a pixel shows, or keep the selection if it shows none."""
-    state = state.with_message("" if shape else "there is nothing")
-    return state.select(index_of(state.scene, shape)) if shape else state
+def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Take the last snapshot from the stack of undo or redo, and give the current one to the other stack.
+
+    The active value stays if the selected element stays.
+    """
+    stack: tuple[Snapshot, ...] = getattr(state, f"{taken}_stack")
+    if not stack:
+        return state.with_message(f"nothing to {taken}")
+    scene, selected = stack[-1]
+    stacks: dict[str, Any] = {
+        f"{taken}_stack": stack[:-1],
+        f"{given}_stack": (*getattr(state, f"{given}_stack"), state.snapshot),
+    }
+    value_index = state.value_index if selected == state.selected else 0
+    return replace(state, scene=scene, selected=selected, value_index=value_index, last_change=None, **stacks)
 
 
-def undo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Undo the last change, and restore the selection before it."""
-    if not state.undo_stack:
-        return state.with_message("nothing to undo")
-    return restore(
-        state.undo_stack[-1],
-        replace(state, undo_stack=state.undo_stack[:-1], redo_stack=(*state.redo_stack, current_snapshot(state))),
-    )
-
-
-def redo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Redo the change that was undone last."""
-    if not state.redo_stack:
-        return state.with_message("nothing to redo")
-    return restore(
-        state.redo_stack[-1],
-        replace(state, undo_stack=(*state.undo_stack, current_snapshot(state)), redo_stack=state.redo_stack[:-1]),
-    )
-
-
-def current_snapshot(state: State) -> Snapshot:
-    """Snapshot of the current scene and selection."""
-    return Snapshot(state.scene.drop_caches(), state.selected)
+undo, redo = partial(travel, "undo", "redo"), partial(travel, "redo", "undo")
 
 
 def stack_after_reading(state: State) -> tuple[Snapshot, ...]:
     """Undo stack of a state whose file was read anew. Its oldest entries are dropped where it has too many items."""
-    stack = (*state.undo_stack[1 - MAX_UNDO :], current_snapshot(state))
-    pages: set[int] = set()
-    items = 0
+    stack = (*state.undo_stack[1 - MAX_UNDO :], state.snapshot)
+    pages: dict[int, int] = {}  # their numbers of items, by identity
     for number in range(len(stack) - 1, -1, -1):
-        new = {id(page): len(page.items) for page in stack[number].scene.pages if id(page) not in pages}
-        pages.update(new)
-        items += sum(new.values())
-        if items > MAX_ITEMS and number < len(stack) - 1:
-            return stack[number + 1 :]
+        pages.update((id(page), len(page.items)) for page in stack[number].scene.pages)
+        if sum(pages.values()) > MAX_ITEMS:
+            return stack[min(number + 1, len(stack) - 1) :]
     return stack
-
-
-def restore(snapshot: Snapshot, state: State) -> State:
-    """The state with the scene of a snapshot. The active value stays if the selected element stays."""
-    value_index = state.value_index if snapshot.selected == state.selected else 0
-    return replace(state, scene=snapshot.scene, selected=snapshot.selected, value_index=value_index, last_change=None)
 
 
 def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:

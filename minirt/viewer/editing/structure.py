@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -14,9 +14,9 @@ from minirt.scene import Lamp
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
-from minirt.viewer.editing.adding import addable_kinds, default_element, default_value, first_lamp
+from minirt.viewer.editing.adding import SIZE, addable_kinds, default_element, default_value, first_lamp
 from minirt.viewer.editing.state import State, index_of, undo
-from minirt.viewer.editing.values import values
+from minirt.viewer.editing.values import nice_number, values
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 
@@ -24,19 +24,14 @@ ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see
 def duplicate(state: State, _amount: float, now: float) -> State:
     """Insert a copy after the selected element, at the same position, and select it."""
     element = state.element
-    copy = copy_element(element)
-    if copy is None:
+    # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
+    repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
+    if not repeatable:
         return state.with_message(f"a scene has one {element.title}")
+    copy = repeatable[0](**{each.name: getattr(element, each.name) for each in fields_of(type(element))})
     scene = state.scene.edit(state.selected, element, copy)
     state = state.select(state.selected).change(scene, "", now, state.selected + 1)
     return state.with_message(f"a copy of the {element.title}, at the same position")
-
-
-def copy_element(element: Element) -> Element | None:
-    """Copy an element. A kind that a scene has once is copied as its derived repeatable kind; None without one."""
-    repeatable = (kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once)
-    kind = next(repeatable, None)
-    return kind(**{each.name: getattr(element, each.name) for each in fields_of(type(element))}) if kind else None
 
 
 def delete(state: State, _amount: float, now: float) -> State:
@@ -49,77 +44,63 @@ def delete(state: State, _amount: float, now: float) -> State:
     return state.select(state.selected).with_message(f"deleted the {element.title}")
 
 
-def default_elements(kinds: list[type[Element]], numbers: Iterable[int], state: State) -> Iterator[tuple[int, Element]]:
-    """Yield default elements of the kinds with these numbers; kinds that need a missing file, or cannot be so small or
-    far away, are skipped."""
-    for number in numbers:
-        with suppress(LookupError, ElementError):
-            yield number, default_element(kinds[number], state)
-
-
-def is_adding(state: State, kind: str = ELEMENT) -> bool:
+def is_adding(state: State, group: str = ELEMENT) -> bool:
     """Whether the last change added an element or an attribute, which may still be replaced by another one."""
-    return state.last_change is not None and state.last_change[0] == kind
+    return state.last_change is not None and state.last_change[0] == group
 
 
-def before_adding(state: State, kind: str = ELEMENT) -> State:
+def before_adding(state: State, group: str) -> State:
     """The state without the element or attribute that was just added."""
-    return undo(state) if is_adding(state, kind) else state
+    return undo(state) if is_adding(state, group) else state
 
 
-def add(step: int, state: State, _amount: float, now: float) -> State:
-    """Add an element where the state aims, of the kind that was added last, and select it.
+def candidates(state: State, group: str) -> list[Any]:
+    """The kinds of elements that can be added, or the fields of the attributes that the selected element lacks."""
+    if group == ELEMENT:
+        return addable_kinds(state.scene)
+    return [each for each in fields_of(type(state.element)) if each.keyed and getattr(state.element, each.name) is None]
 
-    Called again before another change, it replaces that element by one of the next (step 1) or previous (-1) kind.
+
+def choices(before: State, group: str, first: int = 0, step: int = 1) -> Iterator[State]:
+    """Yield the states after each candidate was added, cyclically from the one with the number `first`.
+
+    Those that need a missing file, or cannot be so small or far away, are left out.
     """
-    before = before_adding(state)
-    kinds = addable_kinds(before.scene)
-    numbers = [(state.kind_index + step * (is_adding(state) + skipped)) % len(kinds) for skipped in range(len(kinds))]
-    number, element = next(default_elements(kinds, numbers, before))
-    return added(before, number, element, now)
+    kinds = candidates(before, group)
+    for number in [(first + step * count) % len(kinds) for count in range(len(kinds))]:
+        with suppress(LookupError, ElementError):
+            yield (with_element if group == ELEMENT else with_attribute)(before, kinds[number], number)
 
 
-def added(before: State, number: int, element: Element, now: float) -> State:
+def add(group: str, step: int, state: State, _amount: float, _now: float) -> State:
+    """Add an element where the state aims, of the kind that was added last, or the first missing attribute.
+
+    Called again before another change, it replaces that by the next one (step 1) or the previous one (-1).
+    """
+    adding, before, first = is_adding(state, group), before_adding(state, group), 0
+    if group == ELEMENT:
+        first = state.kind_index + step * adding
+    elif adding and state.active:
+        first = candidates(before, group).index(state.active.field) + step
+    nothing = state.with_message(f"{state.element.title} has no attribute that can be added")
+    return next(choices(before, group, first, step), nothing)
+
+
+def with_element(before: State, kind: type[Element], number: int) -> State:
     """The state with a new element, which is selected. The first shape of a scene without any lamp brings one."""
-    last = len(before.scene.elements) - 1
+    element, last = default_element(kind, before), len(before.scene.elements) - 1
     lamps = [first_lamp(before)] if isinstance(element, Shape) and not before.scene.of(Lamp) else []
     scene = before.scene.edit(last, before.scene.elements[last], element, *lamps)
-    after = replace(replace(before, value_index=0).change(scene, ELEMENT, now, last + 1), kind_index=number)
+    after = replace(before, value_index=0, kind_index=number).change(scene, ELEMENT, 0.0, last + 1)
     return after.with_message(f"a new {element.title}{', and a light, since there was none' if lamps else ''}")
 
 
-def add_attribute(state: State, _amount: float, now: float) -> State:
-    """Add an attribute that the element does not have, and make its value active.
-
-    Called again before another change, it replaces that attribute by the next one.
-    """
-    last = state.active.field.name if is_adding(state, ATTRIBUTE) and state.active else ""
-    before = before_adding(state, ATTRIBUTE)
-    missing = list(missing_attributes(before.element, before))
-    if not missing:
-        return state.with_message(f"{before.element.title} has no attribute that can be added")
-    names = [field.name for field, _ in missing]
-    number = (names.index(last) + 1) % len(missing) if last in names else 0
-    return with_attribute(before, missing[number][0].name, missing[number][1], now)
-
-
-def with_attribute(before: State, name: str, value: Any, now: float) -> State:
+def with_attribute(before: State, field: Field, _number: int) -> State:
     """The state whose selected element has a new attribute, which is active."""
-    changed = before.element.replace(**{name: value})
-    after = before.change(before.scene.edit(before.selected, changed), ATTRIBUTE, now)
-    index = [value.field.name for value in values(changed)].index(name)
-    field = values(changed)[index].field
+    changed = before.element.replace(**{field.name: default_value(field, before, nice_number(SIZE * before.size))})
+    after = before.change(before.scene.edit(before.selected, changed), ATTRIBUTE, 0.0)
+    index = [value.field.name for value in values(changed)].index(field.name)
     return replace(after, value_index=index).with_message(f"{field.doc}: {field_text(field, changed)}")
-
-
-def missing_attributes(element: Element, state: State) -> Iterator[tuple[Field, Any]]:
-    """Yield the attributes that an element lacks, with default values; none that need a missing picture file."""
-    for field in fields_of(type(element)):
-        if field.keyed and getattr(element, field.name) is None:
-            try:
-                yield field, default_value(field, state)
-            except LookupError:
-                continue
 
 
 def remove_attribute(state: State, _amount: float, now: float) -> State:

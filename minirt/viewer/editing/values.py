@@ -172,10 +172,10 @@ def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
         return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))
     if isinstance(field, Direction):
         return neat_direction(after, keep_heading=True)
-    if isinstance(field, Real):
-        places = leading_decimal(field.step) + REAL_DECIMALS
-        return round_angle(after) if isinstance(field, Angle) else round(after, places)
-    return after
+    if isinstance(field, Angle):
+        short = round(after, 3)
+        return short if abs(short - after) <= ANGLE_NOISE else round(after, ANGLE_DECIMALS)
+    return round(after, leading_decimal(field.step) + REAL_DECIMALS) if isinstance(field, Real) else after
 
 
 def neat_direction(direction: Triple, keep_heading: bool) -> Triple:
@@ -186,9 +186,3 @@ def neat_direction(direction: Triple, keep_heading: bool) -> Triple:
     is_vertical = hypot(direction[0], direction[2]) < NOISE
     x, y, z = (part if abs(part) >= NOISE else 0.0 for part in direction)
     return neat((direction[0], y, direction[2]) if is_vertical and keep_heading else (x, y, z))
-
-
-def round_angle(degrees: float) -> float:
-    """Round an angle, to thousandths of a degree if it is that within rounding."""
-    short = round(degrees, 3)
-    return short if abs(short - degrees) <= ANGLE_NOISE else round(degrees, ANGLE_DECIMALS)

@@ -1,78 +1,101 @@
-"""File sync: no work is lost when another program writes the scene's file."""
+"""No work is lost when another program writes the scene's file, or when this one is killed."""
 
 from __future__ import annotations
+
+import os
 
 import pytest
 
 from minirt.errors import SceneError
 from minirt.mlx import Key
-from minirt.scene import load
-from minirt.viewer.app.commands import open_another, save_scene
+from minirt.scene import dump, load
+from minirt.viewer.app import desktop
+from minirt.viewer.app.commands import offer_found, open_another, save_scene
+from minirt.viewer.app.desktop import end_recovery, lose_window
 from minirt.viewer.files import WatchedFile
-from tests.viewer.fake import TEXT, colour_of, scene
+from minirt.viewer.recovery import Recovery, state_folder
+from tests.viewer.fake import TEXT, colour_of, scene, write
 from tests.viewer.session_harness import SessionHarness
 
 OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
 BROKEN = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -7")
+SAVE, UNDO = (Key.CONTROL_L, Key.S), (Key.CONTROL_L, Key.Z)
 
 
 @pytest.fixture
-def harness(path):
+def path(path, monkeypatch):
+    """An old scene file, and a folder of their own for unsaved changes."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(path.parent / "state"))
+    os.utime(path, (1000, 1000))
+    return path
+
+
+def opened(path) -> SessionHarness:
+    """Open the scene as the program does."""
     harness = SessionHarness()
     harness.session.path, harness.session.file = path, WatchedFile(path)
+    harness.session.recovery = Recovery()
+    offer_found(harness.session)
     harness.finish(0.001)
     return harness
 
 
-def write(path, text: str) -> None:
-    """Replace the file, as many text editors do."""
-    new = path.with_suffix(".new")
-    new.write_text(text)
-    new.replace(path)
+@pytest.fixture
+def harness(path):
+    harness = opened(path)
+    yield harness
+    harness.session.recovery.close(delete=True)
 
 
-def edit(harness) -> None:
-    """Make an unsaved change: move the second element, a light."""
+def edit(harness) -> str:
+    """Make an unsaved change: move the second element, a light. Return the text of the scene."""
     harness.tap(Key.TAB)
     harness.tap(Key.D)
+    return dump(harness.session.state.scene)
 
 
 def notify(harness) -> None:
     """Tell the session that the file has changed, and finish the pictures that follow."""
-    harness.session.notify_file_changed()
+    harness.session.file.news.set()
+    harness.session.mlx.mlx_wake(harness.display)
     harness.memory.play()
     while harness.painter.busy:
         harness.finish(0.001)
 
 
+def drop(harness, file) -> None:
+    """Drop a file on the window."""
+    harness.memory.drop(str(file))
+    harness.memory.play()
+
+
+def diameter(harness) -> float:
+    size: float = harness.session.state.scene.spheres[0].diameter
+    return size
+
+
 def test_a_changed_file_is_shown(harness, path):
     write(path, OTHER)
     notify(harness)
-    assert harness.session.state.scene.spheres[0].diameter == 7
+    assert diameter(harness) == 7
     assert (harness.session.picture == colour_of(harness.session.state.scene)).all()
-    harness.tap(Key.CONTROL_L, Key.Z)
-    assert harness.session.state.scene.spheres[0].diameter == 2
+    harness.tap(*UNDO)
+    assert diameter(harness) == 2
 
 
-def test_the_camera_stays_unless_the_file_changes_it(harness, path):
+def test_the_camera_stays_unless_the_file_changes_it_and_is_saved_in_its_own_line(harness, path):
     harness.tap(Key.D)
     moved = harness.session.state.scene.camera
-    write(path, OTHER)
+    write(path, OTHER.replace("# looks along -z", "# elsewhere"))
     notify(harness)
     assert harness.session.state.scene.camera == moved
     assert harness.session.state.file_camera == scene().camera
+    harness.tap(*SAVE)
+    assert "# elsewhere" in path.read_text()
+    assert load(path).scene.camera.position[0] > 0
     write(path, OTHER.replace("C 0,0,10", "C 0,0,20"))
     notify(harness)
     assert harness.session.state.scene.camera.position == (0, 0, 20)
-
-
-def test_a_kept_camera_is_saved_in_its_own_line(harness, path):
-    harness.tap(Key.D)
-    write(path, OTHER.replace("# looks along -z", "# elsewhere"))
-    notify(harness)
-    harness.tap(Key.CONTROL_L, Key.S)
-    assert "# elsewhere" in path.read_text()
-    assert load(path).scene.camera.position[0] > 0
 
 
 def test_a_broken_file_keeps_the_picture_and_shows_the_error_until_it_is_mended(harness, path):
@@ -87,106 +110,79 @@ def test_a_broken_file_keeps_the_picture_and_shows_the_error_until_it_is_mended(
     write(path, OTHER)
     notify(harness)
     assert harness.session.screen.banner == ""
-    assert harness.session.state.scene.spheres[0].diameter == 7
+    assert diameter(harness) == 7
 
 
 def test_a_deleted_file_is_said_until_it_is_written_again(harness, path):
     path.unlink()
     notify(harness)
     assert "scene.rt was deleted by another program: Ctrl+S writes it again" in harness.session.screen.banner
-    harness.tap(Key.CONTROL_L, Key.S)
+    harness.tap(*SAVE)
     assert load(path).scene.items == harness.session.state.scene.items
     assert harness.session.screen.banner == ""
 
 
-def test_a_hard_link_that_saving_cuts_is_said(harness, path):
-    other = path.with_name("other.rt")
-    other.hardlink_to(path)
+def test_when_both_changed_a_banner_asks_and_saving_keeps_a_copy_of_the_other_version(harness, path):
+    edited = edit(harness)
+    write(path, OTHER)
+    notify(harness)
+    assert dump(harness.session.state.scene) == edited
+    assert "Ctrl+R reads it" in harness.session.screen.banner
+    harness.tap(*SAVE)
+    assert path.read_text() == edited
+    assert path.with_name("scene-1.rt").read_text() == OTHER
+    assert harness.session.screen.banner == ""
+    assert "scene-1.rt" in harness.session.state.message
+    harness.tap(Key.D)
+    harness.tap(*SAVE)
+    assert not path.with_name("scene-2.rt").exists()
+    write(path, BROKEN)  # the change is not noticed yet
+    harness.tap(*SAVE)
+    assert path.with_name("scene-2.rt").read_text() == BROKEN
+
+
+def test_undo_after_reading_restores_the_edited_scene(harness, path):
+    edited = edit(harness)
+    write(path, OTHER)
+    notify(harness)
+    harness.tap(Key.F5)
+    assert diameter(harness) == 7
+    harness.tap(*UNDO)
+    assert dump(harness.session.state.scene) == edited
+
+
+def test_another_file_is_opened_and_unsaved_changes_are_kept(harness, path, tmp_path, monkeypatch):
+    edited, watched, session = edit(harness), [], harness.session
+    session.watches_file = True
+    monkeypatch.setattr(WatchedFile, "watch", lambda file, _: watched.append(file.path))
+    other = tmp_path / "other one.rt"
+    other.write_text(OTHER)
+    drop(harness, other)
+    kept = path.with_name("scene.recovered.rt")
+    assert kept.read_text() == edited
+    assert str(kept) in session.state.message
+    assert session.path == other
+    assert session.window.title == "miniRT - other one.rt"
+    assert diameter(harness) == 7
+    assert session.state.undo_stack == ()
+    assert watched == [other]
     edit(harness)
-    harness.tap(Key.CONTROL_L, Key.S)
-    assert "its other hard links keep the old scene" in harness.session.state.message
-    assert other.read_text() == TEXT
-    harness.tap(Key.CONTROL_L, Key.S)
-    assert "links" not in harness.session.state.message
+    harness.tap(*SAVE)
+    assert path.read_text() == TEXT
+    assert other.read_text() != OTHER
+    open_another(session, path)
+    assert watched == [other, path]
 
 
-class TestBothChanged:
-    def test_the_file_is_not_read_and_a_banner_says_so(self, harness, path):
-        edit(harness)
-        edited = harness.session.state.scene
-        write(path, OTHER)
-        notify(harness)
-        assert harness.session.state.scene is edited
-        assert "Ctrl+R reads it" in harness.session.screen.banner
-
-    def test_saving_keeps_a_copy_of_the_other_version(self, harness, path):
-        edit(harness)
-        write(path, OTHER)
-        notify(harness)
-        harness.tap(Key.CONTROL_L, Key.S)
-        assert load(path).scene.items == harness.session.state.scene.items
-        assert path.with_name("scene-1.rt").read_text() == OTHER
-        assert harness.session.screen.banner == ""
-        assert "scene-1.rt" in harness.session.state.message
-        harness.tap(Key.D)
-        harness.tap(Key.CONTROL_L, Key.S)
-        assert not path.with_name("scene-2.rt").exists()
-
-    def test_saving_keeps_a_copy_before_the_change_was_noticed(self, harness, path):
-        edit(harness)
-        write(path, BROKEN)
-        harness.tap(Key.CONTROL_L, Key.S)
-        assert path.with_name("scene-1.rt").read_text() == BROKEN
-
-    def test_undo_after_reading_restores_the_edited_scene(self, harness, path):
-        edit(harness)
-        edited = harness.session.state.scene
-        write(path, OTHER)
-        notify(harness)
-        harness.tap(Key.F5)
-        assert harness.session.state.scene.spheres[0].diameter == 7
-        harness.tap(Key.CONTROL_L, Key.Z)
-        assert harness.session.state.scene is edited
-
-
-class TestDrop:
-    def test_another_file_is_opened(self, harness, path, tmp_path):
-        other = tmp_path / "other one.rt"
-        other.write_text(OTHER)
-        harness.memory.drop(str(other))
-        harness.memory.play()
-        session = harness.session
-        assert session.path == other
-        assert session.window.title == "miniRT - other one.rt"
-        assert session.state.scene.spheres[0].diameter == 7
-        assert session.state.undo_stack == ()
-        harness.tap(Key.TAB)
-        harness.tap(Key.D)
-        harness.tap(Key.CONTROL_L, Key.S)
-        assert path.read_text() == TEXT
-        assert other.read_text() != OTHER
-
-    def test_unsaved_changes_are_kept_when_another_file_is_opened(self, harness, path, tmp_path):
-        edit(harness)
-        edited = harness.session.state.scene
-        other = tmp_path / "other.rt"
-        other.write_text(OTHER)
-        harness.memory.drop(str(other))
-        harness.memory.play()
-        kept = path.with_name("scene.recovered.rt")
-        assert load(kept).scene.items == edited.items
-        assert str(kept) in harness.session.state.message
-
-    @pytest.mark.parametrize(("name", "text"), [("broken.rt", BROKEN), ("picture.png", "x"), ("none.rt", None)])
-    def test_a_file_that_is_no_scene_gives_a_message(self, harness, path, tmp_path, name, text):
-        if text:
-            (tmp_path / name).write_text(text)
-        before = harness.session.state.scene
-        harness.memory.drop(str(tmp_path / name))
-        harness.memory.play()
-        assert harness.session.state.scene is before
-        assert harness.session.path == path
-        assert name in harness.session.state.message
+@pytest.mark.parametrize(("name", "text"), [("broken.rt", BROKEN), ("picture.png", "x"), ("none.rt", None)])
+def test_a_file_that_is_no_scene_gives_a_message(harness, path, tmp_path, name, text):
+    if text:
+        (tmp_path / name).write_text(text)
+    before = harness.session.state.scene
+    drop(harness, tmp_path / name)
+    assert harness.session.state.scene is before
+    assert harness.session.path == path
+    assert name in harness.session.state.message
 
 
 def test_a_file_that_cannot_be_written_is_not_copied_first(harness, path):
@@ -199,10 +195,102 @@ def test_a_file_that_cannot_be_written_is_not_copied_first(harness, path):
     assert {each.name for each in path.parent.iterdir()} == {"scene.rt", "scene.txt"}
 
 
-def test_another_file_is_watched_in_place_of_the_first(harness, path, monkeypatch):
-    watched = []
-    monkeypatch.setattr(harness.session, "watch_file", lambda: watched.append(harness.session.file.path))
-    other = path.with_name("other.rt")
-    other.write_text(OTHER)
-    open_another(harness.session, other)
-    assert watched == [other]
+# Unsaved changes are kept on disk while the program runs, and offered when the scene is opened again.
+
+
+def killed_after_an_edit(path) -> str:
+    """Edit the scene in a program that is killed; return the text of the edited scene."""
+    harness = opened(path)
+    edited = edit(harness)
+    harness.session.recovery.close(delete=False)
+    return edited
+
+
+def kept() -> list[str]:
+    """Return the names of all files with unsaved changes."""
+    return [each.name for each in state_folder().glob("*.rt")]
+
+
+def test_the_changes_of_a_killed_program_are_offered_until_they_are_taken(path):
+    edited = killed_after_an_edit(path)
+    for _ in range(2):
+        harness = opened(path)
+        assert "unsaved changes of " in harness.session.screen.banner
+        assert "found: Ctrl+R takes them" in harness.session.screen.banner
+        assert harness.session.state.scene == scene()
+        end_recovery(harness.session)
+        assert not path.with_name("scene.recovered.rt").exists()
+    harness = opened(path)
+    harness.tap(Key.CONTROL_L, Key.R)
+    assert dump(harness.session.state.scene) == edited
+    assert harness.session.screen.banner == ""
+    harness.session.recovery.flush()
+    assert len(kept()) == 1  # that of this session
+    assert harness.session.recovery.path.read_text() == edited
+    harness.tap(*SAVE)
+    assert path.read_text() == edited
+    harness.session.recovery.flush()
+    assert kept() == []
+    end_recovery(harness.session)
+    assert "unsaved" not in opened(path).session.screen.banner
+
+
+def test_taken_changes_can_be_undone(path):
+    killed_after_an_edit(path)
+    harness = opened(path)
+    harness.tap(Key.F5)
+    harness.tap(*UNDO)
+    assert dump(harness.session.state.scene) == TEXT
+    harness.tap(Key.F5)
+    assert "read again" in harness.session.state.message
+    end_recovery(harness.session)
+
+
+@pytest.mark.parametrize("end", [end_recovery, lose_window])
+def test_an_end_with_unsaved_changes_leaves_a_recovery_file_that_is_offered(path, end, capsys):
+    harness = opened(path)
+    edited = edit(harness)
+    end(harness.session)
+    copy = path.with_name("scene.recovered.rt")
+    assert str(copy) in capsys.readouterr().out
+    assert kept() == []
+    harness = opened(path)
+    assert "(scene.recovered.rt) found" in harness.session.screen.banner
+    harness.tap(Key.F5)
+    assert dump(harness.session.state.scene) == copy.read_text() == edited
+    assert copy.exists()
+    end_recovery(harness.session)
+
+
+def test_changes_stay_kept_where_no_recovery_file_can_be_written(path, monkeypatch):
+    harness = opened(path)
+    edit(harness)
+
+    def fail(*_: object) -> None:
+        raise OSError
+
+    monkeypatch.setattr(desktop, "save_recovery", fail)
+    with pytest.raises(OSError):  # noqa: PT011 - any
+        end_recovery(harness.session)
+    assert len(kept()) == 1
+
+
+def test_changes_with_an_error_are_said_and_kept(path):
+    copy = path.with_name("scene.recovered.rt")
+    copy.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2"))
+    harness = opened(path)
+    harness.tap(Key.F5)
+    assert "sphere diameter must be > 0" in harness.session.state.message
+    assert copy.exists()
+    end_recovery(harness.session)
+
+
+def test_another_file_that_is_opened_offers_its_own_changes(harness, tmp_path):
+    other = tmp_path / "other.rt"
+    other.write_text(TEXT)
+    os.utime(other, (1000, 1000))
+    edited = killed_after_an_edit(other)
+    drop(harness, other)
+    assert "Ctrl+R takes them" in harness.session.screen.banner
+    harness.tap(Key.F5)
+    assert dump(harness.session.state.scene) == edited

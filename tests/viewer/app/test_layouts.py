@@ -1,18 +1,24 @@
-"""Every key binding on keyboards of several countries, also without Latin letters, in a real window."""
+"""Every key binding on keyboards of several countries, also without Latin letters, in a real window.
+
+python -m tests.viewer.app.test_layouts LAYOUT LOG SCENE...   # logs the actions of keys, one scene after the other
+"""
 
 from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from minirt.viewer.bindings import BINDINGS
-from tests.viewer.display.test_help import LAYOUTS, MOUSE
-from tests.viewer.fake import TEXT
+from minirt.scene import load
+from minirt.viewer.app.desktop import run
+from minirt.viewer.app.events import EventDispatcher
+from minirt.viewer.bindings import BINDINGS, Binding
+from tests.viewer.display.test_help import MOUSE
+from tests.viewer.fake import TEXT, FakeRenderer
 from tests.viewer.xdotool import LETTER_CODES, do
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
@@ -38,6 +44,24 @@ def keyboard(desktop: Desktop, layout: str) -> Iterator[None]:
         yield
     finally:
         desktop.run("setxkbmap", "us")
+
+
+def log_actions(layout: str, log: str, *scenes: str) -> int:
+    """Show the scenes and log the actions of their keys to a file; return the first exit status that is not 0."""
+
+    def logged(perform: Callable[..., None]) -> Callable[..., None]:
+        def perform_and_log(dispatcher: EventDispatcher, binding: Binding, *arguments: float, **others: bool) -> None:
+            perform(dispatcher, binding, *arguments, **others)
+            with Path(log).open("a") as lines:
+                lines.write(f"{binding.action}\n")
+
+        return perform_and_log
+
+    for name in ("perform", "hold"):
+        setattr(EventDispatcher, name, logged(getattr(EventDispatcher, name)))
+    options = {"size": SIZE, "keys": layout, "renderer": FakeRenderer()}
+    statuses = (run(load(scene).scene, path=scene, **options) for scene in scenes)
+    return next((status for status in statuses if status), 0)
 
 
 class LoggingViewer:
@@ -67,10 +91,6 @@ class LoggingViewer:
         until(lambda: len(self.actions) >= count or self.process.poll() is not None, f"the actions of {keys}")
 
 
-def test_all_layouts_are_tested() -> None:
-    assert {keys for keys, _ in KEYBOARDS.values()} == set(LAYOUTS)
-
-
 @pytest.mark.parametrize("layout", KEYBOARDS)
 def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout: str) -> None:
     keys, codes = KEYBOARDS[layout]
@@ -84,7 +104,7 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout:
         scene.write_text(TEXT)
     log = tmp_path / "log"
     log.write_text("")
-    command = [sys.executable, "-W", "error", "-m", "tests.viewer.action_log", keys, str(log), *map(str, scenes)]
+    command = [sys.executable, "-W", "error", "-m", "tests.viewer.app.test_layouts", keys, str(log), *map(str, scenes)]
     with keyboard(desktop, layout), desktop.program(*command) as process:
         viewer = LoggingViewer(desktop, process, log, codes)
         viewer.press(scenes[0], SIZE, *(key for key, _ in usual))
@@ -96,3 +116,7 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout:
         assert process.returncode == 0
     pressed = [*usual, *full_screen, *quits]
     assert [(key, action) for (key, _), action in zip(pressed, viewer.actions, strict=True)] == pressed
+
+
+if __name__ == "__main__":
+    sys.exit(log_actions(*sys.argv[1:]))

@@ -10,8 +10,7 @@ import pytest
 from minirt.scene import Camera, dump, parse
 from minirt.viewer.editing.state import State
 from tests.viewer import monkey
-from tests.viewer.fake import played
-from tests.viewer.scenes import WITH_CYLINDER
+from tests.viewer.fake import WITH_CYLINDER, played
 
 MAX_GROWTH = 40e6  # bytes: pictures of other sizes may need them
 

@@ -19,8 +19,8 @@ import minirt
 from minirt.rendering.sampling.contrast import edge_pixels
 from minirt.scene import Scene
 from tests.processes import until_stopped
-from tests.viewer.idle_waits import until_at_rest, until_only_one_runs
-from tests.viewer.scenes import WITH_CYLINDER
+from tests.viewer.fake import WITH_CYLINDER
+from tests.viewer.idle_waits import until_at_rest
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
 
@@ -130,7 +130,6 @@ def test_the_refined_picture_is_shown_at_rest_hidden_covered_moved_resized_and_c
     viewer.shows(still)
     check_refined(still, viewer.path)
     check_name_and_icon(viewer)
-    until_only_one_runs(viewer.process.pid, 8)  # the thread that watches the file
 
     desktop.minimise(viewer.window)
     desktop.restore(viewer.window)

@@ -27,17 +27,12 @@ Play = Callable[[SessionHarness], object]
 ACTIONS: dict[str, Play] = {
     "add": lambda harness: harness.memory.tap(Key.N),
     "add twice": lambda harness: harness.memory.tap(Key.N, Key.N),
-    "attribute": lambda harness: harness.memory.tap(Key.M),
     "grow": lambda harness: harness.memory.text("+"),
-    "duplicate": lambda harness: harness.memory.tap(Key.CONTROL_L, Key.D),
     "delete": lambda harness: harness.memory.tap(Key.DELETE),
     "undo": lambda harness: harness.memory.tap(Key.CONTROL_L, Key.Z),
     "select next": lambda harness: harness.memory.tap(Key.TAB),
     "edit and select next": lambda harness: (harness.memory.text("+"), harness.memory.tap(Key.TAB)),
-    "camera": lambda harness: harness.memory.tap(Key.C),
-    "turn": lambda harness: harness.memory.tap(Key.LEFT),
     "hold": lambda harness: harness.memory.press(Key.UP),
-    "move": lambda harness: harness.memory.tap(Key.D),
     "drag": lambda harness: (harness.memory.button_press(1, 320, 240), harness.memory.motion(360, 250)),
     "wheel": lambda harness: harness.memory.scroll(2, 320, 240),
 }
@@ -80,34 +75,11 @@ def golden(frame: np.ndarray) -> np.ndarray:
     return mask
 
 
-def words_come(harness: SessionHarness, play: Play) -> bool:
-    """Whether the words of an action are in the window after a moment without a picture."""
-    before = harness.session.state
+def perform(harness: SessionHarness, play: Play) -> None:
+    """Perform an action, and wait a moment without a picture."""
     play(harness)
     harness.memory.wait(MOMENT)
     harness.memory.play()
-    session = harness.session
-    assert session.state is not before
-    return np.array_equal(words(harness.memory.screenshot()), words(expected_frame(session, session.state)))
-
-
-@pytest.mark.parametrize("action", ACTIONS)
-def test_words_come_without_a_picture(harness: SessionHarness, action: str) -> None:
-    picture = harness.session.refinement.latest
-    assert words_come(harness, ACTIONS[action])
-    assert harness.session.refinement.latest is picture
-
-
-def outline_fits(harness: SessionHarness, play: Play) -> bool:
-    """Whether the outline after an action is that of a shape in the picture that is shown, or there is none."""
-    play(harness)
-    harness.memory.wait(MOMENT)
-    harness.memory.play()
-    session = harness.session
-    shown = session.refinement.latest
-    assert shown is not None
-    mask = golden(harness.memory.screenshot())
-    return not mask.any() or any(np.array_equal(mask, outline_mask(shown, shape)) for shape in shown.job.scene.shapes)
 
 
 def outline_mask(shown: Outcome, shape: Shape) -> np.ndarray:
@@ -119,22 +91,27 @@ def outline_mask(shown: Outcome, shape: Shape) -> np.ndarray:
 
 
 @pytest.mark.parametrize("action", ACTIONS)
-def test_the_outline_fits_the_picture_that_is_shown(harness: SessionHarness, action: str) -> None:
+def test_words_come_without_a_picture_and_the_outline_fits_the_one_that_is_shown(
+    harness: SessionHarness, action: str
+) -> None:
+    session, before, shown = harness.session, harness.session.state, harness.session.refinement.latest
     assert golden(harness.memory.screenshot()).any()
-    assert outline_fits(harness, ACTIONS[action])
+    perform(harness, ACTIONS[action])
+    assert session.state is not before
+    assert session.refinement.latest is shown is not None
+    frame = harness.memory.screenshot()
+    assert np.array_equal(words(frame), words(expected_frame(session, session.state)))
+    mask = golden(frame)
+    assert not mask.any() or any(np.array_equal(mask, outline_mask(shown, each)) for each in shown.job.scene.shapes)
 
 
 def test_the_outline_stays_on_an_edited_shape_and_waits_for_a_new_one(harness: SessionHarness) -> None:
     before = golden(harness.memory.screenshot())
-    harness.memory.text("+")
-    harness.memory.wait(MOMENT)
-    harness.memory.play()
+    perform(harness, ACTIONS["grow"])
     assert np.array_equal(golden(harness.memory.screenshot()), before)
     harness.finish(0.001)
     assert not np.array_equal(golden(harness.memory.screenshot()), before)
-    harness.memory.tap(Key.N)
-    harness.memory.wait(MOMENT)
-    harness.memory.play()
+    perform(harness, ACTIONS["add"])
     assert not golden(harness.memory.screenshot()).any()
     harness.finish(0.001)
     assert golden(harness.memory.screenshot()).any()
@@ -142,9 +119,7 @@ def test_the_outline_stays_on_an_edited_shape_and_waits_for_a_new_one(harness: S
 
 def test_a_picture_stretched_to_another_size_has_no_outline(harness: SessionHarness) -> None:
     harness.memory.resize(WIDTH, HEIGHT - 40)
-    harness.memory.tap(Key.X)
-    harness.memory.wait(MOMENT)
-    harness.memory.play()
+    perform(harness, lambda harness: harness.memory.tap(Key.X))
     frame = harness.memory.screenshot()
     assert frame.shape == (HEIGHT - 40, WIDTH, 4)
     assert not golden(frame).any()
@@ -154,8 +129,8 @@ def test_a_picture_stretched_to_another_size_has_no_outline(harness: SessionHarn
 
 def test_words_and_picture_that_come_together_are_one_frame(harness: SessionHarness) -> None:
     frames = []
-    show = harness.memory.show
-    harness.memory.show = lambda window: (frames.append(harness.session.now), show(window))[0]
+    show = harness.memory.window.show
+    harness.memory.window.show = lambda: (frames.append(harness.session.now), show())
     requests = len(harness.painter.requests)
     harness.memory.press(Key.D)
     for _ in range(20):  # a picture before the next tick

@@ -169,8 +169,8 @@ def test_text_grows_with_the_window_the_screen_and_the_wish(size, screen, wanted
 # Pages of the help: every row is shown, readable and within the window, whatever its size.
 
 
-def table(width: int, height: int) -> screen.Help:
-    """Return the help of a window of that size."""
+def table(width: int, height: int) -> tuple[int, list[list[screen.Column]]]:
+    """Return the size of the text and the pages of the help of a window of that size."""
     return screen.help_pages("qwerty", width, height, text_size(width, height, overlay_scale(width, height, 1, 1)))
 
 
@@ -183,20 +183,25 @@ def drawn(width: int, height: int, number: int) -> NDArray[np.uint8]:
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_every_row_is_on_some_page(width: int, height: int) -> None:
-    rows = [row for page in table(width, height).pages for column in page for row in column.rows]
-    shown = " ".join(row.help for row in rows).split()
+    columns = [column for page in table(width, height)[1] for column in page]
+    shown = " ".join(help for _, help in columns).split()
     texts = [*(binding.help for binding in BINDINGS), FINE_NOTE[1]]
     assert shown == " ".join(texts).split()
-    assert {row.keys.strip() for row in rows} >= {"Left", "Shift+Tab", "Select", "Window"}
+    assert {line.strip() for keys, _ in columns for line in keys.split("\n")} >= {
+        "Left",
+        "Shift+Tab",
+        "Select",
+        "Window",
+    }
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_all_pages_fit_the_window(width: int, height: int) -> None:
     size, pages = table(width, height)
     for page in pages:
-        assert sum(map(width_of, page)) <= width
-        assert all(len(column.rows) * measure(" ", size)[1] <= height for column in page)
-        assert not any(column.rows[-1].keys and not column.rows[-1].help for column in page)  # a title
+        assert width_of(page, size) <= width
+        assert all(measure(keys, size)[1] <= height for keys, _ in page)
+        assert not any(keys.split("\n")[-1] and not help.split("\n")[-1] for keys, help in page)  # a title
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
@@ -207,7 +212,7 @@ def test_the_text_is_within_the_window_and_does_not_overlap(width: int, height: 
         assert lit.any()
         assert not lit[:, -4:].any()
         assert not lit[-2:].any()
-        used = max(len(column.rows) for column in pages[number - 1]) * measure(" ", size)[1] + 10
+        used = max(measure(keys, size)[1] for keys, _ in pages[number - 1]) + 10
         footer = height - 5 - measure(" ", size)[1]
         assert len(pages) == 1 or used <= footer + size // 3  # the last line's blank below may be used
         assert len(pages) > 1 or used <= height
@@ -215,9 +220,9 @@ def test_the_text_is_within_the_window_and_does_not_overlap(width: int, height: 
 
 @pytest.mark.parametrize(("size", "pages", "least"), [((320, 240), 8, 11), ((640, 480), 3, 11), ((1280, 720), 1, 13)])
 def test_there_are_few_pages_of_readable_text(size: tuple[int, int], pages: int, least: int) -> None:
-    shown = table(*size)
-    assert len(shown.pages) <= pages
-    assert shown.size >= least
+    text_size, shown = table(*size)
+    assert len(shown) <= pages
+    assert text_size >= least
 
 
 @pytest.mark.parametrize(("width", "height"), [(200, 100), (40, 300), (1, 1)])
@@ -231,7 +236,7 @@ def test_the_key_turns_the_pages_and_ends_with_the_picture() -> None:
     session = harness.session
     harness.memory.resize(320, 240)
     harness.memory.play()
-    last = len(table(320, 240).pages)
+    last = len(table(320, 240)[1])
     assert last > 1
     for page in [*range(1, last + 1), 0, 1]:
         harness.tap(Key.H)

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
-from minirt.viewer.display import background_painter
-from minirt.viewer.display.background_painter import BackgroundPainter
-from minirt.viewer.display.painter import Job, Outcome, paint
+from minirt.viewer.display import painter as painter_module
+from minirt.viewer.display.painter import BackgroundPainter, Job, Outcome, paint
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 
@@ -55,6 +54,7 @@ def harness():
 
 
 def test_a_finished_picture_is_notified(harness):
+    assert harness.renderer.gives_way  # to the event loop
     harness.painter.request(JOB)
     (outcome,) = harness.outcomes(1)
     assert (outcome.pixels == colour_of(JOB.scene)).all()
@@ -62,21 +62,6 @@ def test_a_finished_picture_is_notified(harness):
     assert outcome.seconds > 0
     assert harness.notifications.acquire(timeout=HANG_LIMIT)
     assert not harness.painter.busy
-
-
-def test_rendering_gives_way_to_the_event_loop(harness):
-    assert harness.renderer.gives_way
-
-
-def test_a_kernel_that_was_compiled_meanwhile_renews_the_notes(harness):
-    harness.painter.request(JOB)
-    assert harness.outcomes(1)[0].about == ()
-    assert harness.notifications.acquire(timeout=HANG_LIMIT)
-    harness.renderer.about = ("kernel for spheres",)
-    harness.renderer.specialised()
-    (outcome,) = harness.outcomes(1)
-    assert (outcome.job, outcome.pixels, outcome.about) == (JOB, None, ("kernel for spheres",))
-    assert harness.notifications.acquire(timeout=HANG_LIMIT)
 
 
 def test_during_an_urgent_picture_only_the_latest_request_is_kept(harness):
@@ -96,25 +81,6 @@ def test_a_picture_that_is_not_urgent_is_cancelled(harness):
     assert (cancelled.job, cancelled.pixels, cancelled.error) == (JOB, None, None)
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.divisor == 2
-
-
-def wakes_before_the_next(harness: PainterHarness) -> bool:
-    """Whether a picture that makes room for the next is notified, although it has nothing to show."""
-    harness.start(JOB)
-    harness.renderer.started.clear()
-    harness.painter.request(replace(JOB, divisor=2))
-    assert harness.renderer.started.wait(HANG_LIMIT)
-    woken = harness.notifications.acquire(blocking=False)
-    harness.renderer.gate.set()
-    assert harness.notifications.acquire(timeout=HANG_LIMIT)
-    assert [each.job.divisor for each in harness.outcomes(1)][-1] == 2
-    return woken
-
-
-def test_a_picture_that_made_room_for_the_next_wakes_nobody(harness, monkeypatch):
-    assert not wakes_before_the_next(harness)
-    monkeypatch.setattr(background_painter, "is_news", lambda _: True)
-    assert wakes_before_the_next(harness)
 
 
 def test_only_the_latest_untaken_picture_is_kept(harness):
@@ -141,7 +107,7 @@ class TestWithoutAKernel:
     @pytest.fixture(autouse=True)
     def immediate_previews(self, monkeypatch):
         """Let previews begin at once if the kernel is not ready."""
-        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", 0.0)
+        monkeypatch.setattr(painter_module, "PREVIEW_DELAY", 0.0)
 
     @pytest.fixture
     def harness(self, harness):
@@ -174,7 +140,7 @@ class TestWithoutAKernel:
         assert harness.renderer.rendered == [(64, 48)]
 
     def test_a_kernel_that_is_soon_ready_needs_no_preview(self, harness, monkeypatch):
-        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", HANG_LIMIT)
+        monkeypatch.setattr(painter_module, "PREVIEW_DELAY", HANG_LIMIT)
         harness.painter.request(JOB)
         (outcome,) = harness.outcomes(1)
         assert not outcome.preview
@@ -188,7 +154,7 @@ class TestWithoutAKernel:
         assert not harness.outcomes(1)[0].preview
 
     def test_an_error_of_prepare_is_an_outcome(self, harness, monkeypatch):
-        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", HANG_LIMIT)
+        monkeypatch.setattr(painter_module, "PREVIEW_DELAY", HANG_LIMIT)
         harness.renderer.prepare_error = RenderError("no")
         harness.painter.request(JOB)
         outcomes = harness.outcomes(2)

@@ -12,8 +12,7 @@ import pytest
 from minirt.errors import RenderError
 from minirt.mlx import Key
 from minirt.mlx.memory import Memory, MemoryWindow
-from minirt.viewer.display.background_painter import BackgroundPainter
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import BackgroundPainter, Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
 from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
@@ -99,16 +98,6 @@ def test_a_new_movement_returns_to_one_sample_at_once():
     assert harness.painter.samples[-3:] == [1, 4, 16]
 
 
-def test_a_picture_goes_from_coarse_to_full_resolution_to_refined():
-    harness = SessionHarness(samples=4)
-    harness.finish(FRAME_TIME * 3)
-    harness.finish(FRAME_TIME * 10)
-    harness.tap(Key.D)
-    while harness.painter.busy:
-        harness.finish(FRAME_TIME / 2)
-    assert list(zip(harness.painter.divisors, harness.painter.samples, strict=True))[3:] == [(2, 1), (1, 1), (1, 4)]
-
-
 def test_nothing_is_rendered_after_an_error_in_a_pass():
     harness = SessionHarness(samples=16)
     harness.finish(0.001)
@@ -141,25 +130,6 @@ def test_a_cancelled_pass_is_never_shown():
         until(lambda cancelled=cancelled: renderer.cancelled > cancelled, "the end of the pass")
         assert np.array_equal(harness.memory.screenshot(), whole)
     assert harness.painter.close(HANG_LIMIT)
-
-
-def test_new_notes_without_a_picture_are_shown_over_the_same_picture():
-    harness = SessionHarness(samples=4)
-    harness.memory.resize(640, 480)
-    harness.tap(Key.I)
-    while harness.painter.busy:
-        harness.finish(0.001)
-    latest, requests = harness.session.refinement.latest, len(harness.painter.requests)
-    before = harness.memory.screenshot()
-    for job, shown in ((Job(scene(), *SIZE), ()), (latest.job, ("kernel for spheres",))):
-        harness.painter.outcomes.append(Outcome(job, about=("kernel for spheres",)))
-        harness.painter.notify()
-        harness.memory.play()
-        assert harness.session.refinement.latest.about == shown
-        assert np.array_equal(harness.memory.screenshot(), before) == (not shown)
-    assert harness.session.refinement.latest.pixels is latest.pixels
-    assert harness.session.refinement.complete
-    assert len(harness.painter.requests) == requests
 
 
 class SlowWindow(MemoryWindow):
@@ -228,28 +198,16 @@ def test_the_divisor_is_greatest_while_no_time_is_known():
     assert resolution.divisor(800, 600) == 8
 
 
-def test_the_cost_scales_with_the_window():
-    resolution = AdaptiveResolution()
-    resolution.record(outcome(FRAME_TIME * 4))
-    assert resolution.divisor(400, 300) == 1
-
-
 def test_a_cancelled_picture_counts_as_at_least_its_time():
     resolution = AdaptiveResolution()
     resolution.record(outcome(FRAME_TIME / 2))
     resolution.record(outcome(FRAME_TIME / 4, pixels=False))  # too short to count
+    resolution.record(outcome(FRAME_TIME * 9, samples=4))  # refined: it does not count either
+    assert resolution.divisor(400, 300) == 1
     for _ in range(2):
         assert resolution.divisor(800, 600) == 1
         resolution.record(outcome(FRAME_TIME * 3, pixels=False))
     assert resolution.divisor(800, 600) == 2
-
-
-def test_refined_pictures_do_not_count():
-    resolution = AdaptiveResolution()
-    resolution.record(outcome(FRAME_TIME / 2))
-    for _ in range(3):
-        resolution.record(outcome(FRAME_TIME * 9, samples=4))
-    assert resolution.divisor(800, 600) == 1
 
 
 def test_two_slow_pictures_are_needed_to_coarsen():
@@ -329,6 +287,6 @@ def test_failed_trials_of_a_finer_picture_become_rare():
 def test_display_time_is_not_left_for_rendering():
     for showing, divisor in ((0.1, 1), (0.4, 2), (40, 2)):  # for the last, coarser pictures would not help
         resolution = AdaptiveResolution()
-        resolution.record_display_time(FRAME_TIME * showing)
+        resolution.display_times.append(FRAME_TIME * showing)
         resolution.record(outcome(FRAME_TIME * 0.7))
         assert resolution.divisor(800, 600) == divisor

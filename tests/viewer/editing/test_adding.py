@@ -1,22 +1,195 @@
-"""New elements of every kind in the registry, in front of the camera."""
+"""New elements: under the pointer, standing on what is there, of the next kind; and shapes that are dropped."""
 
 from __future__ import annotations
 
+from math import dist, hypot, sqrt
+from pathlib import Path
+
 import pytest
 
-from minirt.element import fields_of
-from minirt.fields import Point
-from minirt.scene import Camera, Resolution, dump, parse
+from minirt.fields import Triple
+from minirt.rendering.queries.pick import clearance, pick, surface_point
+from minirt.scene import Scene, load
 from minirt.scene.registry import ELEMENTS
-from minirt.shapes import KINDS
-from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import addable_kinds, default_element
+from minirt.shapes import KINDS, Shape
+from minirt.shapes.box import Box
+from minirt.shapes.sphere import Sphere
+from minirt.viewer.editing.adding import addable_kinds, default_element, dropped
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.projection import SHARE, Aim, aim, looked_at_distance, projection_of
 from minirt.viewer.editing.state import State, initial_state
-from tests.viewer.fake import TEXT, scene
+from tests.viewer.fake import scene
 
+HEAD = "A 0.2 255,255,255\nC 0,3,10 0,-0.2,-1 60\nL 5,9,5 0.6\n"
+GROUND = "pl 0,0,0 0,1,0 99,99,99\n"
+RED = (255, 0, 0)
+SIZE = 640, 360
 BARE = "A 0.2 255,255,255\nC 3,1,4 0.6,-0.2,0.7 50 roll:30\n"
+
+
+def aiming(state: State, x: int, y: int) -> State:
+    """The state that aims through the centre of a pixel of a window of SIZE."""
+    camera = state.scene.camera
+    shape = pick(state.scene, *SIZE, x, y)
+    point = surface_point(shape, camera, *SIZE, x, y) if shape else None
+    found = aim(projection_of(camera, *SIZE), state.size, x + 0.5, y + 0.5, shape, point)
+    return State(state.scene, state.selected, state.file_camera, state.size, aim=found)
+
+
+def added(text: str, x: int, y: int, kind: str = "sp") -> tuple[State, Shape]:
+    """The state that aims through a pixel, and a new element there."""
+    state = aiming(initial_state(scene(text)), x, y)
+    (found,) = [each for each in addable_kinds(state.scene) if each.code == kind]
+    made = default_element(found, state)
+    assert isinstance(made, Shape)
+    return state, made
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e5])
+def test_a_new_element_fills_a_sensible_part_of_the_picture_at_any_scale(scale: float) -> None:
+    """The ground is empty: nothing but the eye's height says how large the scene is."""
+    state, ball = added(f"A 0.2 255,255,255\nC 0,{3 * scale},{10 * scale} 0,-0.3,-1 60\n", 320, 200)
+    assert isinstance(ball, Sphere)
+    view = projection_of(state.scene.camera, *SIZE)
+    share = ball.diameter / view.depth(ball.centre) / (2 * hypot(*view.up))
+    assert SHARE * 0.6 < share < SHARE * 1.6
+    assert ball.centre[1] == pytest.approx(ball.diameter / 2, rel=1e-3)
+    x, y = view.pixel((ball.centre[0], 0.0, ball.centre[2]))
+    assert hypot(x - 320.5, y - 200.5) < 5
+
+
+@pytest.mark.parametrize("ground", ["", GROUND])
+@pytest.mark.parametrize("kind", ["sp", "cy", "co", "bo", "to", "el", "hy", "pa"])
+def test_every_solid_stands_on_the_ground(kind: str, ground: str) -> None:
+    state, made = added(HEAD + ground, 250, 240, kind)
+    low, _ = made.bounds() or ((), ())
+    assert low[1] == pytest.approx(0, abs=1e-3 * state.size)
+
+
+@pytest.mark.parametrize(("x", "y"), [(320, 60), (350, 70), (250, 110), (390, 180), (320, 215)])
+def test_a_ball_touches_the_ball_that_is_aimed_at(x: int, y: int) -> None:
+    state, new = added(HEAD + "sp 0,2,0 4 9,9,9\n", x, y)
+    assert state.aim is not None
+    assert state.aim.normal is not None
+    assert dist(state.aim.point, (0, 2, 0)) == pytest.approx(2)
+    x_at, y_at, z_at = state.aim.point
+    assert state.aim.normal == pytest.approx((x_at / 2, (y_at - 2) / 2, z_at / 2))
+    assert isinstance(new, Sphere)
+    assert dist(new.centre, (0, 2, 0)) == pytest.approx(2 + new.diameter / 2, rel=2e-3)
+
+
+def test_the_sky_and_the_far_ground_are_no_place_to_stand() -> None:
+    """There an element is as far as what is looked at."""
+    for y in (5, 108):
+        state, ball = added(HEAD + GROUND + "sp 0,1,0 2 9,9,9\n", 600, y)
+        assert state.aim is not None
+        assert state.aim.normal is None
+        assert dist(ball.balls()[0][0], state.scene.camera.position) == pytest.approx(state.size, rel=0.01)
+
+
+def test_walls_and_ceilings_are_touched() -> None:
+    ceiling = "A 0.2 255,255,255\nC 0,1,0 0,1,-1 60\npl 0,3,0 0,1,0 9,9,9\nsp 0,1,-3 0.5 9,9,9\n"
+    _, ball = added(ceiling, 200, 60)
+    assert isinstance(ball, Sphere)
+    assert ball.centre[1] + ball.diameter / 2 == pytest.approx(3, abs=1e-3)
+    wall = "A 0.2 255,255,255\nC 0,1,0 0,0,-1 60\npl 0,0,-5 0,0,-1 9,9,9\nsp 0,1,-3 0.5 9,9,9\n"
+    _, box = added(wall, 100, 60, "bo")
+    assert (box.bounds() or ((0,), (0,)))[0][2] == pytest.approx(-5, abs=1e-3)
+
+
+def test_a_lamp_hangs_before_the_surface_that_it_is_aimed_at() -> None:
+    state = aiming(initial_state(scene(HEAD.replace("L 5,9,5 0.6\n", "") + GROUND)), 200, 250)
+    (kind,) = [each for each in addable_kinds(state.scene) if each.code == "L"]
+    lamp = default_element(kind, state)
+    assert lamp.position[1] > 0.5  # type: ignore[attr-defined]
+    x, y = projection_of(state.scene.camera, *SIZE).pixel(lamp.position)  # type: ignore[attr-defined]
+    assert hypot(x - 200.5, y - 250.5) < 5
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3, 0.8, 1.2])
+def test_clearance_above_a_ball_is_that_of_geometry(offset: float) -> None:
+    """Two balls with a horizontal distance touch at a height that Pythagoras knows."""
+    below, ball = Sphere((0, 0, 0), 2, RED), Sphere((offset, 7, 0), 1, RED)
+    gap, support = clearance(ball, [below, Sphere((0, -5, 0), 2, RED), Sphere((0, 20, 0), 9, RED)])
+    assert support is below
+    assert gap == pytest.approx(7 - sqrt(1.5**2 - offset**2), abs=2e-3 if offset else 1e-9)
+
+
+def test_a_shape_that_sinks_into_another_is_raised() -> None:
+    around = Scene((scene().camera, Box(centre=(0, 1, 0), axis=(0, 1, 0), sizes=(4, 2, 4), colour=RED)))
+    for height in (4.0, 2.2, 1.8):
+        fallen = dropped(Sphere((1, height, 1), 1, RED), around, None)
+        assert isinstance(fallen, Sphere)
+        assert fallen.centre == pytest.approx((1, 2.5, 1))
+    assert dropped(Sphere((9, -3, 1), 1, RED), around, 0.5) is None
+    beside = dropped(Sphere((9.1, 3, 1.3), 1, RED), around, 0.5)
+    assert beside is not None
+    assert beside.balls()[0][0] == pytest.approx((9, 0.5, 1.5))
+    near_middle = dropped(Sphere((0.3, 4, 0.2), 1, RED), around, 0.5)
+    assert near_middle is not None
+    assert near_middle.balls()[0][0] == pytest.approx((0, 2.5, 0))
+
+
+def test_a_mesh_is_stood_on(tmp_path: Path) -> None:
+    (tmp_path / "roof.obj").write_text("v -2 1 -2\nv 2 1 -2\nv 2 1 2\nv -2 1 2\nf 1 2 3\nf 1 3 4\n")
+    path = tmp_path / "scene.rt"
+    path.write_text(HEAD + "ob roof.obj 0,0,0 1 9,9,9\nsp 0.4,5,0.4 1 9,9,9\n")
+    built = load(path).scene
+    (mesh,), (ball,) = built.meshes, built.spheres
+    gap, support = clearance(ball, [mesh])
+    assert support is mesh
+    top = (mesh.bounds() or ((), (0, 0, 0)))[1][1]
+    assert gap == pytest.approx(4.5 - top)
+
+
+def test_a_new_element_keeps_standing_while_its_size_changes_and_until_it_is_moved() -> None:
+    state = apply(aiming(initial_state(scene(HEAD + GROUND)), 250, 240), "add")
+    for _ in range(5):
+        state = apply(state, "grow").end_merging()
+    ball = state.element
+    assert isinstance(ball, Sphere)
+    assert ball.centre[1] == pytest.approx(ball.diameter / 2, abs=1e-3)
+    moved = apply(state, "up")
+    larger = apply(moved, "grow").element
+    assert larger.replace(diameter=ball.diameter) == moved.element
+    other = apply(apply(state, "duplicate"), "grow").element
+    assert isinstance(other, Sphere)
+    assert other.centre == ball.centre
+
+
+def test_drop_is_one_undo_step_and_says_where_nothing_can_fall() -> None:
+    start = initial_state(scene(HEAD + GROUND + "sp 1.23,4,-0.77 1 9,9,9\n"))
+    state = start.select(len(start.scene.elements) - 1)
+    fallen = apply(state, "drop")
+    assert isinstance(fallen.element, Sphere)
+    assert fallen.element.centre[1] == pytest.approx(0.5)
+    assert all(abs(part / state.stride - round(part / state.stride)) < 1e-9 for part in fallen.element.centre[::2])
+    assert apply(fallen, "undo").scene.items == start.scene.items
+    for index in (2, 3):  # a light, a plane
+        assert "cannot stand" in apply(start.select(index), "drop").message
+
+
+@pytest.mark.parametrize(
+    ("position", "direction", "distance"),
+    [
+        ((0, 2, 9), (0, -0.6, -0.8), 2 / 0.6),  # to the ground
+        ((0, 2, -9), (0, 0, 1), 9),  # level: to where it is nearest to the origin
+        ((0, 0, 0), (0, 0, 1), 10),
+        ((3, 4, 0), (0, 0, 1), 5),  # past it
+        ((0, 3, 0), (0, 1, 0), 3),  # away
+    ],
+)
+def test_the_camera_alone_tells_a_scale(position: Triple, direction: Triple, distance: float) -> None:
+    camera = scene().camera.replace(position=position, direction=direction)
+    assert looked_at_distance(camera) == pytest.approx(distance)
+
+
+def test_an_aim_has_all_that_a_place_needs() -> None:
+    found = aim(projection_of(scene().camera, *SIZE), 10.0, 320, 180, None, None)
+    assert found == Aim((0, 0, 10), pytest.approx((0, 0, 0), abs=1e-9), None, pytest.approx(SHARE * 11.25))
+
+
+# Adding again makes the next kind.
 
 
 def adding(state: State, times: int, action: str = "add") -> State:
@@ -26,29 +199,11 @@ def adding(state: State, times: int, action: str = "add") -> State:
     return state
 
 
-def test_everything_that_can_be_edited_can_be_added() -> None:
+def test_shapes_come_first_and_what_a_scene_has_once_is_not_added_again() -> None:
     kinds = addable_kinds(scene(BARE))
-    excluded = (Resolution, Camera, ELEMENTS["A"], Mesh)  # the last needs a file
-    assert set(kinds) == {kind for kind in ELEMENTS.values() if kind not in excluded}
     assert kinds[: len(KINDS)] == [kind.element for kind in KINDS]
+    assert ELEMENTS["L"] in kinds
     assert ELEMENTS["L"] not in addable_kinds(scene())
-
-
-@pytest.mark.parametrize(
-    ("text", "kind"), [(text, kind) for text in (TEXT, BARE) for kind in addable_kinds(scene(text))]
-)
-def test_each_kind_is_made_from_its_fields_and_visible(kind: type, text: str) -> None:
-    state = initial_state(scene(text))
-    element = default_element(kind, state)
-    assert type(element) is kind
-    projection = projection_of(state.scene.camera, 640, 360)
-    for field in fields_of(kind):
-        if isinstance(field, Point):
-            x, y = projection.pixel(getattr(element, field.name))
-            assert 0 < x < 640
-            assert 0 < y < 360
-    again = parse(dump(state.scene.edit(0, state.scene.elements[0], element))).scene
-    assert again.elements[1] == element
 
 
 def test_repeated_adding_makes_the_next_kind_and_is_one_undo_step() -> None:

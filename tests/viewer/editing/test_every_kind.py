@@ -29,8 +29,8 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import projection_of
-from minirt.viewer.editing.state import State, field_names, index_of, initial_state, position_of
+from minirt.viewer.editing.projection import field_names, position_of, projection_of
+from minirt.viewer.editing.state import State, index_of, initial_state
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
 
@@ -238,3 +238,20 @@ def test_repeating_replaces_an_attribute_only_directly_after_adding_it() -> None
     assert shiny.element.specular.share == pytest.approx(0.55)
     assert "no attribute" in apply(shiny.select(0), "remove attribute").message
     assert apply(both, "remove attribute").element == shiny.element
+
+
+def test_the_size_of_a_mesh_comes_before_its_file_which_can_be_changed(path: Path) -> None:
+    state = holding(Mesh, path)
+    assert state.active.field.name == "scale"
+    while state.active.field.name != "file":
+        state = apply(state, "next value")
+    for action, name in (("grow", "more/b.obj"), ("grow", "a.obj"), ("shrink", "more/b.obj")):
+        state = apply(state, action)
+        assert state.element.file.name == name
+    (path.parent / "a.obj").unlink()
+    assert "no other mesh" in apply(state, "grow").message
+    count = len(addable_kinds(state.scene))
+    assert addable_kinds(state.scene)[-1] is Mesh
+    (path.parent / "more" / "b.obj").unlink()
+    assert Mesh not in addable_kinds(state.scene)
+    assert len(addable_kinds(state.scene)) == count - 1
