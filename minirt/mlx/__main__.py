@@ -125,20 +125,10 @@ def install(backend: Display | None, *, strict: bool) -> None:
 
     WrapperMlx.__name__ = WrapperMlx.__qualname__ = "Mlx"
     WrapperMlx.__module__ = "mlx.mlx"
-    package, module = _module("mlx", is_package=True), _module("mlx.mlx")
-    for target in (package, module):
-        target.Mlx = WrapperMlx  # type: ignore[attr-defined]
-    package.mlx = module  # type: ignore[attr-defined]
-
-
-def _module(name: str, *, is_package: bool = False) -> ModuleType:
-    """Make an empty module and register it."""
-    module = ModuleType(name)
-    module.__spec__ = ModuleSpec(name, None, is_package=is_package)
-    if is_package:
-        module.__path__ = []
-    sys.modules[name] = module
-    return module
+    module: Any = ModuleType("mlx")  # both the package and its module
+    module.__spec__, module.__path__ = ModuleSpec("mlx", None, is_package=True), []
+    module.Mlx, module.mlx = WrapperMlx, module
+    sys.modules["mlx"] = sys.modules["mlx.mlx"] = module
 
 
 def simulate_process(user: Headless) -> None:

@@ -92,20 +92,20 @@ class Memory(Display):
 
     # --- the script: steps of the user, in this order; `do` adds any other, for example to check a picture half way ---
 
-    def press(self, key: int) -> None:
-        """Hold a key down; a modifier is a key like any other."""
-        self.do(lambda: self.window.keyboard.press(key, self._now))
+    def press(self, *keys: int) -> None:
+        """Hold keys down, one after the other; a modifier is a key like any other."""
+        for key in keys:
+            self.do(lambda key=key: self.window.keyboard.press(key, self._now))  # type: ignore[misc]
 
-    def release(self, key: int) -> None:
-        """Let a key go."""
-        self.do(lambda: self.window.keyboard.release(key))
+    def release(self, *keys: int) -> None:
+        """Let keys go, one after the other."""
+        for key in keys:
+            self.do(lambda key=key: self.window.keyboard.release(key))  # type: ignore[misc]
 
     def tap(self, *keys: int) -> None:
         """Press the keys in this order and release them in the opposite one: tap(Key.CONTROL_L, Key.Z)."""
-        for key in keys:
-            self.press(key)
-        for key in reversed(keys):
-            self.release(key)
+        self.press(*keys)
+        self.release(*reversed(keys))
 
     def text(self, text: str) -> None:
         """Type text, without presses of keys."""

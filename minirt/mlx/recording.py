@@ -67,8 +67,7 @@ class Line:
         count, has_rest = len(self.words) - 1, usage.endswith(("CHARACTERS", "FILE"))
         if count < sum(each[0] != "[" for each in kinds) or (count > len(kinds) and not has_rest):
             self.fail(min(count, len(kinds) + 1), f"expected '{usage}'")
-        read = [getattr(self, READERS[each.strip("[]")]) for each in kinds[:count]]
-        return [each(index) for index, each in enumerate(read, 1)]
+        return [READERS[each.strip("[]")](self, index) for index, each in enumerate(kinds[:count], 1)]
 
     def fail(self, index: int, message: str) -> NoReturn:
         """Raise a ReplayError that points at a word."""
@@ -115,14 +114,6 @@ class Line:
         hint = did_you_mean(name, (*KEYS, *MODIFIERS))
         self.fail(index, f"unknown key {quoted(name)}{hint}; expected a key like Tab, a, F5, Ctrl+S or 65307")
 
-    def button(self, index: int) -> int:
-        """Parse the name of a mouse button."""
-        return BUTTONS[self.choice(index, BUTTONS, "button")]
-
-    def direction(self, index: int) -> int:
-        """Parse a direction of the wheel."""
-        return DIRECTIONS[self.choice(index, DIRECTIONS, "direction")]
-
     def seconds(self, index: int) -> float:
         """Parse a time in seconds."""
         try:
@@ -140,24 +131,12 @@ class Line:
             self.fail(index, f"expected a count from 1 to {MAX_COUNT}, got {quoted(word)}")
         return int(word)
 
-    def pixel(self, index: int) -> tuple[int, int]:
-        """Parse a pixel x,y."""
-        return self.pair(PIXEL, 0, "x,y", index)
-
-    def size(self, index: int) -> tuple[int, int]:
-        """Parse a size WxH in pixels."""
-        return self.pair(SIZE, 1, "WxH", index)
-
     def pair(self, pattern: re.Pattern[str], low: int, form: str, index: int) -> tuple[int, int]:
         """Parse two numbers of pixels."""
         match = pattern.fullmatch(self.words[index])
         if not match or not all(low <= int(part) <= MAX_PIXELS for part in match.groups()):
             self.fail(index, f"expected {form}, each from {low} to {MAX_PIXELS}, got {quoted(self.words[index])}")
         return int(match[1]), int(match[2])
-
-    def rest(self, index: int) -> str:
-        """Return the rest of the line, words with single blanks between."""
-        return " ".join(self.words[index:])
 
 
 def press(user: Memory, keys: Keys | str) -> None:
@@ -170,21 +149,9 @@ def press(user: Memory, keys: Keys | str) -> None:
 
 def hold(user: Memory, keys: Keys, seconds: float) -> None:
     """Hold keys down for some seconds."""
-    down(user, keys)
+    user.press(*keys)
     user.wait(seconds)
-    up(user, keys)
-
-
-def down(user: Memory, keys: Keys) -> None:
-    """Press keys."""
-    for key in keys:
-        user.press(key)
-
-
-def up(user: Memory, keys: Keys) -> None:
-    """Release keys."""
-    for key in reversed(keys):
-        user.release(key)
+    user.release(*reversed(keys))
 
 
 def text(user: Memory, characters: str) -> None:
@@ -210,36 +177,31 @@ def drag(user: Memory, start: tuple[int, int], end: tuple[int, int], button: int
     user.button_release(button, to_x, to_y)
 
 
-def wheel(user: Memory, direction: int, count: int = 1, place: tuple[int, int] = (0, 0)) -> None:
-    """Turn the wheel."""
-    user.scroll(direction * count, *place)
-
-
-READERS = {  # methods of `Line` that read the arguments of a usage
-    "KEY": "keys",
-    "seconds": "seconds",
-    "x,y": "pixel",
-    "WxH": "size",
-    "left|middle|right": "button",
-    "up|down": "direction",
-    "count": "count",
-    "NUMBER": "count",
-    "CHARACTERS": "rest",
-    "FILE": "rest",
+READERS: dict[str, Callable[[Line, int], Any]] = {  # of the arguments of a usage
+    "KEY": lambda line, index: line.keys(index),
+    "seconds": lambda line, index: line.seconds(index),
+    "x,y": lambda line, index: line.pair(PIXEL, 0, "x,y", index),
+    "WxH": lambda line, index: line.pair(SIZE, 1, "WxH", index),
+    "left|middle|right": lambda line, index: BUTTONS[line.choice(index, BUTTONS, "button")],
+    "up|down": lambda line, index: DIRECTIONS[line.choice(index, DIRECTIONS, "direction")],
+    "count": lambda line, index: line.count(index),
+    "NUMBER": lambda line, index: line.count(index),
+    "CHARACTERS": lambda line, index: " ".join(line.words[index:]),
+    "FILE": lambda line, index: " ".join(line.words[index:]),
 }
 COMMANDS: dict[str, tuple[str, Callable[..., None]]] = {  # by their first words
     usage.split()[0]: (usage, run)
     for usage, run in (
         ("press KEY", press),
         ("hold KEY seconds", hold),
-        ("down KEY", down),
-        ("up KEY", up),
+        ("down KEY", lambda user, keys: user.press(*keys)),
+        ("up KEY", lambda user, keys: user.release(*reversed(keys))),
         ("text CHARACTERS", text),
         ("wait seconds", lambda user, seconds: user.wait(seconds)),
         ("click x,y [left|middle|right]", click),
         ("drag x,y x,y [left|middle|right]", drag),
         ("move x,y", lambda user, place: user.motion(*place)),
-        ("wheel up|down [count] [x,y]", wheel),
+        ("wheel up|down [count] [x,y]", lambda user, up, count=1, place=(0, 0): user.scroll(up * count, *place)),
         ("drop FILE", lambda user, file: user.drop(file)),
         ("resize WxH", lambda user, size: user.resize(*size)),
         ("hide", lambda user: user.minimise(True)),

@@ -39,7 +39,7 @@ class Keyboard:
 
     def press(self, key: int, now: float, modifiers: Modifier | None = None) -> None:
         """Hold a key down. `modifiers`: the held modifiers by the platform; None derives them from the held keys."""
-        self._update_modifiers(modifiers)
+        self.modifiers = self._held_modifiers() if modifiers is None else modifiers
         self.modifiers |= MODIFIER_KEYS.get(key, Modifier.NONE)
         if key not in self.held:
             self.held.append(key)
@@ -54,9 +54,8 @@ class Keyboard:
         if modifier:
             released += [other for other in self.held if other != key and self._hides_release(modifier, other)]
         self.held = [other for other in self.held if other not in released]
-        self._update_modifiers(modifiers)
-        self.modifiers &= ~modifier
-        self.modifiers |= self._held_modifiers()
+        held = self._held_modifiers()
+        self.modifiers = held if modifiers is None else modifiers & ~modifier | held
         for lost in released:
             self._report(Event.KEY_RELEASE, lost)
         return released
@@ -82,20 +81,11 @@ class Keyboard:
 
     def _hides_release(self, modifier: Modifier, key: int) -> bool:
         """Whether releasing `modifier` may hide the release of `key`: symbols change with it, letters do not."""
-        if key in MODIFIER_KEYS:
-            return False
-        if modifier is Modifier.COMMAND:
-            return True
-        return self._options.symbols and 0x20 < key < 0xFF00 and not 0x61 <= key <= 0x7A
-
-    def _update_modifiers(self, modifiers: Modifier | None) -> None:
-        self.modifiers = self._held_modifiers() if modifiers is None else modifiers
+        is_symbol = self._options.symbols and 0x20 < key < 0xFF00 and not 0x61 <= key <= 0x7A
+        return key not in MODIFIER_KEYS and (modifier is Modifier.COMMAND or is_symbol)
 
     def _held_modifiers(self) -> Modifier:
-        modifiers = Modifier.NONE
-        for key in self.held:
-            modifiers |= MODIFIER_KEYS.get(key, Modifier.NONE)
-        return modifiers
+        return Modifier(sum({MODIFIER_KEYS.get(key, Modifier.NONE) for key in self.held}))
 
 
 @dataclass(eq=False, repr=False)
