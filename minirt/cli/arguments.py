@@ -9,7 +9,7 @@ import argparse
 import re
 import sys
 from argparse import ArgumentTypeError
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from math import nan
 from typing import Any, NoReturn
@@ -41,12 +41,12 @@ def file_name(text: str) -> str:
     return text
 
 
-def size(text: str) -> tuple[int, int]:
-    """Parse a size in pixels, such as 640x480."""
-    width, _, height = text.partition("x")
-    if not (width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
-        raise ArgumentTypeError(f"must be WIDTHxHEIGHT, like 640x480, got '{text}'")
-    return whole_number(width, 1, MOST), whole_number(height, 1, MOST)
+def numbers(text: str, sign: str, form: str, limits: Sequence[tuple[int, int]]) -> tuple[int, ...]:
+    """Parse whole numbers in their limits with a sign between them, such as 640x480; `form` tells what is expected."""
+    words = text.split(sign)
+    if len(words) != len(limits) or not all(each.isascii() and each.isdigit() for each in words):
+        raise ArgumentTypeError(f"must be {form}, got '{text[:40]}'")
+    return tuple(whole_number(each, *limit) for each, limit in zip(words, limits, strict=True))
 
 
 def cluster(text: str) -> str:
@@ -54,15 +54,6 @@ def cluster(text: str) -> str:
     if text != "local" and not re.fullmatch(r"[a-z]+://[!-~]+", text):
         raise ArgumentTypeError(f"must be local, or the address of a scheduler like tcp://host:8786, got '{text[:40]}'")
     return text
-
-
-def region(text: str) -> tuple[int, ...]:
-    """Parse a rectangle of a picture, such as 320,0,640,480."""
-    numbers = text.split(",")
-    if len(numbers) != 4 or not all(each.isascii() and each.isdigit() for each in numbers):
-        raise ArgumentTypeError(f"must be X,Y,WIDTH,HEIGHT, like 320,0,640,480, got '{text[:40]}'")
-    place = (whole_number(each, 0, MAX_SIDE) for each in numbers[:2])
-    return *place, *(whole_number(each, 1, MAX_SIDE) for each in numbers[2:])
 
 
 def whole_number(text: str, low: int, high: int) -> int:
@@ -173,8 +164,10 @@ DEFAULTS = {"keys": "auto", "text_scale": 1.0, "precision": "double"}  # of opti
 KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text
     **dict.fromkeys(("output", "fallback", "replay", "report"), file_name),
     **dict.fromkeys(("error", "time"), number),
-    "size": size,
-    "region": region,
+    "size": partial(numbers, sign="x", form="WIDTHxHEIGHT, like 640x480", limits=[(1, MOST)] * 2),
+    "region": partial(
+        numbers, sign=",", form="X,Y,WIDTH,HEIGHT, like 320,0,640,480", limits=[(0, MAX_SIDE)] * 2 + [(1, MAX_SIDE)] * 2
+    ),
     "samples": lambda text: text if text == "auto" else whole_number(text, 1, 65536),
     "turntable": partial(whole_number, low=1, high=3600),
     "frames": span,

@@ -26,14 +26,8 @@ Command = Callable[["Scene", argparse.Namespace], int]
 
 def command_for(options: argparse.Namespace) -> Command:
     """Return the command that the options select; showing a window is the default."""
-    commands: tuple[tuple[object, Command], ...] = (
-        (options.check, check),
-        (options.bench, bench),
-        (options.report, report),
-        (options.replay, replay),
-        (options.output, render),
-    )
-    return next((command for selected, command in commands if selected), show)
+    commands = {"check": check, "bench": bench, "report": report, "replay": replay, "output": render}
+    return next((command for name, command in commands.items() if getattr(options, name)), show)
 
 
 def check(scene: Scene, options: argparse.Namespace) -> int:

@@ -44,12 +44,6 @@ FILES = {"output", "fallback", "replay", "report", "config"}  # options whose va
 FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
 
 
-def default_path() -> Path:
-    """Return the path of the configuration file where no other is named."""
-    folder = os.environ.get("APPDATA" if os.name == "nt" else "XDG_CONFIG_HOME", "")
-    return (Path(folder) if os.path.isabs(folder) else Path.home() / ".config") / "minirt" / "config.toml"  # noqa: PTH117
-
-
 def with_configuration(
     parser: argparse.ArgumentParser, options: argparse.Namespace, argv: Sequence[str] | None
 ) -> argparse.Namespace:
@@ -68,8 +62,9 @@ def configuration_path(named: str | None) -> Path | None:
     """Return the path of the file to read: the one that is `named`, or the user's own if there is one."""
     if named is not None:
         return Path(named) if named else None
+    folder = Path(os.environ.get("APPDATA" if os.name == "nt" else "XDG_CONFIG_HOME", ""))
     with suppress(OSError, RuntimeError):  # RuntimeError: nobody's home
-        path = default_path()
+        path = (folder if folder.is_absolute() else Path.home() / ".config") / "minirt" / "config.toml"
         return path if path.is_file() else None
     return None
 

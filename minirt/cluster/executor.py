@@ -26,9 +26,9 @@ Workers: TypeAlias = Executor | Callable[[], Executor] | Any  # the last is a cl
 class Dispatcher:
     """Bands in flight to an executor."""
 
-    def __init__(self, workers: Workers) -> None:
+    def __init__(self, workers: Any) -> None:
         self.is_own = callable(workers) and not hasattr(workers, "submit")
-        made: Any = workers() if callable(workers) and self.is_own else workers
+        made = workers() if self.is_own else workers
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)
         self.executor: Executor = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)

@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from threading import Lock
 from time import perf_counter, process_time
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple
 from weakref import WeakSet
 
 from minirt.errors import RenderError
@@ -121,17 +121,10 @@ def size_in_words(size: int) -> str:
 # that another thread held stays locked for ever. Spawned child processes import everything anew.
 
 
-class Renewable(Protocol):
-    """An object with locks or threads."""
-
-    def after_fork(self) -> None:
-        """Replace the locks and drop the threads, in the child process."""
+renewables: WeakSet[Any] = WeakSet()  # objects with locks or threads, and a method `after_fork` that renews them
 
 
-renewables: WeakSet[Renewable] = WeakSet()
-
-
-def renew_after_fork(owner: Renewable) -> None:
+def renew_after_fork(owner: Any) -> None:
     """Call `owner.after_fork` in each child process, for as long as `owner` is alive."""
     renewables.add(owner)
 
