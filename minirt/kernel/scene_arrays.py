@@ -130,14 +130,18 @@ def kind_of_packed(packed: type[Any]) -> Kind:
 
 
 def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
-    """Intersect rays with a packed shape by the formula of its kind: `intersect` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).intersect(shape, origin, direction)
+    """Intersect rays, which may start anywhere, with a packed shape."""
+    return formula(shape, origin, direction, True)
 
 
 def occludes(shape: Any, origin: Vec, direction: Vec) -> Any:
-    """Intersect shadow rays with a packed shape by the formula of its kind: `occludes` of `minirt.shapes.shape`."""
-    kind = kind_of_packed(type(shape))
-    return (kind.occludes or kind.intersect)(shape, origin, direction)
+    """Intersect shadow rays, which start clear of all surfaces, with a packed shape."""
+    return formula(shape, origin, direction, None)
+
+
+def formula(shape: Any, origin: Vec, direction: Vec, anywhere: bool | None) -> Any:
+    """Intersect rays with a packed shape by the formula of its kind: `intersect` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).intersect(shape, origin, direction, anywhere)
 
 
 def mapping(shape: Any, point: Vec, normal: Vec) -> Any:

@@ -16,7 +16,7 @@ chain rule (automatic differentiation, Wengert 1964).
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -112,7 +112,7 @@ def quick_two_sum(a: Any, b: Any) -> tuple[Any, Any]:
     return total, b - (total - a)
 
 
-class Boundary:
+class Boundary(NamedTuple):
     """Faces of a shape, and where they end: numbers that belong to a point, < 0 inside.
 
     A face is where one of `faces` is 0, and neither another face nor one of the `limits`, which are edges of a sheet or
@@ -120,10 +120,8 @@ class Boundary:
     Normals point to where they grow.
     """
 
-    __slots__ = ("faces", "limits")
-
-    def __init__(self, faces: tuple[DoubleDouble, ...], limits: tuple[DoubleDouble, ...] = ()) -> None:
-        self.faces, self.limits = faces, limits
+    faces: tuple[DoubleDouble, ...]
+    limits: tuple[DoubleDouble, ...] = ()
 
 
 def length(v: Vec) -> DoubleDouble:

@@ -18,10 +18,9 @@ from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
-from minirt.shapes.frames import from_basis, to_basis
+from minirt.shapes.frames import in_scene, own_direction, own_point
 from minirt.shapes.plane import CLOSE, start_error
-from minirt.shapes.shape import Axial, Ball, Position, bounds_of_points, point_along
-from minirt.shapes.shape import Bounds as Corners
+from minirt.shapes.shape import Axial, Ball, Position, point_along
 
 
 @record()
@@ -40,9 +39,8 @@ class Box(Axial):
         return x, y, z
 
     def pack(self) -> PackedBox:
-        x, y, z = self.axes()
-        width, height, depth = self.sizes
-        return PackedBox(Position(Vec(*self.centre)), x, y, z, Vec(width / 2, height / 2, depth / 2))
+        half = Vec(*(size / 2 for size in self.sizes))
+        return PackedBox(Position(Vec(*self.centre)), *self.axes(), half)
 
     def corners(self) -> list[Triple]:
         found = [self.centre]
@@ -53,9 +51,6 @@ class Box(Axial):
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((corner, 0.0) for corner in self.corners())
-
-    def bounds(self) -> Corners:
-        return bounds_of_points(*self.corners())
 
 
 class PackedBox(NamedTuple):
@@ -68,30 +63,8 @@ class PackedBox(NamedTuple):
     half: Vec  # of the sizes
 
 
-def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the box, wherever it starts.
-
-    A face on which a ray starts, within rounding, is neither entered nor left there again.
-    """
-    f = origin - box.centre
-    p = to_basis(box.u, box.v, box.w, f)
-    d = to_basis(box.u, box.v, box.w, direction)
-    enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
-    enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
-    enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
-    hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
-    close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
-    if rarely(close):
-        error = where(close, start_error(origin, f), -1.0)
-        enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
-        enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
-        enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
-        hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
-    return hit, t
-
-
-def occludes(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the box.
+def intersect(box: PackedBox, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the box. A face on which it starts, within rounding, is not met there again.
 
     Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
     and Kajiya, Ray Tracing Complex Scenes, 1986). For a ray exactly in the plane of a face 0 times infinity is NaN: in
@@ -99,12 +72,20 @@ def occludes(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]
     them. So one of two boxes that share a face is hit by the rays in it. `maximum` and `minimum` ignore NaN in their
     first argument alone.
     """
-    p = to_basis(box.u, box.v, box.w, origin - box.centre)
-    d = to_basis(box.u, box.v, box.w, direction)
+    p, d = own_point(box, origin), own_direction(box, direction)
     enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
     enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
     enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
-    return first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+    hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+    if anywhere is not None:
+        close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
+        if rarely(close):
+            error = where(close, start_error(origin, origin - box.centre), -1.0)
+            enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
+            enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
+            enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
+            hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+    return hit, t
 
 
 def first_in_all(
@@ -140,7 +121,7 @@ def slab_interval(p: Number, d: Number, half: Number) -> tuple[Number, Number]:
 
 def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
     """`point` moved onto the nearest face, and the outward normal there."""
-    p = to_basis(box.u, box.v, box.w, point - box.centre)
+    p = own_point(box, point)
     x, y, z = fabs(p.x) - box.half.x, fabs(p.y) - box.half.y, fabs(p.z) - box.half.z
     by_x, by_y = (x >= y) & (x >= z), y >= z  # by y only where not by x
     flat = splat(0.0, p.x)
@@ -150,13 +131,12 @@ def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
         where(by_y, Vec(flat, copysign(1.0, p.y), flat), Vec(flat, flat, copysign(1.0, p.z))),
     )
     on = p - where(by_x, x, where(by_y, y, z)) * out
-    return box.centre + from_basis(box.u, box.v, box.w, on), from_basis(box.u, box.v, box.w, out)
+    return in_scene(box, on, out)
 
 
 def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
     """u and v from 0 to 1 across each face; v runs along the box's y axis on the four standing faces."""
-    p = to_basis(box.u, box.v, box.w, point - box.centre)
-    out = to_basis(box.u, box.v, box.w, normal)
+    p, out = own_point(box, point), own_direction(box, normal)
     by_x, by_y = fabs(out.x) > 0.5, fabs(out.y) > 0.5
     sign = copysign(1.0, where(by_x, -out.x, where(by_y, -out.y, out.z)))
     wide, tall, deep = 2.0 * box.half.x, 2.0 * box.half.y, 2.0 * box.half.z

@@ -6,13 +6,14 @@ The pairs of a rounded result and its error are exact: two-sum (Moller 1965; Knu
 
 from __future__ import annotations
 
-from math import copysign, inf, isfinite, isqrt, ldexp, prod
+from collections.abc import Iterable
+from decimal import Context, Decimal, localcontext
+from math import copysign, inf, isfinite, prod
 
 from minirt.fields import Triple, cos_and_sin
 from minirt.lanes import Number, Vec, product_error, rounded_product
 
-BITS = 160  # after the binary point
-ONE = 1 << BITS
+EXACT = Context(prec=60)  # digits
 Pair = tuple[Number, Number]  # a number of twice the precision: its rounded value, and what that lacks
 
 
@@ -34,9 +35,7 @@ def power_of_point(point: Vec, centre: Vec, radius: Number) -> Number:
     It is the product of the distances to both hits of any line through the point. Near the surface, where the plain
     difference cancels, all digits are kept.
     """
-    x, x_low = two_sum(point.x, -centre.x)
-    y, y_low = two_sum(point.y, -centre.y)
-    z, z_low = two_sum(point.z, -centre.z)
+    (x, x_low), (y, y_low), (z, z_low) = offset(point, centre)
     xx, xx_low = two_product(x, x)
     yy, yy_low = two_product(y, y)
     zz, zz_low = two_product(z, z)
@@ -95,80 +94,53 @@ def squared_length(f: tuple[Pair, Pair, Pair]) -> Pair:
 
 # Low parts of rounded numbers in packed shapes: what the numbers lack. With them a shape is known to 32 digits. Where a
 # ray starts closely above a huge shape, the rounding of an axis or a slope moves the surface by more than the height of
-# the start. Low parts are computed in Python's integers, which are exact.
+# the start.
 
 
-def fixed(x: float) -> int:
-    """x in units of 2^-160."""
-    numerator, denominator = x.as_integer_ratio()
-    return (numerator << BITS) // denominator
+def scaled_to_unit(*numbers: float) -> list[Decimal]:
+    """Scale numbers, of which the squares add up to 1 but for rounding, so that they do exactly."""
+    exact = [Decimal(x) for x in numbers]
+    length = EXACT.sqrt(sum(x * x for x in exact))
+    return [x / length for x in exact]
 
 
-def vec_low(exact: tuple[int, int, int], rounded: Vec) -> Vec:
+def lacking(exact: Iterable[Decimal], rounded: Vec) -> Vec:
     """What the numbers of a rounded vector lack."""
     parts = zip(exact, (rounded.x, rounded.y, rounded.z), strict=True)
-    x, y, z = (ldexp(part - fixed(number), -BITS) for part, number in parts)
-    return Vec(x, y, z)
-
-
-def exact_axis(axis: Triple) -> tuple[int, int, int]:
-    """The axis scaled to exactly unit length, in units of 2^-160."""
-    x, y, z = (fixed(part) for part in axis)
-    length = isqrt(x * x + y * y + z * z)
-    return x * ONE // length, y * ONE // length, z * ONE // length
+    return Vec(*(float(part - Decimal(number)) for part, number in parts))
 
 
 def axis_low(axis: Triple) -> Vec:
     """What an axis lacks to be exactly as long as 1."""
-    return vec_low(exact_axis(axis), Vec(*axis))
-
-
-def exact_turn(degrees: float) -> tuple[int, int]:
-    """The rounded cosine and sine of an angle, scaled so that their squares add up to exactly 1, in units of 2^-160."""
-    c, s = (fixed(part) for part in cos_and_sin(degrees))
-    length = isqrt(c * c + s * s)
-    return c * ONE // length, s * ONE // length
+    with localcontext(EXACT):
+        return lacking(scaled_to_unit(*axis), Vec(*axis))
 
 
 def basis_low(axis: Triple, roll: float, u: Vec, v: Vec, w: Vec) -> tuple[Vec, Vec, Vec]:
     """What the vectors u, v, w of `minirt.shapes.frames.basis` lack."""
-    x, y, z = exact_axis(axis)
-    sign = int(copysign(1.0, axis[1]))
-    a = -ONE * ONE // (sign * ONE + y)
-    b = z * x * a // (ONE * ONE)
-    exact_u = sign * b, -sign * z, ONE + sign * z * z * a // (ONE * ONE)
-    exact_v = sign * ONE + x * x * a // (ONE * ONE), -x, b
-    c, s = exact_turn(roll)
-    rolled_u, rolled_v = combined(c, exact_u, s, exact_v), combined(c, exact_v, -s, exact_u)
-    return vec_low(rolled_u, u), vec_low(rolled_v, v), vec_low((x, y, z), w)
-
-
-def combined(a: int, u: tuple[int, int, int], b: int, v: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Return a u + b v, in units of 2^-160."""
-    x, y, z = ((a * p + b * q) // ONE for p, q in zip(u, v, strict=True))
-    return x, y, z
-
-
-def product(factors: tuple[float, ...]) -> tuple[int, int]:
-    """The product of some numbers, exactly: numerator and denominator."""
-    ratios = [x.as_integer_ratio() for x in factors]
-    return prod(n for n, _ in ratios), prod(d for _, d in ratios)
+    with localcontext(EXACT):
+        x, y, z = scaled_to_unit(*axis)
+        c, s = scaled_to_unit(*cos_and_sin(roll))
+        sign = Decimal(copysign(1.0, axis[1]))
+        a = -1 / (sign + y)
+        pairs = ((sign * z * x * a, sign + x * x * a), (-sign * z, -x), (1 + sign * z * z * a, z * x * a))
+        rolled_u, rolled_v = [c * p + s * q for p, q in pairs], [c * q - s * p for p, q in pairs]
+        return lacking(rolled_u, u), lacking(rolled_v, v), lacking((x, y, z), w)
 
 
 def quotient_low(above: tuple[float, ...], below: tuple[float, ...], rounded: float) -> float:
     """What the rounded quotient of two products lacks."""
     if not isfinite(rounded):
         return 0.0
-    (n, d), (m, e), (k, f) = product(above), product(below), rounded.as_integer_ratio()
-    return (n * e * f - k * m * d) / (m * d * f)
+    with localcontext(EXACT):
+        top, bottom = (prod(map(Decimal, each), start=Decimal(1)) for each in (above, below))
+        return float(top / bottom - Decimal(rounded))
 
 
 def root_low(diameter: float, waist: float, height: float, rounded: float) -> float:
     """What sqrt(diameter^2 - waist^2) / height, rounded, lacks."""
     if not 0.0 < rounded < inf:
         return 0.0
-    (n, d), (m, e) = product((diameter, diameter)), product((waist, waist))
-    (k, f), (h, g) = product((rounded, rounded)), product((height, height))
-    above = (n * e - m * d) * g * f - k * h * d * e  # of the squares' difference
-    p, q = rounded.as_integer_ratio()
-    return above * q / (2 * h * d * e * f * p)
+    with localcontext(EXACT):
+        wide, thin, high, root = map(Decimal, (diameter, waist, height, rounded))
+        return float(((wide * wide - thin * thin) / (high * high) - root * root) / (2 * root))  # Newton's step

@@ -32,8 +32,8 @@ from minirt.lanes import (
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.compensated import axis_low, minus, quotient_low, times, value
-from minirt.shapes.frames import from_basis, revolved_mapping, to_basis
-from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.frames import in_scene, own_direction, own_point, revolved_mapping, to_basis
+from minirt.shapes.shape import Ball, Capped, Position, point_along
 from minirt.shapes.start import (
     axial,
     beside_side,
@@ -43,7 +43,6 @@ from minirt.shapes.start import (
     negative_interval,
     position_error,
     starts_close,
-    within_shell,
     zero_within,
 )
 
@@ -54,7 +53,7 @@ BLUR = 16.0  # unit roundoffs of the distance from the apex by which the cone is
 
 
 @record()
-class Cone(Axial):
+class Cone(Capped):
     """A line `co` of a scene file."""
 
     code, title, plural, aliases, revolved = "co", "cone", "cones", ("cn", "cone"), True
@@ -65,23 +64,19 @@ class Cone(Axial):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedCone:
-        u, v, w = self.frame()
         slope = self.diameter / 2 / self.height
         slope_low = quotient_low((self.diameter,), (2.0, self.height), slope)
-        return PackedCone(Position(Vec(*self.apex)), u, v, w, axis_low(self.axis), slope, slope_low, self.height)
+        sizes = slope, slope_low, self.height
+        return PackedCone(Position(Vec(*self.apex)), *self.frame(), axis_low(self.axis), *sizes)
 
     def balls(self) -> tuple[Ball, ...]:
         return (self.apex, 0.0), (point_along(self.apex, self.axis, self.height), self.diameter / 2)
-
-    def bounds(self) -> Bounds:
-        base = bounds_of_disc(point_along(self.apex, self.axis, self.height), self.axis, self.diameter / 2)
-        return union_of_bounds((self.apex, self.apex), base)
 
 
 class PackedCone(NamedTuple):
     """Packed form of a cone: its own frame, in which the apex is the origin and the base lies above it."""
 
-    apex: Position
+    centre: Position  # the apex
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -91,17 +86,7 @@ class PackedCone(NamedTuple):
     height: float
 
 
-def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the cone, wherever it starts."""
-    return solve(cone, origin, direction, True)
-
-
-def occludes(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the cone."""
-    return solve(cone, origin, direction, None)
-
-
-def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
+def intersect(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
@@ -111,12 +96,8 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     rounding may deny that, and the whole interval between apex and base is left. For a ray beside a generator t is
     counted from the height of the apex: its deepest point is known badly, and where it passes the apex closely its
     distance from there counts.
-
-    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`. Other rays may start at the cone: see
-    `minirt.shapes.cone`.
     """
-    p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
-    d = to_basis(cone.u, cone.v, cone.w, direction)
+    p, d = own_point(cone, origin), own_direction(cone, direction)
     rise = cone.slope * d.z
     steepness = rise * rise
     a = d.x * d.x + d.y * d.y - steepness
@@ -140,14 +121,12 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
         level = p.x * p.x + p.y * p.y - squared
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
         shell = squared + apex_shell(cone.slope, size, a)
-        within = within_shell(level, shell, over, size)
-        if rarely(within):
-            close = within & starts_close(a, b, level, shell, over, size, (p.z - half) * d.z)
-            if any(close):
-                low, high, start, half_b, c, product = close_start(
-                    cone, origin, p, d, close, parallel, a, per_a, b, level, over, per_height, start, half_b, c
-                )
-                first, last = where(close, low, first), where(close, high, last)
+        close = starts_close(a, b, level, shell, over, size, (p.z - half) * d.z)
+        if rarely(close):
+            low, high, start, half_b, c, product = close_start(
+                cone, origin, p, d, close, parallel, a, per_a, b, level, over, per_height, start, half_b, c
+            )
+            first, last = where(close, low, first), where(close, high, last)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
@@ -165,7 +144,7 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
 
     At the apex the normal is opposite to the axis.
     """
-    p = to_basis(cone.u, cone.v, cone.w, point - cone.apex)
+    p = own_point(cone, point)
     rho = sqrt(p.x * p.x + p.y * p.y)
     cosine = inverse_root(splat(1.0, rho) + cone.slope * cone.slope)  # of the angle between axis and side
     sine = cone.slope * cosine
@@ -178,13 +157,13 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     up = where(on_side, where(on_axis, -1.0, -sine), 1.0)
     out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
     on = p - where(on_side, off, p.z - cone.height) * out
-    return cone.apex + from_basis(cone.u, cone.v, cone.w, on), from_basis(cone.u, cone.v, cone.w, out)
+    return in_scene(cone, on, out)
 
 
 def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
     """Angle around the side as u, and v from the base up to the apex: in a frame that has the apex above."""
     u, v, w = cone.u, -cone.v, -cone.w
-    p = to_basis(u, v, w, point - cone.apex)
+    p = to_basis(u, v, w, point - cone.centre)
     out = to_basis(u, v, w, normal)
     narrowing = -cone.slope * sqrt(1.0 + cone.slope * cone.slope)  # by height, along out.x and out.y
     rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, 1.0)
@@ -249,7 +228,7 @@ def close_start(
     """
     reach, rise = cone.slope * p.z, cone.slope * d.z
     squared = reach * reach
-    height, power = axial(origin, cone.apex, cone.w, cone.w_low, a)
+    height, power = axial(cone, origin, a)
     side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
     exact_level = value(minus(power, times(side, side)))
     slope = sqrt(squared * (1.0 + cone.slope * cone.slope))

@@ -19,7 +19,7 @@ from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt,
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import along, basis_low, divided, minus, offset, plus, times, value
-from minirt.shapes.frames import TWO_PI, angle_in_turns, from_basis, to_basis
+from minirt.shapes.frames import TWO_PI, angle_in_turns, from_basis, own_direction, own_point, to_basis
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, point_along
 from minirt.shapes.start import CLOSE, ROUNDING, negative_interval, position_error, splat_vec, zero_within
 
@@ -79,27 +79,17 @@ class PackedEllipsoid(NamedTuple):
     scale: Vec  # 1 / semi
 
 
-def intersect(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the ellipsoid, wherever it starts."""
-    return solve(ellipsoid, origin, direction, True)
-
-
-def occludes(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the ellipsoid."""
-    return solve(ellipsoid, origin, direction, None)
-
-
-def solve(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
+def intersect(
+    ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, anywhere: bool | None = True
+) -> tuple[Mask, Number]:
     """Whether and where a ray meets the ellipsoid.
 
     In its own frame, divided by its semi-axes, it is the unit sphere, and t along the scaled ray is the same. As for a
     sphere t is counted from the ray's closest approach to the centre, which keeps full precision for small ellipsoids
     that are far away.
-
-    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
-    p = scaled(to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, origin - ellipsoid.centre), ellipsoid.scale)
-    d = scaled(to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, direction), ellipsoid.scale)
+    p = scaled(own_point(ellipsoid, origin), ellipsoid.scale)
+    d = scaled(own_direction(ellipsoid, direction), ellipsoid.scale)
     a = dot(d, d)
     per_a = 1.0 / a
     b = dot(p, d)
@@ -139,7 +129,7 @@ def level_of(ellipsoid: PackedEllipsoid, point: Vec, like: Number) -> Number:
 
 def surface(ellipsoid: PackedEllipsoid, point: Vec) -> tuple[Vec, Vec]:
     """`point` moved onto the surface along the normal, to first order, and the outward normal there."""
-    p = to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, point - ellipsoid.centre)
+    p = own_point(ellipsoid, point)
     q = scaled(p, ellipsoid.scale)
     slope = scaled(q, ellipsoid.scale)  # half of the gradient of |q|^2
     above = 0.5 * (dot(q, q) - 1.0) / dot(slope, slope)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from minirt.fields import Triple, cos_and_sin, upright
 from minirt.lanes import Mask, Number, Vec, copysign, dot, splat, where
@@ -54,6 +55,29 @@ def from_basis(u: Vec, v: Vec, w: Vec, p: Vec) -> Vec:
     return p.x * u + p.y * v + p.z * w
 
 
+# The own frame of a packed shape: its vectors u, v and w, and its `centre` as the origin.
+
+
+def own_point(shape: Any, point: Vec) -> Vec:
+    """Transform a point of the scene into the shape's own frame."""
+    return to_basis(shape.u, shape.v, shape.w, point - shape.centre)
+
+
+def own_direction(shape: Any, direction: Vec) -> Vec:
+    """Transform a direction into the shape's own frame."""
+    return to_basis(shape.u, shape.v, shape.w, direction)
+
+
+def in_scene(shape: Any, point: Vec, direction: Vec) -> tuple[Vec, Vec]:
+    """Transform a point and a direction of the shape's own frame back into the scene."""
+    return shape.centre + scene_direction(shape, point), scene_direction(shape, direction)
+
+
+def scene_direction(shape: Any, direction: Vec) -> Vec:
+    """Transform a direction of the shape's own frame back into the scene."""
+    return from_basis(shape.u, shape.v, shape.w, direction)
+
+
 # Texture coordinates around the side and on the caps of solids of revolution. Points, normals and tangents are in the
 # frame of `basis`, whose third vector is the axis.
 
@@ -66,11 +90,6 @@ def angle_in_turns(y: Number, x: Number) -> Number:
 def longitude(p: Vec) -> tuple[Number, Vec]:
     """The angle about the axis, from 0 to 1, counter-clockwise as seen from its tip, 1/2 at -x; and the tangent."""
     return 0.5 + angle_in_turns(-p.y, -p.x), Vec(-TWO_PI * p.y, TWO_PI * p.x, 0.0)
-
-
-def is_side(p: Vec, normal: Vec) -> Mask:
-    """Whether a point is on the side and not on a cap, whose normal points away along the axis."""
-    return copysign(1.0, p.z) * normal.z < 0.5
 
 
 def revolved_mapping(
@@ -92,3 +111,11 @@ def revolved_mapping(
         from_basis(u, v, w, where(side, way, Vec(flat, across, flat))),
         from_basis(u, v, w, where(side, rise, Vec(up * across, flat, flat))),
     )
+
+
+def capped_mapping(
+    shape: Any, p: Vec, normal: Vec, height: Number, rise: Vec, radius: Number
+) -> tuple[Number, Number, Vec, Vec]:
+    """`revolved_mapping` of a packed shape, for a point and a normal in its own frame."""
+    side = copysign(1.0, p.z) * normal.z < 0.5  # that of a cap points away along the axis
+    return revolved_mapping(shape.u, shape.v, shape.w, p, side, height, rise, radius)

@@ -33,8 +33,8 @@ from minirt.lanes import (
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import axis_low, minus, root_low, times, two_product, value
-from minirt.shapes.frames import from_basis, is_side, revolved_mapping, to_basis
-from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
+from minirt.shapes.shape import Ball, Capped, Position, point_along
 from minirt.shapes.start import (
     axial,
     beside_side,
@@ -42,14 +42,13 @@ from minirt.shapes.start import (
     clamped_minimum,
     error_of_start,
     negative_interval,
-    product_of_roots,
     starts_close,
-    within_shell,
+    zero_within,
 )
 
 
 @record()
-class Hyperboloid(Axial):
+class Hyperboloid(Capped):
     """A line `hy` of a scene file."""
 
     code, title, plural, revolved = "hy", "hyperboloid", "hyperboloids", True
@@ -66,24 +65,15 @@ class Hyperboloid(Axial):
         return "waist", f"must be at most the diameter, {spelled(self.diameter)}, got {spelled(self.waist)}"
 
     def pack(self) -> PackedHyperboloid:
-        u, v, w = self.frame()
         thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
         slope = root(thinner / self.height) * root(thicker / self.height)
         slope_low = root_low(self.diameter, self.waist, self.height, slope)
-        return PackedHyperboloid(
-            Position(Vec(*self.centre)), u, v, w, axis_low(self.axis), self.waist / 2, slope, slope_low, self.height / 2
-        )
-
-    def ends(self) -> tuple[Triple, Triple]:
-        return point_along(self.centre, self.axis, -self.height / 2), point_along(
-            self.centre, self.axis, self.height / 2
-        )
+        sizes = self.waist / 2, slope, slope_low, self.height / 2
+        return PackedHyperboloid(Position(Vec(*self.centre)), *self.frame(), axis_low(self.axis), *sizes)
 
     def balls(self) -> tuple[Ball, ...]:
-        return tuple((end, self.diameter / 2) for end in self.ends())
-
-    def bounds(self) -> Bounds:
-        return union_of_bounds(*(bounds_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
+        up = self.height / 2
+        return tuple((point_along(self.centre, self.axis, way), self.diameter / 2) for way in (-up, up))
 
 
 class PackedHyperboloid(NamedTuple):
@@ -100,27 +90,16 @@ class PackedHyperboloid(NamedTuple):
     half: float  # of the height
 
 
-def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the hyperboloid, wherever it starts."""
-    return solve(hyperboloid, origin, direction, True)
-
-
-def occludes(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the hyperboloid."""
-    return solve(hyperboloid, origin, direction, None)
-
-
-def solve(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
+def intersect(
+    hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, anywhere: bool | None = True
+) -> tuple[Mask, Number]:
     """Whether and where a ray meets the hyperboloid.
 
     x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t if the ray is flatter than the asymptotic cone, and
     outside of an interval, perhaps empty, if it is steeper. Cut to the heights between the caps that leaves up to two
     intervals in the solid; the first end of one with t > 0 is the hit.
-
-    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
-    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
-    d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
+    p, d = own_point(hyperboloid, origin), own_direction(hyperboloid, direction)
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
     steep = a < 0.0
@@ -142,26 +121,24 @@ def solve(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, anywhere:
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - hyperboloid.half
         size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
-        within = within_shell(level, squared, over, size)
-        if rarely(within):
-            close = within & starts_close(a, b, level, squared, over, size, p.z * d.z)
-            if any(close):
-                height, power = axial(origin, hyperboloid.centre, hyperboloid.w, hyperboloid.w_low, a)
-                side = times((splat(hyperboloid.slope, a), splat(hyperboloid.slope_low, a)), height)
-                at_waist = splat(hyperboloid.waist, a)
-                exact_level = value(minus(minus(power, times(side, side)), two_product(at_waist, at_waist)))
-                slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
-                error = error_of_start(origin, p, level, slope, over)
-                low, high = between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
-                first, last = where(close, low, first), where(close, high, last)
-                beside = close & beside_side(level, squared, over, hyperboloid.half)
-                between = where(close & ~steep, clamped_minimum(per_a, b, low, high), start)
-                start = where(beside, 0.0, between)
-                q = p + start * d
-                reach_q = hyperboloid.slope * where(beside, height[0], q.z)
-                half_b = q.x * d.x + q.y * d.y - reach_q * rise
-                c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q - waist)
-                product = product_of_roots(beside, c, slope, error)
+        close = starts_close(a, b, level, squared, over, size, p.z * d.z)
+        if rarely(close):
+            height, power = axial(hyperboloid, origin, a)
+            side = times((splat(hyperboloid.slope, a), splat(hyperboloid.slope_low, a)), height)
+            at_waist = splat(hyperboloid.waist, a)
+            exact_level = value(minus(minus(power, times(side, side)), two_product(at_waist, at_waist)))
+            slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
+            error = error_of_start(origin, p, level, slope, over)
+            low, high = between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
+            first, last = where(close, low, first), where(close, high, last)
+            beside = close & beside_side(level, squared, over, hyperboloid.half)
+            between = where(close & ~steep, clamped_minimum(per_a, b, low, high), start)
+            start = where(beside, 0.0, between)
+            q = p + start * d
+            reach_q = hyperboloid.slope * where(beside, height[0], q.z)
+            half_b = q.x * d.x + q.y * d.y - reach_q * rise
+            c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q - waist)
+            product = where(beside, zero_within(c, 2.0 * slope * error), c)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
@@ -189,7 +166,7 @@ def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
     It moves to the side along the axis where that is flatter than 45 degrees, and across the axis where it is steeper:
     exactly, and hardly farther than the nearest point.
     """
-    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, point - hyperboloid.centre)
+    p = own_point(hyperboloid, point)
     rho = sqrt(p.x * p.x + p.y * p.y)
     reach = hyperboloid.slope * p.z
     down = hyperboloid.slope * reach  # rho and -down: gradient of the side's function, across and along the axis
@@ -206,16 +183,12 @@ def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
     falling = hyperboloid.slope * hyperboloid.slope * foot.z
     normal = where(side, unit(Vec(foot.x, foot.y, -falling)), cap)
     on = where(side, foot, p - over * cap)
-    return (
-        hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, on),
-        from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, normal),
-    )
+    return in_scene(hyperboloid, on, normal)
 
 
 def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
     """Angle around the side as u, height as v."""
-    u, v, w = hyperboloid.u, hyperboloid.v, hyperboloid.w
-    p = to_basis(u, v, w, point - hyperboloid.centre)
+    p, out = own_point(hyperboloid, point), own_direction(hyperboloid, normal)
     tall = 2.0 * hyperboloid.half
     rho = sqrt(p.x * p.x + p.y * p.y)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)  # a waist of almost no width has points on the axis
@@ -223,7 +196,7 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
     reach = hyperboloid.slope * hyperboloid.half
     radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
-    return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)
+    return capped_mapping(hyperboloid, p, out, 0.5 + p.z / tall, rise, radius)
 
 
 def boundary(hyperboloid: Any, point: Vec) -> Boundary:

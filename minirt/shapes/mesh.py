@@ -18,7 +18,7 @@ import numpy as np
 
 from minirt import meshes
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, copysign, cross, dot, maximum, minimum, unit, where
+from minirt.lanes import Number, Vec, copysign, cross, dot, maximum, minimum, unit, where
 from minirt.records import record
 from minirt.shapes import triangle
 from minirt.shapes.boundary import Boundary, facing, triangle_boundary
@@ -136,25 +136,7 @@ class PackedMeshTriangle(NamedTuple):
     v_c: float
 
 
-def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the triangle: watertight, as for `tr`."""
-    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction, True)
-
-
-def occludes(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the triangle."""
-    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction, None)
-
-
-def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
-    """Cull the rays of a packet with a common apex that cannot meet the triangle."""
-    return triangle.in_pyramid((mesh.a, mesh.b, mesh.c), mesh.normal, apex, start, direction, active)
-
-
-def surface(mesh: PackedMeshTriangle, point: Vec) -> tuple[Vec, Vec]:
-    """`point` projected onto the triangle's plane, and the normal of that plane."""
-    height = dot(mesh.normal, point - mesh.a)
-    return point - height * mesh.normal, mesh.normal
+intersect, surface, may_meet = triangle.intersect, triangle.surface, triangle.may_meet
 
 
 def barycentric_coordinates(mesh: PackedMeshTriangle, point: Vec) -> tuple[Number, Number, Number]:

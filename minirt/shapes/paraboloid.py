@@ -13,11 +13,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, any, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, unit, where
+from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, unit, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import axis_low, minus, quotient_low, times, value
-from minirt.shapes.frames import from_basis, is_side, revolved_mapping, to_basis
+from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import (
     Axial,
     Ball,
@@ -34,10 +34,9 @@ from minirt.shapes.start import (
     between_caps,
     clamped_minimum,
     error_of_start,
-    negative_interval,
-    product_of_roots,
+    first_overlap,
     starts_close,
-    within_shell,
+    zero_within,
 )
 
 
@@ -53,13 +52,11 @@ class Paraboloid(Axial):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedParaboloid:
-        u, v, w = self.frame()
         radius = self.diameter / 2
         focal = radius * (radius / self.height) / 2
         focal_low = quotient_low((radius, radius), (2.0, self.height), focal)
-        return PackedParaboloid(
-            Position(Vec(*self.vertex)), u, v, w, axis_low(self.axis), focal, focal_low, self.height
-        )
+        sizes = focal, focal_low, self.height
+        return PackedParaboloid(Position(Vec(*self.vertex)), *self.frame(), axis_low(self.axis), *sizes)
 
     def balls(self) -> tuple[Ball, ...]:
         # In directions below its vertex it reaches less far than a ball of half the radius of its rim.
@@ -81,7 +78,7 @@ class Paraboloid(Axial):
 class PackedParaboloid(NamedTuple):
     """Packed form of a paraboloid: its own frame, in which the vertex is the origin and the cap lies above it."""
 
-    vertex: Position
+    centre: Position  # the vertex
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -91,26 +88,15 @@ class PackedParaboloid(NamedTuple):
     height: float
 
 
-def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the paraboloid, wherever it starts."""
-    return solve(paraboloid, origin, direction, True)
-
-
-def occludes(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the paraboloid."""
-    return solve(paraboloid, origin, direction, None)
-
-
-def solve(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
+def intersect(
+    paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: bool | None = True
+) -> tuple[Mask, Number]:
     """Whether and where a ray meets the paraboloid.
 
     As with the cylinder the ray is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
     below the cap. For a ray along the axis one end of the interval is infinite, and the other is exact.
-
-    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
-    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
-    d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
+    p, d = own_point(paraboloid, origin), own_direction(paraboloid, direction)
     a = d.x * d.x + d.y * d.y
     slant = paraboloid.focal * d.z
     b = p.x * d.x + p.y * d.y - slant
@@ -128,31 +114,22 @@ def solve(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: b
         level = across - 2.0 * paraboloid.focal * p.z
         half = 0.5 * paraboloid.height
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
-        within = within_shell(level, squared, over, size)
-        if rarely(within):
-            close = within & starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
-            if any(close):
-                height, power = axial(origin, paraboloid.vertex, paraboloid.w, paraboloid.w_low, a)
-                double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
-                exact_level = value(minus(power, times(double, height)))
-                slope = sqrt(squared)
-                error = error_of_start(origin, p, level, slope, over)
-                low, high = between_caps(height, 0.0, paraboloid.height, per_height, error)
-                first, last = where(close, low, first), where(close, high, last)
-                beside = close & beside_side(level, squared, over, half)
-                start = where(beside, 0.0, where(close, clamped_minimum(per_a, b, low, high), start))
-                q = p + start * d
-                half_b = q.x * d.x + q.y * d.y - slant
-                c = where(beside, exact_level, q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z)
-                product = product_of_roots(beside, c, slope, error)
-    hit, below, above = negative_interval(a, per_a, half_b, c, product)
-    t = start
-    if any(hit):
-        near = maximum(start + below, first)
-        far = minimum(start + above, last)
-        t = where(near > 0.0, near, far)
-        hit = hit & (near <= far) & (t > 0.0)
-    return hit, t
+        close = starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
+        if rarely(close):
+            height, power = axial(paraboloid, origin, a)
+            double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
+            exact_level = value(minus(power, times(double, height)))
+            slope = sqrt(squared)
+            error = error_of_start(origin, p, level, slope, over)
+            low, high = between_caps(height, 0.0, paraboloid.height, per_height, error)
+            first, last = where(close, low, first), where(close, high, last)
+            beside = close & beside_side(level, squared, over, half)
+            start = where(beside, 0.0, where(close, clamped_minimum(per_a, b, low, high), start))
+            q = p + start * d
+            half_b = q.x * d.x + q.y * d.y - slant
+            c = where(beside, exact_level, q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z)
+            product = where(beside, zero_within(c, 2.0 * slope * error), c)
+    return first_overlap(a, per_a, half_b, c, product, start, first, last)
 
 
 def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
@@ -161,7 +138,7 @@ def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
     It moves to the side along the axis where that is flatter than 45 degrees, and across the axis where it is steeper:
     exactly, and hardly farther than the nearest point.
     """
-    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, point - paraboloid.vertex)
+    p = own_point(paraboloid, point)
     squared = p.x * p.x + p.y * p.y
     steep = squared > paraboloid.focal * paraboloid.focal
     within = 2.0 * paraboloid.focal * p.z  # the square of the radius at that height
@@ -174,10 +151,7 @@ def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
     cap = Vec(flat, flat, flat + 1.0)
     normal = where(side, unit(Vec(foot.x, foot.y, flat - paraboloid.focal)), cap)
     on = where(side, foot, p - over * cap)
-    return (
-        paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, on),
-        from_basis(paraboloid.u, paraboloid.v, paraboloid.w, normal),
-    )
+    return in_scene(paraboloid, on, normal)
 
 
 def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
@@ -185,13 +159,12 @@ def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Numb
 
     At the vertex the tangents are zero.
     """
-    u, v, w = paraboloid.u, paraboloid.v, paraboloid.w
-    p = to_basis(u, v, w, point - paraboloid.vertex)
+    p, out = own_point(paraboloid, point), own_direction(paraboloid, normal)
     rho = sqrt(p.x * p.x + p.y * p.y)
     radius = sqrt(2.0 * paraboloid.focal * paraboloid.height)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
-    return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)
+    return capped_mapping(paraboloid, p, out, rho / radius, rise, radius)
 
 
 def boundary(paraboloid: Any, point: Vec) -> Boundary:

@@ -14,7 +14,7 @@ from dataclasses import KW_ONLY
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot, fabs, max_norm, unit_roundoff, where
+from minirt.lanes import Mask, Number, Vec, dot, fabs, max_norm, unit_roundoff
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
@@ -37,8 +37,7 @@ class Plane(Flat):
     checker: Checker | None = declare(Compound, "checkerboard", bare="1", default=None, shared=BOARD)
 
     def pack(self) -> PackedPlane:
-        right, up, _ = self.frame()
-        return PackedPlane(Position(Vec(*self.point)), Vec(*self.normal), right, up)
+        return PackedPlane(Position(Vec(*self.point)), *self.frame())
 
     def balls(self) -> tuple[Ball, ...]:
         return ()
@@ -54,12 +53,12 @@ class PackedPlane(NamedTuple):
     """Packed form of a plane."""
 
     point: Position
-    normal: Vec
     right: Vec  # of pictures
     up: Vec
+    normal: Vec
 
 
-def intersect(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+def intersect(plane: PackedPlane, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
     """Whether and where a ray meets the plane; a ray parallel to it, within rounding, does not."""
     slope = dot(plane.normal, direction)
     t = dot(plane.normal, plane.point - origin) / slope
@@ -83,31 +82,10 @@ def boundary(plane: Any, point: Vec) -> Boundary:
     return Boundary((dot(plane.normal, point - plane.point),))
 
 
-# What flat shapes with an edge share: rays that start on one, for all that rounding lets one know, do not hit it there.
-
-
 def start_error(origin: Vec, f: Vec) -> Number:
-    """Distance to a flat surface below which a ray starts on it.
+    """Distance to a flat surface below which a ray starts on it, for all that rounding lets one know.
 
     The roundings of the origin's coordinates, and of its height, which is computed from f, its difference from the
     shape's centre.
     """
     return ROUNDINGS * unit_roundoff(f.x) * (max_norm(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))
-
-
-def least_t(origin: Vec, f: Vec, height: Number, size: float) -> Number:
-    """The t that a hit must exceed: not 0 for rays that start on the surface, so that they do not hit it there.
-
-    `height` is that of the origin above the surface, and `size` that of the shape.
-    """
-    return where(fabs(height) <= start_error(origin, f), CLOSE * size, 0.0)
-
-
-def crossing(normal: Vec, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number, Vec]:
-    """Whether and where a ray meets the plane of a flat shape at a t of more than the `least`: t and the point.
-
-    The ray starts at f and at this `height`, relative to the centre, as the point is.
-    """
-    slope = dot(normal, direction)
-    t = -height / slope
-    return (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least), t, f + t * direction

@@ -3,8 +3,10 @@
 The file of a shape holds its manual page, its line in a scene file (a record), its packed form for the kernel
 (a NamedTuple of numbers and Vecs, made by `pack`), three functions on packed shapes:
 
-    intersect(shape, origin, direction)   whether a ray hits the shape, and the distance t along the unit `direction` at
-                                          which it enters or, from inside, leaves: the least t > 0
+    intersect(shape, origin, direction, anywhere)
+                                          whether a ray hits the shape, and the distance t along the unit `direction` at
+                                          which it enters or, from inside, leaves: the least t > 0; `anywhere` is None
+                                          for shadow rays, which start clear of all surfaces
     surface(shape, point)                 `point`, which is within rounding of the surface, moved onto it, and the unit
                                           normal there, outward where there is an outside
     mapping(shape, point, normal)         texture coordinates of a point of the surface with this normal: u to the right
@@ -15,9 +17,8 @@ and one on the fields of the scene line, which states the shape once more, for t
     boundary(shape, point)                its faces: functions of a point that are 0 on a face and grow outwards, see
                                           `minirt.shapes.boundary`
 
-Four functions are optional:
+Three functions are optional:
 
-    occludes(shape, origin, direction)    a cheaper `intersect` for shadow rays, which start clear of all surfaces
     shading(shape, point, normal)         the unit normal by which the point is lit, where that is not the `normal` of
                                           the surface: smooth shading of meshes
     smooth_point(shape, point, normal)    the point of a smooth surface above a point of its facet, on the side of
@@ -97,9 +98,9 @@ class Shape(Attributes):
         """A point and the unit normal of an infinite plane; None for all other kinds."""
         return None
 
-    @abstractmethod
     def bounds(self) -> Bounds | None:
-        """The axis-aligned bounding box, or None for a kind that is `infinite`."""
+        """The axis-aligned bounding box, here that of the centres of its balls; None for a kind that is `infinite`."""
+        return bounds_of_points(*(centre for centre, _ in self.balls()))
 
 
 def geometric_normal(shape: Any, point: Vec, normal: Vec) -> Vec:
@@ -129,28 +130,15 @@ class Kind(NamedTuple):
     shading: Callable[..., Any] = geometric_normal
     smooth_point: Callable[..., Any] = same_point
     may_meet: Callable[..., Any] = all_rays
-    occludes: Callable[..., Any] | None = None
     batched: bool = False  # whether one element is many small primitives side by side
     infinite: bool = False  # whether the shapes have no bounding box
 
 
 def kind_of(element: type[Shape]) -> Kind:
-    """Make the entry of the registry for a shape from the names in its file; AttributeError where one is missing."""
-    module = sys.modules[element.__module__]
-    names = "shading", "smooth_point", "may_meet", "occludes"
-    optional = {name: getattr(module, name) for name in names if hasattr(module, name)}
+    """Make the entry of the registry for a shape from the names in its file; TypeError where one is missing."""
+    formulas = {name: found for name, found in vars(sys.modules[element.__module__]).items() if name in Kind._fields}
     packed = get_type_hints(element.pack)["return"]
-    return Kind(
-        element,
-        packed,
-        module.intersect,
-        module.surface,
-        module.mapping,
-        module.boundary,
-        **optional,
-        batched=element.batched,
-        infinite=element.infinite,
-    )
+    return Kind(element, packed, **formulas, batched=element.batched, infinite=element.infinite)
 
 
 def point_along(point: Triple, axis: Triple, distance: float) -> Triple:
@@ -220,6 +208,14 @@ class Axial(Oriented):
 
     def frame(self) -> Frame:
         return basis(self.axis, self.roll)
+
+
+@record(kw_only=True)
+class Capped(Axial):
+    """A solid of revolution in the hull of two discs, which are the middle sections of its balls."""
+
+    def bounds(self) -> Bounds:
+        return union_of_bounds(*(bounds_of_disc(centre, self.axis, radius) for centre, radius in self.balls()))
 
 
 @record(kw_only=True)

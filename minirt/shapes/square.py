@@ -13,11 +13,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot, fabs
+from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, upright_frame
-from minirt.shapes.plane import crossing, least_t
-from minirt.shapes.shape import Ball, Bounds, Flat, Position, bounds_of_points, point_along
+from minirt.shapes.plane import CLOSE, PARALLEL, start_error
+from minirt.shapes.shape import Ball, Flat, Position, point_along
 
 
 @record()
@@ -31,8 +31,7 @@ class Square(Flat):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedSquare:
-        right, up, _ = self.frame()
-        return PackedSquare(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
+        return PackedSquare(Position(Vec(*self.centre)), *self.frame(), self.side / 2)
 
     def corners(self) -> tuple[Triple, ...]:
         half = self.side / 2
@@ -43,9 +42,6 @@ class Square(Flat):
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((corner, 0.0) for corner in self.corners())
-
-    def bounds(self) -> Bounds:
-        return bounds_of_points(*self.corners())
 
 
 class PackedSquare(NamedTuple):
@@ -58,39 +54,40 @@ class PackedSquare(NamedTuple):
     half: float  # of a side
 
 
-def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the square; one that is parallel to it, or starts on it, within rounding, does
-    not."""
-    f = origin - square.centre
-    height = dot(square.normal, f)
-    return within(square, f, height, direction, least_t(origin, f, height, square.half))
-
-
-def occludes(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the square."""
-    f = origin - square.centre
-    return within(square, f, dot(square.normal, f), direction, 0.0)
-
-
-def within(square: PackedSquare, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
-    """Whether and where a ray from f, relative to the centre, meets the square, at a t of more than the `least`."""
-    hit, t, p = crossing(square.normal, f, height, direction, least)
+def intersect(square: PackedSquare, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the square."""
+    hit, t, p = meets_plane(square, origin, direction, anywhere)
     return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
 
 
-def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:
-    """`point` projected onto the square's plane, and the normal."""
-    height = dot(square.normal, point - square.centre)
-    return point - height * square.normal, square.normal
+def meets_plane(flat: Any, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number, Vec]:
+    """Whether and where a ray meets the plane of a square or disc: t and the point, relative to the centre.
+
+    A ray that is parallel to it, or starts on it, within rounding, does not meet it there.
+    """
+    f = origin - flat.centre
+    height, slope = dot(flat.normal, f), dot(flat.normal, direction)
+    t = -height / slope
+    crosses = fabs(slope) > PARALLEL * unit_roundoff(slope)
+    if anywhere is None:
+        return crosses & (t > 0.0), t, f + t * direction
+    least = where(fabs(height) <= start_error(origin, f), CLOSE * flat.half, 0.0)
+    return crosses & (t > least), t, f + t * direction
 
 
-def mapping(square: PackedSquare, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """u and v from 0 to 1 from edge to edge."""
-    p = point - square.centre
-    side = 2.0 * square.half
+def surface(flat: Any, point: Vec) -> tuple[Vec, Vec]:
+    """`point` projected onto the plane of a square or disc, and the normal."""
+    height = dot(flat.normal, point - flat.centre)
+    return point - height * flat.normal, flat.normal
+
+
+def mapping(flat: Any, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """u and v from 0 to 1 across the square, or the one around the disc."""
+    p = point - flat.centre
+    side = 2.0 * flat.half
     per_side = 1.0 / side
-    u, v = 0.5 + dot(p, square.right) * per_side, 0.5 + dot(p, square.up) * per_side
-    return u, v, side * square.right, side * square.up
+    u, v = 0.5 + dot(p, flat.right) * per_side, 0.5 + dot(p, flat.up) * per_side
+    return u, v, side * flat.right, side * flat.up
 
 
 def boundary(square: Any, point: Vec) -> Boundary:

@@ -5,13 +5,14 @@ The height of such a start above the surface is computed to 32 digits (`minirt.s
 from the start. A start whose height is no more than the rounding of its coordinates is on the surface, and no ray hits
 the surface where it starts: one that goes inwards hits the other side, and one that goes outwards leaves the solid.
 
-Shadow rays start clear of all surfaces and need none of this: the formulas of quadrics leave it out for them, which
-saves a kernel a third of its size.
+Shadow rays start clear of all surfaces and need none of this: where `anywhere` is None the formulas of quadrics leave
+it out, which saves a kernel a third of its size.
 """
 
 from __future__ import annotations
 
 from math import inf, nan
+from typing import Any
 
 from minirt.lanes import (
     Mask,
@@ -70,27 +71,40 @@ def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Nu
     return minimum(maximum(-b * per_a, first), last)
 
 
-def within_shell(level: Number, squared: Number, over: Number, size: Number) -> Mask:
-    """Whether a point is in a solid of revolution or close above it, on the scale of the solid.
+def first_overlap(
+    a: Number, per_a: Number, b: Number, c: Number, product: Number, start: Number, first: Number, last: Number
+) -> tuple[Mask, Number]:
+    """Whether the interval of `negative_interval` and the one from `first` to `last` overlap at t > 0, and where first.
 
-    `level` is by how much the square of its distance from the axis exceeds that of the side there, which is about
-    `squared`; `over` is its height above the nearer cap.
+    The quadratic equation counts t from `start`, the second interval from the ray's origin, as the result does.
     """
-    return (level <= CLOSE * squared) & (over <= CLOSE * size)
+    hit, below, above = negative_interval(a, per_a, b, c, product)
+    t = start
+    if any(hit):
+        near = maximum(start + below, first)
+        far = minimum(start + above, last)
+        t = where(near > 0.0, near, far)
+        hit = hit & (near <= far) & (t > 0.0)
+    return hit, t
 
 
 def starts_close(
     a: Number, b: Number, level: Number, squared: Number, over: Number, size: Number, outwards: Number
 ) -> Mask:
-    """Whether a ray from within the shell starts close to the surface and may hit it there.
+    """Whether a ray starts in a solid of revolution or close above it, close to the surface, and may hit it there.
 
-    It does not if it starts clearly above the side or a cap and goes away from it, as most mirrored rays do. `a` and
-    `b` are those of its quadratic equation; it goes away from the middle between the caps if `outwards` > 0.
+    `level` is by how much the square of its start's distance from the axis exceeds that of the side there, which is
+    about `squared`; `over` is its height above the nearer cap. `a` and `b` are those of its quadratic equation; it goes
+    away from the middle between the caps if `outwards` > 0. It may hit nothing if it starts clearly above the side or a
+    cap and goes away from it, as most mirrored rays do.
     """
-    error = ROUNDING * unit_roundoff(a) * size
-    near = (level >= -CLOSE * squared) | (over >= -CLOSE * size)
-    inwards = (a < 0.0) | (b < 0.0) | (level * fabs(level) <= error * error * squared)
-    return near & inwards & ((outwards < 0.0) | (over <= error))
+    within = (level <= CLOSE * squared) & (over <= CLOSE * size)
+    if rarely(within):
+        error = ROUNDING * unit_roundoff(a) * size
+        near = (level >= -CLOSE * squared) | (over >= -CLOSE * size)
+        inwards = (a < 0.0) | (b < 0.0) | (level * fabs(level) <= error * error * squared)
+        return within & near & inwards & ((outwards < 0.0) | (over <= error))
+    return a > inf  # no ray
 
 
 def beside_side(level: Number, squared: Number, over: Number, half: Number) -> Mask:
@@ -115,27 +129,18 @@ def error_of_start(origin: Vec, p: Vec, level: Number, slope: Number, over: Numb
     return where((level <= 2.0 * slope * error) & (over <= error), error, 0.0)
 
 
-def product_of_roots(beside: Mask, c: Number, slope: Number, error: Number) -> Number:
-    """Return c of a quadratic equation, or exactly 0 for rays `beside` the side that start on it.
-
-    `error` is that of the start, and twice the `slope` is the gradient of c.
-    """
-    return where(beside, zero_within(c, 2.0 * slope * error), c)
-
-
 def zero_within(x: Number, error: Number) -> Number:
     """Return x, or exactly 0 where x is no more than its error."""
     return where(fabs(x) <= error, 0.0, x)
 
 
-def axial(origin: Vec, centre: Vec, axis: Vec, axis_low: Vec, like: Number) -> tuple[Pair, Pair]:
-    """Compute the height of the origin along an axis through the centre, and its squared distance from the axis.
+def axial(shape: Any, origin: Vec, like: Number) -> tuple[Pair, Pair]:
+    """Compute the height of a ray's origin along the axis of a packed shape, and its squared distance from the axis.
 
-    `axis_low` is what the rounded axis lacks. All numbers become lanes as `like` is, so that
-    kernels compile these operations once.
+    All numbers become lanes as `like` is, so that kernels compile these operations once.
     """
-    f = offset(splat_vec(origin, like), splat_vec(centre, like))
-    height = along(f, splat_vec(axis, like), splat_vec(axis_low, like))
+    f = offset(splat_vec(origin, like), splat_vec(shape.centre, like))
+    height = along(f, splat_vec(shape.w, like), splat_vec(shape.w_low, like))
     return height, minus(squared_length(f), times(height, height))
 
 

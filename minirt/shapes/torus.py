@@ -16,7 +16,7 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spe
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, maximum, minimum, rarely, splat, sqrt, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
-from minirt.shapes.frames import TWO_PI, angle_in_turns, from_basis, longitude, to_basis
+from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, longitude, own_direction, own_point, scene_direction
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along
 from minirt.shapes.start import position_error
 
@@ -42,8 +42,7 @@ class Torus(Axial):
         return "tube", f"must be at most the diameter, {spelled(self.diameter)}, got {spelled(self.tube)}"
 
     def pack(self) -> PackedTorus:
-        u, v, w = self.frame()
-        return PackedTorus(Position(Vec(*self.centre)), u, v, w, self.diameter / 2, self.tube / 2)
+        return PackedTorus(Position(Vec(*self.centre)), *self.frame(), self.diameter / 2, self.tube / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         u, v, _ = self.frame()
@@ -69,7 +68,7 @@ class PackedTorus(NamedTuple):
     tube: float  # radius of the tube
 
 
-def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+def intersect(torus: PackedTorus, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
     """Whether and where a ray meets the torus.
 
     Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides
@@ -88,8 +87,8 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
     hit = chord >= 0.0
     t = approach
     if any(hit):
-        p = to_basis(torus.u, torus.v, torus.w, g)
-        d = to_basis(torus.u, torus.v, torus.w, direction)
+        p = own_direction(torus, g)
+        d = own_direction(torus, direction)
         per_height = 1.0 / d.z
         level = torus.tube + pad
         bottom, top = (-level - p.z) * per_height, (level - p.z) * per_height
@@ -103,7 +102,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
             first = minimum(maximum(first, enter), leave)
             second = minimum(maximum(second, enter), leave)
             third = minimum(maximum(third, enter), leave)
-            start = splat(height(torus, to_basis(torus.u, torus.v, torus.w, f)), t)  # of primary rays it is one number
+            start = splat(height(torus, own_direction(torus, f)), t)  # of primary rays it is one number
             height_1 = where(first > enter, height(torus, p + first * d), start)
             height_2 = where(second > first, height(torus, p + second * d), height_1)
             height_3 = where(third > second, height(torus, p + third * d), height_2)
@@ -197,7 +196,7 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
 
 def surface(torus: PackedTorus, point: Vec) -> tuple[Vec, Vec]:
     """The point of the torus nearest to `point`, and the outward normal there."""
-    p = to_basis(torus.u, torus.v, torus.w, point - torus.centre)
+    p = own_point(torus, point)
     rho = sqrt(p.x * p.x + p.y * p.y)
     on_axis = rho == 0.0  # on the axis every point of the circle is as near
     per_rho = 1.0 / where(on_axis, 1.0, rho)
@@ -206,28 +205,20 @@ def surface(torus: PackedTorus, point: Vec) -> tuple[Vec, Vec]:
     per_apart = 1.0 / sqrt(aside * aside + p.z * p.z)
     across, up = aside * per_apart, p.z * per_apart
     reach = torus.ring + torus.tube * across
-    return (
-        torus.centre + from_basis(torus.u, torus.v, torus.w, Vec(reach * x, reach * y, torus.tube * up)),
-        from_basis(torus.u, torus.v, torus.w, Vec(across * x, across * y, up)),
-    )
+    return in_scene(torus, Vec(reach * x, reach * y, torus.tube * up), Vec(across * x, across * y, up))
 
 
 def mapping(torus: PackedTorus, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
     """Angle around the axis as u, angle around the tube as v."""
-    p = to_basis(torus.u, torus.v, torus.w, point - torus.centre)
-    out = to_basis(torus.u, torus.v, torus.w, normal)
+    p, out = own_point(torus, point), own_direction(torus, normal)
     rho = sqrt(p.x * p.x + p.y * p.y)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     x, y = p.x * per_rho, p.y * per_rho
     across = out.x * x + out.y * y
     u, direction = longitude(p)
     rise = TWO_PI * torus.tube * Vec(-out.z * x, -out.z * y, across)
-    return (
-        u,
-        0.5 + angle_in_turns(out.z, across),
-        from_basis(torus.u, torus.v, torus.w, direction),
-        from_basis(torus.u, torus.v, torus.w, rise),
-    )
+    v = 0.5 + angle_in_turns(out.z, across)
+    return u, v, scene_direction(torus, direction), scene_direction(torus, rise)
 
 
 def boundary(torus: Any, point: Vec) -> Boundary:

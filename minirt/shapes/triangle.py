@@ -35,9 +35,9 @@ from minirt.lanes import (
 from minirt.meshes.triangles import unit as unit_rows
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, triangle_boundary
-from minirt.shapes.compensated import Pair, two_product, two_sum
+from minirt.shapes.compensated import Pair, offset, two_product, two_sum
 from minirt.shapes.plane import start_error
-from minirt.shapes.shape import Ball, Bounds, Position, Shape, bounds_of_points
+from minirt.shapes.shape import Ball, Position, Shape
 
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
 ROUNDINGS = 2.0  # by which a ray that hits a triangle may pass beside it
@@ -84,9 +84,6 @@ class Triangle(Shape):
     def balls(self) -> tuple[Ball, ...]:
         return (self.a, 0.0), (self.b, 0.0), (self.c, 0.0)
 
-    def bounds(self) -> Bounds:
-        return bounds_of_points(self.a, self.b, self.c)
-
 
 class PackedTriangle(NamedTuple):
     """Packed form of a triangle."""
@@ -97,25 +94,8 @@ class PackedTriangle(NamedTuple):
     normal: Vec
 
 
-def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the triangle."""
-    return watertight(triangle.a, triangle.b, triangle.c, triangle.normal, origin, direction, True)
-
-
-def occludes(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a shadow ray, which starts clear of all surfaces, meets the triangle."""
-    return watertight(triangle.a, triangle.b, triangle.c, triangle.normal, origin, direction, None)
-
-
-def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
-    """Cull the rays of a packet with a common apex that cannot hit the triangle."""
-    return in_pyramid((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, active)
-
-
-def watertight(
-    a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec, anywhere: bool | None
-) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the triangle between three corners, without gaps between neighbours.
+def intersect(triangle: Any, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the triangle, or one of a mesh, without gaps between neighbours.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
     side of all three edges. The side depends on the two ends of an edge alone, transformed alike for all triangles that
@@ -134,10 +114,9 @@ def watertight(
     d = permuted_axes(by_x, by_y, direction)
     per_depth = 1.0 / d.z
     shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
-    corners = a, b, c
-    a = sheared(shear, permuted_axes(by_x, by_y, a - origin))
-    b = sheared(shear, permuted_axes(by_x, by_y, b - origin))
-    c = sheared(shear, permuted_axes(by_x, by_y, c - origin))
+    a = sheared(shear, permuted_axes(by_x, by_y, triangle.a - origin))
+    b = sheared(shear, permuted_axes(by_x, by_y, triangle.b - origin))
+    c = sheared(shear, permuted_axes(by_x, by_y, triangle.c - origin))
     of_a = edge_function(b, c)
     of_b = edge_function(c, a)
     of_c = edge_function(a, b)
@@ -146,8 +125,8 @@ def watertight(
     hit = (least >= 0.0) | (most <= 0.0)
     t = a.z
     if any(hit):
-        f = origin - corners[0]  # not a - origin: kept from above, it costs registers
-        slope, height = dot(normal, direction), dot(normal, f)
+        f = origin - triangle.a  # not its opposite: kept from above, that costs registers
+        slope, height = dot(triangle.normal, direction), dot(triangle.normal, f)
         t = -height / slope
         extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
         grazing = fabs(slope) * edge <= GRAZING * extent
@@ -156,7 +135,7 @@ def watertight(
             close = t * t < CLOSE * extent
             unclear = grazing | close
         if rarely(hit & unclear):
-            enter, leave = above(corners, normal, origin, direction)
+            enter, leave = above(triangle, origin, direction)
             at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
             begin = maximum(enter, minimum(minimum(at_a, at_b), at_c))
             end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
@@ -168,14 +147,13 @@ def watertight(
     return hit, t
 
 
-def above(corners: tuple[Vec, Vec, Vec], normal: Vec, origin: Vec, direction: Vec) -> tuple[Number, Number]:
+def above(triangle: Any, origin: Vec, direction: Vec) -> tuple[Number, Number]:
     """Where a ray begins and ends to be above or below the triangle, for all that rounding lets one know.
 
     There it is between each edge and the line through the opposite corner. That is symmetrical: the normal may be on
     either side.
     """
-    a, b, c = corners
-    a, b, c = a - origin, b - origin, c - origin
+    a, b, c, normal = triangle.a - origin, triangle.b - origin, triangle.c - origin, triangle.normal
     pad = ROUNDINGS * unit_roundoff(a.x) * (taxicab(a) + taxicab(b) + taxicab(c))
     first, second = between(a, b, c, normal, direction, pad), between(b, c, a, normal, direction, pad)
     third = between(c, a, b, normal, direction, pad)
@@ -213,7 +191,7 @@ def edge_function(p: Vec, q: Vec) -> Number:
     return rounded_product(p.x, q.y) - rounded_product(p.y, q.x)
 
 
-def surface(triangle: PackedTriangle, point: Vec) -> tuple[Vec, Vec]:
+def surface(triangle: Any, point: Vec) -> tuple[Vec, Vec]:
     """`point` projected onto the triangle's plane, and the normal."""
     height = dot(triangle.normal, point - triangle.a)
     return point - height * triangle.normal, triangle.normal
@@ -238,34 +216,29 @@ def boundary(triangle: Any, point: Vec) -> Boundary:
 # in a mesh with triangles as small as pixels nearly every triangle that passes it is hit.
 
 
-def in_pyramid(
-    corners: tuple[Vec, Vec, Vec], normal: Vec, apex: Vec, start: Vec | None, direction: Vec, active: Mask
-) -> Mask:
+def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
     """Cull the `active` rays that cannot hit the triangle, whatever the rounding: a mask of the others.
 
     Without a `start` rays leave the apex. With one they lead to the apex, and those that start in front of the
     triangle, as seen from the apex, cannot hit it.
     """
-    a, b, c = corners[0] - apex, corners[1] - apex, corners[2] - apex
+    a, b, c = triangle.a - apex, triangle.b - apex, triangle.c - apex
     of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
     size = maximum(maximum(max_norm(a), max_norm(b)), max_norm(c))
     far = splat(size, direction.x)
     if start is not None:
         far = far + max_norm(apex - start)
-        active = active & (depth_behind_plane(corners[0], normal, dot(normal, a), start) >= 0.0)
+        active = active & (depth_behind_plane(triangle, dot(triangle.normal, a), start) >= 0.0)
     margin = APART * unit_roundoff(direction.x) * size * far
     least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
     return active & ((least >= -margin) | (most <= margin))
 
 
-def depth_behind_plane(corner: Vec, normal: Vec, height: Number, start: Vec) -> Number:
-    """The greatest depth of `start` behind a plane, as seen from the apex.
-
-    `height` is the height of the plane above the apex along `normal`.
-    """
+def depth_behind_plane(triangle: Any, height: Number, start: Vec) -> Number:
+    """The greatest depth of `start` behind the plane of a triangle, as seen from an apex at this `height` below it."""
     away = where(height > 0.0, splat(1.0, height), -1.0)
-    slack = BEHIND * unit_roundoff(start.x) * (max_norm(start) + max_norm(corner))
-    return away * dot(normal, start - corner) + slack
+    slack = BEHIND * unit_roundoff(start.x) * (max_norm(start) + max_norm(triangle.a))
+    return away * dot(triangle.normal, start - triangle.a) + slack
 
 
 # A plain cross product of two edges has four correct digits for a sliver with an aspect ratio of 1e-12: the products
@@ -274,13 +247,8 @@ def depth_behind_plane(corner: Vec, normal: Vec, height: Number, start: Vec) -> 
 
 def plane_normal(a: Vec, b: Vec, c: Vec) -> Vec:
     """Cross product of b - a and c - a, exact to a few roundings; its length is twice the area of the triangle."""
-    (x, y, z), (u, v, w) = edge(a, b), edge(a, c)
+    (x, y, z), (u, v, w) = offset(b, a), offset(c, a)
     return Vec(cross_component(y, z, v, w), cross_component(z, x, w, u), cross_component(x, y, u, v))
-
-
-def edge(p: Vec, q: Vec) -> tuple[Pair, Pair, Pair]:
-    """The exact vector from p to q."""
-    return two_sum(q.x, -p.x), two_sum(q.y, -p.y), two_sum(q.z, -p.z)
 
 
 def cross_component(y: Pair, z: Pair, v: Pair, w: Pair) -> Number:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from minirt.shapes.gate import Gate  # type: ignore[import-not-found]
 
-from tests.stability.places import Place, line, spot
+from tests.stability.places import Place, line, special, spot
 
 
-def places(gate: Gate) -> list[Place]:
+@special.register
+def _(gate: Gate) -> list[Place]:
     """Its corners and edges."""
     found = []
     for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)):

@@ -94,7 +94,7 @@ def test_a_new_shape_without_special_places_is_told_what_to_declare(copy: Path) 
     finally:
         missing.write_text(text)
     assert done.returncode == 1
-    assert "no special places of a gate: declare `places` in tests/stability/gate.py" in done.stdout
+    assert "no special places of a gate: declare them in tests/stability/gate.py" in done.stdout
 
 
 def test_a_new_shape_and_a_new_material_are_added_edited_and_saved_by_keys(copy: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import singledispatch
 from itertools import pairwise, zip_longest
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from gmpy2 import const_pi, cos, get_context, mpfr, sin, sqrt
 
@@ -78,44 +78,51 @@ class Polynomial:
     """
 
     def __init__(self, *coefficients: Any) -> None:
-        self.coefficients = [c if isinstance(c, mpfr) else mpfr(c) for c in coefficients]
+        self.coefficients = [self.number(c) for c in coefficients]
 
-    def __add__(self, other: Any) -> Polynomial:
-        pairs = zip_longest(self.coefficients, coefficients_of(other), fillvalue=mpfr(0))
-        return Polynomial(*(a + b for a, b in pairs))
+    @staticmethod
+    def number(c: Any) -> Any:
+        """A coefficient in the arithmetic of the polynomial."""
+        return c if isinstance(c, mpfr) else mpfr(c)
 
-    def __mul__(self, other: Any) -> Polynomial:
-        if not isinstance(other, Polynomial):
-            return Polynomial(*(c * other for c in self.coefficients))
-        a, b = self.coefficients, other.coefficients
-        product = [mpfr(0)] * (len(a) + len(b) - 1)
+    def coefficients_of(self, other: Any) -> list[Any]:
+        """The coefficients of a polynomial, or of a number as a constant polynomial."""
+        return other.coefficients if isinstance(other, Polynomial) else [self.number(other)]
+
+    def __add__(self, other: Any) -> Self:
+        pairs = zip_longest(self.coefficients, self.coefficients_of(other), fillvalue=self.number(0))
+        return type(self)(*(a + b for a, b in pairs))
+
+    def __mul__(self, other: Any) -> Self:
+        a, b = self.coefficients, self.coefficients_of(other)
+        product = [self.number(0)] * (len(a) + len(b) - 1)
         for i, x in enumerate(a):
             for j, y in enumerate(b):
-                product[i + j] += x * y
-        return Polynomial(*product)
+                product[i + j] = x * y + product[i + j]
+        return type(self)(*product)
 
-    def __pow__(self, exponent: int) -> Polynomial:
+    def __pow__(self, exponent: int) -> Self:
         return self if exponent == 1 else self * self ** (exponent - 1)
 
-    def __neg__(self) -> Polynomial:
-        return Polynomial(*(-c for c in self.coefficients))
+    def __neg__(self) -> Self:
+        return type(self)(*(-c for c in self.coefficients))
 
-    def __sub__(self, other: Any) -> Polynomial:
+    def __sub__(self, other: Any) -> Self:
         return self + -other
 
-    def __rsub__(self, other: Any) -> Polynomial:
+    def __rsub__(self, other: Any) -> Self:
         return -self + other
 
     __radd__, __rmul__ = __add__, __mul__
 
-    def __call__(self, t: mpfr) -> mpfr:
-        value = mpfr(0)
-        for c in reversed(self.coefficients):
+    def __call__(self, t: Any) -> Any:
+        *others, value = self.coefficients
+        for c in reversed(others):
             value = value * t + c
         return value
 
-    def derivative(self) -> Polynomial:
-        return Polynomial(*(k * c for k, c in enumerate(self.coefficients) if k))
+    def derivative(self) -> Self:
+        return type(self)(*(c * k for k, c in enumerate(self.coefficients) if k))
 
     def roots(self) -> list[mpfr]:
         """The real roots in ascending order, multiple roots once; none for a constant.
@@ -169,11 +176,6 @@ class Polynomial:
             if high - low <= 8 * EPS * abs(t):
                 return t
         raise ArithmeticError(f"no root of {self.coefficients} in [{low}, {high}]")
-
-
-def coefficients_of(other: Any) -> list[mpfr]:
-    """The coefficients of a polynomial, or of a number as a constant polynomial."""
-    return other.coefficients if isinstance(other, Polynomial) else [mpfr(other)]
 
 
 Implicit = Callable[[Vector], Any]  # a polynomial of the coordinates of a point, made by + - * ** and vector functions

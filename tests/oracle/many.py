@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Point
 from minirt.shapes import Shape, boundary
-from tests.oracle.body import body
+from tests.oracle.body import Polynomial, body
 
 Array = NDArray[np.float64]
 
@@ -75,43 +75,10 @@ def where(mask: Any, number: DoubleDouble) -> DoubleDouble:
 BISECTIONS = 58  # leave a root to the last bits of float64
 
 
-class Along:
+class Along(Polynomial):
     """Polynomials c0 + c1 t + c2 t^2 + ..., one for each ray: the numbers of a point that moves along it."""
 
-    def __init__(self, *coefficients: Any) -> None:
-        self.coefficients = [double_double(c) for c in coefficients]
-
-    def __add__(self, other: Any) -> Along:
-        pairs = zip_longest(self.coefficients, coefficients_of(other), fillvalue=DoubleDouble(0.0))
-        return Along(*(a + b for a, b in pairs))
-
-    def __mul__(self, other: Any) -> Along:
-        a, b = self.coefficients, coefficients_of(other)
-        product: list[Any] = [0.0] * (len(a) + len(b) - 1)
-        for i, x in enumerate(a):
-            for j, y in enumerate(b):
-                product[i + j] = x * y + product[i + j]
-        return Along(*product)
-
-    def __pow__(self, exponent: int) -> Along:
-        return self if exponent == 1 else self * self ** (exponent - 1)
-
-    def __neg__(self) -> Along:
-        return Along(*(-c for c in self.coefficients))
-
-    def __sub__(self, other: Any) -> Along:
-        return self + -other
-
-    def __rsub__(self, other: Any) -> Along:
-        return -self + other
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __call__(self, t: Any) -> DoubleDouble:
-        value = self.coefficients[-1]
-        for c in reversed(self.coefficients[:-1]):
-            value = value * t + c
-        return value
+    number = staticmethod(double_double)
 
     def rough(self, t: Array) -> Array:
         """The values at t, rounded like float64."""
@@ -126,9 +93,6 @@ class Along:
         for c in reversed(self.coefficients[:-1]):
             value = value * np.abs(t) + np.abs(c.high)
         return 2.0**-88 * value
-
-    def derivative(self) -> Along:
-        return Along(*(c * k for k, c in enumerate(self.coefficients) if k))
 
     def roots(self) -> list[DoubleDouble]:
         """The real roots, in no order; those that are not there are NaN."""
@@ -176,10 +140,6 @@ class Along:
             low, high = np.where(before, t, low), np.where(before, high, t)
             t = 0.5 * (low + high)
         return t
-
-
-def coefficients_of(other: Any) -> list[DoubleDouble]:
-    return other.coefficients if isinstance(other, Along) else [double_double(other)]
 
 
 class Crossed(NamedTuple):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 import pytest
 from gmpy2 import mpfr, sqrt
 from hypothesis import given, settings
@@ -15,7 +13,7 @@ from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import oracle
-from tests.oracle.body import Body, Polynomial, body, crossings, dot, gradient, inside, normals
+from tests.oracle.body import Body, Polynomial, body, crossings, dot, gradient, normals
 
 GREY = (9, 9, 9)
 BALL = Sphere((0, 0, 5), 6, GREY)
@@ -68,32 +66,6 @@ def test_algebra() -> None:
     assert (-made).derivative()(1) == -20 * 2 + 20
 
 
-@pytest.mark.parametrize(
-    ("shape", "origin", "direction", "t"),
-    [
-        (BALL, (1.8, 0, 0), (0, 0, 1), 2.6),
-        (BALL, (0, 0, 4), (0, 0, -1), 2),
-        (BALL, (0, 0, 4), (0, 0, 2), 2),  # half of the distance, for a direction of twice the length
-        (BALL, (3.1, 0, 0), (0, 0, 1), inf),
-        (BALL, (0, 0, 9), (0, 0, 1), inf),
-        (BALL, (0, 0, 2), (0, 0, -1), inf),  # on the surface
-        (BALL, (3, 0, 0), (0, 0, 1), 5),  # along it
-        (TUBE, (0, 9, 5), (0, -1, 0), 7),
-        (TUBE, (2.9, 9, 5), (0, -1, 0), 7),
-        (TUBE, (3.1, 9, 5), (0, -1, 0), inf),
-        (TUBE, (0, 2.1, 0), (0, 0, 1), inf),
-        (TUBE, (0, 5, 5), (0.6, -0.8, 0), 3.75),
-        (TUBE, (0, 0, 5), (0.8, 0.6, 0), 10 / 3),
-        (FLOOR, (0, -5, 0), (0, 1, 0), 3),
-        (FLOOR, (0, 1, 0), (0.8, -0.6, 0), 5),
-        (FLOOR, (0, 1, 0), (1, 0, 0), inf),
-    ],
-)
-def test_the_nearest_hit(shape: object, origin: tuple[float], direction: tuple[float], t: float) -> None:
-    found = oracle.nearest(shape, origin, direction)
-    assert float(inf if found is None else found) == pytest.approx(t, rel=1e-15)
-
-
 def test_many_walls_and_many_roots() -> None:
     assert crossings(RING, [-9, 0, 0], [1, 0, 0]) == pytest.approx([5, 7, 11, 13])
     assert crossings(RING, [0, 9, 0], [0, -1, 0]) == []
@@ -124,19 +96,6 @@ def test_the_side_of_a_hyperboloid_moves_by_at_least_the_swell(sizes: tuple[floa
             assert moved >= swell * (1 - mpfr(1e-6))
     # Planted: a constant of twice the radius, by which steep rims move too little.
     assert (2 * radius < steepness * (1 - mpfr(1e-6))) == (waist < radius)
-
-
-def test_inside() -> None:
-    assert oracle.inside(BALL, (0, 0, 2.1))
-    assert not oracle.inside(BALL, (0, 0, 1.9))
-    assert not oracle.inside(BALL, (0, 0, 2))
-    assert oracle.inside(TUBE, (0, 1.9, 3))
-    assert not oracle.inside(TUBE, (0, 2.1, 3))
-    assert not oracle.inside(FLOOR, (0, -9, 0))
-    assert inside(RING, [3.9, 0, 0])
-    assert not inside(RING, [0, 0, 0])
-    assert inside(PIPE, [0, 1.9, 0])
-    assert not inside(PIPE, [0, 2.1, 0])
 
 
 def test_normals_point_outwards() -> None:

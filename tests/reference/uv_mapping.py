@@ -21,7 +21,8 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.vectors import Array, dot, length, own_x_and_z, profile, right_and_up, turned, unit
+from tests.oracle.body import body
+from tests.reference.vectors import Along, Array, dot, length, own_x_and_z, profile, right_and_up, turned, unit
 
 
 class SurfacePoint(NamedTuple):
@@ -187,8 +188,20 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Surfa
 
 @singledispatch
 def normals(shape: Shape, points: Array) -> Array:
-    """The unit normals of a shape at points on its surface."""
-    raise TypeError(f"the reference renderer knows no {shape.title}")
+    """The unit normals of a shape at points on its surface: of the face that is nearest, to first order.
+
+    The slope of a face along an axis is the coefficient of t of its polynomial along that axis.
+    """
+    distances, slopes = [], []
+    for wall in body(shape).walls:
+        lines = [[Along(points[..., i], float(i == axis)) for i in range(3)] for axis in range(3)]
+        height, *_ = wall(lines[0]).coefficients
+        slope = np.stack([np.broadcast_to(wall(line).coefficients[1], points.shape[:-1]) for line in lines], axis=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            distances.append(np.abs(height) / length(slope))
+        slopes.append(unit(slope))
+    nearest = np.argmin(distances, axis=0)
+    return np.asarray(np.take_along_axis(np.stack(slopes), nearest[None, ..., None], axis=0)[0])
 
 
 @singledispatch
@@ -203,73 +216,11 @@ def smooth_points(shape: Shape, points: Array, facing: Array) -> Array:
     return points
 
 
-@normals.register(Plane)
-@normals.register(Square)
-@normals.register(Disc)
-def _(flat: Plane | Square | Disc, points: Array) -> Array:
-    return np.broadcast_to(np.array(flat.normal), points.shape)
-
-
-@normals.register(Triangle)
-def _(triangle: Triangle, points: Array) -> Array:
-    a, b, c = (np.array(corner) for corner in (triangle.a, triangle.b, triangle.c))
-    return np.broadcast_to(unit(np.cross(b - a, c - a)), points.shape)
-
-
-@normals.register(Sphere)
-def _(sphere: Sphere, points: Array) -> Array:
-    return unit(points - np.array(sphere.centre))
-
-
-@normals.register(Ellipsoid)
-def _(ellipsoid: Ellipsoid, points: Array) -> Array:
-    axes = scaled_axes(ellipsoid)
-    return unit((points - np.array(ellipsoid.centre)) @ axes.T @ axes)
-
-
 def scaled_axes(ellipsoid: Ellipsoid) -> Array:
     """The own x, y and z axes of an ellipsoid, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
     y = np.array(ellipsoid.axis)
     _, z = own_x_and_z(y, ellipsoid.roll)
     return np.stack([np.cross(y, z), y, z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
-
-
-@normals.register(Box)
-def _(box: Box, points: Array) -> Array:
-    x, z = own_x_and_z(np.array(box.axis), box.roll)
-    axes = np.stack([x, np.cross(z, x), z])
-    p = (points - np.array(box.centre)) @ axes.T
-    face = np.argmax(np.abs(p) - np.array(box.sizes) / 2, axis=-1)
-    return np.asarray(np.sign(np.take_along_axis(p, face[..., None], -1)) * axes[face])
-
-
-@normals.register(Cone)
-@normals.register(Cylinder)
-@normals.register(Paraboloid)
-@normals.register(Hyperboloid)
-def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Array:
-    form = profile(shape)
-    p = points - form.origin
-    height = dot(p, form.axis)
-    across = p - height[..., None] * form.axis
-    # Half of the gradient of radius^2 - profile; a point is on a cap where the side is farther away.
-    gradient = across - (form.one / 2 + form.two * height)[..., None] * form.axis
-    with np.errstate(divide="ignore", invalid="ignore"):
-        off_side = np.abs(dot(across, across) - form.at(height)) / (2 * length(gradient))
-    ends = np.array([form.low, form.high])
-    off_ends = np.abs(height[..., None] - ends)
-    off_ends[..., form.at(ends) == 0] = np.inf
-    up = np.where(off_ends.argmin(axis=-1) == 1, 1.0, -1.0)
-    on_cap = off_ends.min(axis=-1) < off_side
-    return np.where(on_cap[..., None], up[..., None] * form.axis, unit(gradient))
-
-
-@normals.register(Torus)
-def _(torus: Torus, points: Array) -> Array:
-    axis = np.array(torus.axis)
-    p = points - np.array(torus.centre)
-    ring = unit(p - dot(p, axis)[..., None] * axis) * torus.diameter / 2
-    return unit(p - ring)
 
 
 def right_and_up_on(flat: Plane | Square | Disc) -> tuple[Array, Array]:

@@ -15,8 +15,9 @@ from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
 from minirt.rendering.packing.shape_arrays import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
-from tests.shapes.regimes import Array
+from tests.shapes.regimes import RAYS, Array
 
+U = 2.0**-53
 Intersect = Callable[[list[Shape], Array, Array], Array]
 
 
@@ -111,3 +112,10 @@ def surfaces(shapes: list[Shape], points: Array) -> tuple[Array, Array]:
 
 
 MODES: dict[str, Intersect] = {"numbers": on_numbers, "arrays": on_arrays, "compiled": compiled}
+
+
+def shoot(intersect: Intersect, shape: Shape, *rays: tuple[tuple[float, ...], tuple[float, ...]]) -> list[float]:
+    """t of rays, each an origin and a direction."""
+    padded = [*rays, *[rays[-1]] * (-len(rays) % RAYS)]
+    origins, directions = (np.array([ray[part] for ray in padded], float)[None] for part in (0, 1))
+    return list(intersect([shape], origins, directions)[0, : len(rays)])

@@ -22,8 +22,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.shapes.checks import U, shoot
-from tests.shapes.execution_modes import Intersect, surfaces
+from tests.shapes.execution_modes import Intersect, U, shoot, surfaces
 from tests.shapes.mapping_checks import interpreted
 from tests.shapes.regimes import GREY
 
@@ -53,14 +52,11 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         BALL,
         [
             ((0, 0, 0), (0, 0, 1), 2),  # head on
-            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
             ((0, 0, 5), (0.6, 0, 0.8), 3),  # from the centre
-            ((0, 0, 4), (0, 0, -1), 2),  # from inside, the near wall
             ((0, 0, 4), (0, 0, 1), 4),  # from inside, the far wall
             ((1.8, 0, 0), (0, 0, 1), 2.6),  # 1.8 off the axis: 2.4 before the centre
             ((3, 0, 0), (0, 0, 1), 5),  # touching it
             ((3.1, 0, 0), (0, 0, 1), NEVER),  # past it
-            ((0, 0, 9), (0, 0, 1), NEVER),  # away from it
             ((0, 0, 2), (0, 0, 1), 6),  # from the surface, the far wall
             ((0, 0, 2), (0, 0, -1), NEVER),  # and nothing
         ],
@@ -72,7 +68,6 @@ HITS: list[tuple[Shape, list[Ray]]] = [
             ((0, 0, 0), (0, 1, 0), NEVER),
             ((0, -5, 0), (0, 1, 0), 3),  # from below
             ((0, 1, 0), (0.8, -0.6, 0), 5),
-            ((0, 1, 0), (1, 0, 0), NEVER),  # along it
             ((0, -2, 0), (1, 0, 0), NEVER),  # in it
             ((0, -2, 0), (0, -1, 0), NEVER),  # from it
         ],
@@ -81,14 +76,8 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         TUBE,
         [
             ((0, 0, 0), (0, 0, 1), 2),  # the side, head on
-            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
-            ((0, 0, 5), (1, 0, 0), 3),  # from the centre to the side
             ((0, 0, 5), (0, 1, 0), 2),  # from the centre to the cap, along the axis
             ((0, 9, 5), (0, -1, 0), 7),  # the cap from above
-            ((2.9, 9, 5), (0, -1, 0), 7),  # the cap near its rim
-            ((3.1, 9, 5), (0, -1, 0), NEVER),  # past the rim
-            ((1.8, 0, 0), (0, 0, 1), 2.6),  # 1.8 off the axis: 2.4 before it
-            ((0, 2.1, 0), (0, 0, 1), NEVER),  # over it
             ((0, 5, 5), (0.6, -0.8, 0), 3.75),  # the cap at x = 2.25
             ((0, -1.9, 5), (0.6, -0.8, 0), 0.125),  # from inside, the bottom
             ((0, 0, 5), (0.8, 0.6, 0), 10 / 3),  # from inside, the cap before the side
@@ -102,18 +91,13 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         TENT,
         [
             ((0, 2, 0), (0, 0, 1), 3.5),  # the side, half-way up
-            ((0, 2, 0), (0, 0, -1), NEVER),  # behind
             ((0, 9, 5), (0, -1, 0), 5),  # the apex, along the axis
             ((1.5, 9, 5), (0, -1, 0), 7),  # the side from above
             ((1.5, -1, 5), (0, 1, 0), 1),  # the base
-            ((3.1, -1, 5), (0, 1, 0), NEVER),  # past the rim
             ((0, 1, 5), (0, -1, 0), 1),  # from inside, the base
             ((0, 1, 5), (0, 1, 0), 3),  # from inside, the apex
             ((0, 1, 5), (1, 0, 0), 2.25),  # from inside, the side
-            ((0, 6, 0), (0, 0, 1), NEVER),  # over it, where its mirror image would be
-            ((0, 6, 5), (0.6, 0.8, 0), NEVER),  # within that, upwards
-            ((0, 6, 5), (0.6, -0.8, 0), NEVER),  # within that, downwards and along the side
-            ((-3, 0.5, 5), (0.8, 0.6, 0), 0.375 / 0.35),  # in, from beside it
+            ((0, 6, 5), (0.6, -0.8, 0), NEVER),  # within its mirror image, along the side
             ((0, 2, 3.5), (0, 0, 1), 3),  # from the side
             ((0, 2, 3.5), (0, 0, -1), NEVER),
             ((0, 0, 5), (0, 1, 0), 4),  # from the base
@@ -124,7 +108,6 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         RIGHT,
         [
             ((-2, 2, 5), (1, -1, 0), 2),  # along one of its lines
-            ((-2, 2, 6), (1, -1, 0), NEVER),  # beside it
             ((-4, 2, 5), (2, -1, 0), 2),  # at the apex and nowhere else
         ],
     ),
@@ -132,16 +115,10 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         BOWL,
         [
             ((0, 0, 0), (0, 0, 1), 4),  # the side
-            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
             ((0, -3, 5), (0, 1, 0), 2),  # the vertex, along the axis
             ((1, -3, 5), (0, 1, 0), 3),  # the side, along the axis
             ((1, 9, 5), (0, -1, 0), 6),  # the cap
-            ((2.1, 9, 5), (0, -1, 0), NEVER),  # past the rim
-            ((0, 0, 5), (0, 1, 0), 3),  # from inside, the cap
-            ((0, 0, 5), (0, -1, 0), 1),  # from inside, the vertex
             ((0, 1.25, 5), (1, 0, 0), 1.5),  # from inside, the side
-            ((0, 3.1, 0), (0, 0, 1), NEVER),  # over it
-            ((0, -1.1, 0), (0, 0, 1), NEVER),  # under it
             ((0, 5, 5), (1, -1, 0), 2),  # the rim and nothing else
             ((0.25, -0.25, 5), (-0.6, 0.8, 0), (1.1 + 2.2**0.5) / 0.72),  # inside: 0.36 t^2 - 1.1 t = 0.6875
             ((0, 0, 4), (0, 0, 1), 2),  # from the side
@@ -154,16 +131,9 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         TOWER,
         [
             ((0, 0, -5), (0, 0, 1), 7),  # the waist
-            ((0, 0, -5), (0, 0, -1), NEVER),  # behind
-            ((0, 9, 5), (0, -1, 0), 5),  # the cap, along the axis
-            ((4.9, 9, 5), (0, -1, 0), 5),  # the cap near its rim
-            ((5.1, 9, 5), (0, -1, 0), NEVER),  # past the rim
-            ((0, 0, 5), (0, 1, 0), 4),  # from the centre, the cap
-            ((0, 0, 5), (1, 0, 0), 3),  # from the centre, the side
             ((4.9, 3.95, 5), (0, -1, 0), 3.95 - SIDE),  # from inside, out of the side above the waist
             ((4.9, 0, 5), (0, -1, 0), SIDE),  # from beside the waist, into the lower half
             ((4.9, -3.95, 5), (0, -1, 0), 0.05),  # from inside there, the lower cap
-            ((0, 4.1, -5), (0, 0, 1), NEVER),  # over it
             # From x = 4 a ray down the outside of the waist enters above it, leaves, and enters again below.
             *(((4, y, 5), (0, -1, 0), t) for y, t in ((9, 5), (3.9, 3.9 - 7**0.5), (2, 2 + 7**0.5), (0, 7**0.5))),
             *(((4, y, 5), (0, -1, 0), t) for y, t in ((-3, 1), (-5, NEVER))),
@@ -181,7 +151,6 @@ HITS: list[tuple[Shape, list[Ray]]] = [
             ((8.125, -3.125, 5), (0, -1, 0), 0.875),  # out of its cap
             ((8.125, -4, 5), (0, -1, 0), NEVER),
             ((-6, -6, 12), (1, 1, 0), 2),  # along an asymptote, inside of it
-            ((-6, -6, 13), (1, 1, 0), NEVER),  # beside it
             ((4.5, 6, 5), (2, -1, 0), 2),  # at the rim and nowhere else
         ],
     ),
@@ -193,15 +162,9 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         EGG,
         [
             ((0, 0, 0), (0, 0, 1), 2),  # the near end of the longest axis
-            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
             ((0, 0, 5), (1, 0, 0), 2),  # from the centre, along each axis
-            ((0, 0, 5), (0, -1, 0), 1),
-            ((0, 0, 4), (0, 0, -1), 2),  # from inside, the near wall
             ((1.2, 0, 0), (0, 0, 1), 2.6),  # x / 2 = 0.6: z is 0.8 of 3 off the centre
-            ((0, 0.6, 0), (0, 0, 1), 2.6),  # y / 1 = 0.6, too
             ((2, 0, 0), (0, 0, 1), 5),  # touching it
-            ((2.01, 0, 0), (0, 0, 1), NEVER),  # past it
-            ((0, 0, 9), (0, 0, 1), NEVER),  # away from it
             ((0, 0, 2), (0, 0, 1), 6),  # from the surface
             ((0, 0, 2), (0, 0, -1), NEVER),
         ],
@@ -212,16 +175,8 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         BOARD,
         [
             ((0, 1, 0), (0, 0, 1), 5),
-            ((0, 1, 0), (0, 0, -1), NEVER),  # behind
-            ((0, 1, 9), (0, 0, -1), 4),  # from its back
             ((1.59, 2.99, 0), (0, 0, 1), 5 + 0.75 * 1.59),  # near a corner: 3/4 of that deeper
-            ((1.61, 2.99, 0), (0, 0, 1), NEVER),  # beside it
-            ((1.59, 3.01, 0), (0, 0, 1), NEVER),  # over it
-            ((-1.59, -0.99, 0), (0, 0, 1), 5 - 0.75 * 1.59),
-            ((-1.61, 0, 0), (0, 0, 1), NEVER),
-            ((0, -1.01, 0), (0, 0, 1), NEVER),
             ((0, 3, 0), (0, 0, 1), 5),  # the very edge
-            ((-1, 1, 4.25), (0.8, 0, 0.6), NEVER),  # along it
             ((0, 1, 5), (0, 0, 1), NEVER),  # from it
         ],
     ),
@@ -238,15 +193,9 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         PLATE,
         [
             ((0, 1, 0), (0, 0, 1), 5),
-            ((0, 1, 0), (0, 0, -1), NEVER),  # behind
-            ((0, 1, 9), (0, 0, -1), 4),  # from its back
-            ((1.59, 1, 0), (0, 0, 1), 5 + 0.75 * 1.59),  # near the rim: 3/4 of that deeper
-            ((1.61, 1, 0), (0, 0, 1), NEVER),  # past it
-            ((0, 2.99, 0), (0, 0, 1), 5),
             ((0, 3, 0), (0, 0, 1), 5),  # the very rim
             ((0, 3.01, 0), (0, 0, 1), NEVER),
             ((1.2, 2.4, 0), (0, 0, 1), NEVER),  # where a square would be: 1.5 aside and 1.4 up
-            ((-1, 1, 4.25), (0.8, 0, 0.6), NEVER),  # along it
             ((0, 1, 5), (0, 0, 1), NEVER),  # from it
         ],
     ),
@@ -254,18 +203,11 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         BLOCK,
         [
             ((0, 0, 0), (0, 0, 1), 2),
-            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
             ((0, 0, 9), (0, 0, -1), 1),
-            ((0, 9, 5), (0, -1, 0), 6),
             ((-9, 1, 5), (1, 0, 0), 8),
             ((0, 1, 5), (1, 0, 0), 1),  # from the centre
-            ((0, 1, 5), (0, 1, 0), 2),
             ((0, 1, 5), (0, 0, 1), 3),
-            ((0.99, 2.99, 0), (0, 0, 1), 2),  # near an edge
             *((origin, (0, 0, 1), NEVER) for origin in ((1.01, 0, 0), (-1.01, 0, 0), (0, 3.01, 0), (0, -1.01, 0))),
-            ((-9, 1, 8.01), (1, 0, 0), NEVER),
-            ((-4, 0, 5), (0.6, 0.8, 0), NEVER),  # over it
-            ((-2.5, 0, 5), (0.6, 0.8, 0), 2.5),  # at the side, 2 up
             ((-2, 2, 5), (0.5**0.5, 0.5**0.5, 0), 2**0.5),  # at the very edge
             ((0, 0, 2), (0, 0, 1), 6),  # from a face
             ((0, 0, 2), (0, 0, -1), NEVER),
@@ -277,20 +219,10 @@ HITS: list[tuple[Shape, list[Ray]]] = [
         RING,
         [
             ((0, 1, 0), (0, 0, 1), 1),  # the outer side
-            ((0, 1, 0), (0, 0, -1), NEVER),  # behind
-            ((0, 1, 2), (0, 0, 1), 1),  # from inside the tube
-            ((0, 1, 2), (0, 0, -1), 1),
             ((0, 1, 5), (0, 0, 1), 2),  # from the middle of the hole
-            ((0, 1, 4), (0, 0, -1), 1),  # from inside the hole
-            ((0, 1, 8), (0, 0, 1), 1),  # from inside the far tube
-            ((0, 1, 9.5), (0, 0, 1), NEVER),  # beyond it
             ((0, 9, 5), (0, -1, 0), NEVER),  # through the hole
             ((0, 9, 2), (0, -1, 0), 7),  # the top
-            ((1.8, 9, 7.4), (0, -1, 0), 7),
-            ((0, 9, 6.2), (0, -1, 0), NEVER),  # past the inner equator
             ((0, 9, 7.5), (0, -1, 0), 8 - 0.75**0.5),  # half a radius off the circle
-            ((0, 9, 9.1), (0, -1, 0), NEVER),  # outside
-            ((0, 2.1, 0), (0, 0, 1), NEVER),  # over it
             ((0, 1, 5), (0.6, 0, 0.8), 2),
             # Each of four crossings is hit from before it.
             *(((0, 1, z), (0, 0, 1), t) for z, t in ((-4, 5), (1.5, 1.5), (3.5, 3.5), (6.5, 0.5), (7.5, 1.5))),
@@ -322,7 +254,7 @@ def test_hits(intersect: Intersect, shape: Shape, rays: list[Ray]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("shape", "count"), [(BALL, 2), (TUBE, 4), (TENT, 4), (RIGHT, 3), (BOWL, 4), (EVEN, 10), (BLOCK, 4)], ids=title
+    ("shape", "count"), [(BALL, 2), (TUBE, 4), (TENT, 4), (RIGHT, 2), (BOWL, 4), (EVEN, 9), (BLOCK, 4)], ids=title
 )
 def test_hits_from_the_surface_are_exact(intersect: Intersect, shape: Shape, count: int) -> None:
     rays = next(rays for each, rays in HITS if each is shape)[-count:]
@@ -454,20 +386,6 @@ def test_points_beside_the_special_places_of_a_surface() -> None:
         on, found = surfaces([EGG], (right + off * normals)[None])
         assert np.abs(on[0] - right).max() <= 8 * U * 5
         assert np.abs(found[0] - normals).max() <= 1e-8
-
-
-@pytest.mark.parametrize(
-    ("shape", "corner", "shares", "side"),
-    [(BOWL, (2, 3), (1.275, 1.287), (4, -1)), (TOWER, (5, 4), (2.07, 2.09), (5, -4))],
-    ids=title,
-)
-def test_near_a_rim_points_move_to_the_nearer_wall(
-    shape: Shape, corner: tuple[float, float], shares: tuple[float, float], side: tuple[float, float]
-) -> None:
-    over = 1e-4  # and between these shares of it beside the rim both walls are as near
-    points = np.array([[corner[0] + aside * over, corner[1] + over, 5] for aside in shares])
-    _, normal = surfaces([shape], points[None])
-    assert np.abs(normal[0] - [[0, 1, 0], flank(*side)]).max() <= 1e-4
 
 
 TURNED = (0.6, 0, 0.8)

@@ -21,7 +21,7 @@ from minirt.shapes import ALL_KINDS, MESH, mesh
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
 from tests.meshes.examples import GREY, ball, named, soup
-from tests.shapes.checks import U
+from tests.shapes.execution_modes import U
 from tests.shapes.regimes import random_directions, unit
 
 

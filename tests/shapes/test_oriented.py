@@ -9,20 +9,18 @@ import pytest
 from gmpy2 import const_pi, cos, mpfr, sin
 
 from minirt.fields import cos_and_sin
-from minirt.lanes import Vec
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.box import Box
 from minirt.shapes.mesh import Mesh
-from minirt.shapes.shape import Flat, Oriented
+from minirt.shapes.shape import Oriented
 from minirt.shapes.sphere import Sphere
 from tests import oracle
 from tests.meshes.examples import named
 from tests.reference.vectors import own_x_and_z, turned
 from tests.shapes.examples import example
-from tests.shapes.execution_modes import MODES, kind_of, on_arrays, shape_rows, surfaces
+from tests.shapes.execution_modes import MODES, on_arrays, shape_rows, surfaces
 from tests.shapes.mapping_checks import interpreted
-from tests.shapes.regimes import Array, Rays, random_directions
-from tests.stability.regime import BOUND, certified, normals_of
+from tests.shapes.regimes import Array, random_directions
 
 U = 2.0**-53
 ROLLS = (90.0, 33.3, -200.0, 1e-3)
@@ -74,21 +72,6 @@ def test_hits_of_turned_shapes_are_those_of_the_oracle(kind: Kind) -> None:
         assert np.abs(t[hit] / right[hit] - 1).max() <= 1e-13
     wrong = on_arrays(opposite(shapes)[1:3], origins[1:3], directions[1:3])  # type: ignore[arg-type]
     assert not np.allclose(wrong, right[1:3])
-
-
-@pytest.mark.parametrize("kind", ORIENTED, ids=lambda kind: kind.element.title)
-def test_hits_of_turned_shapes_are_certified(kind: Kind) -> None:
-    shapes = rolled(kind)
-    if kind.infinite:
-        return
-    origins, directions = rays_at(shapes, 256)
-    t = on_arrays(shapes, origins, directions)  # type: ignore[arg-type]
-    rays = Rays(shapes, origins, directions)  # type: ignore[arg-type]
-    hit = np.isfinite(t)
-    assert (certified(rays, t, normals_of(rays, t)).backward_error[hit] <= BOUND).all()
-    if kind in ANGULAR:
-        rays = Rays(opposite(shapes), origins, directions)  # type: ignore[arg-type]
-        assert (certified(rays, t).backward_error[1:3][hit[1:3]] > BOUND).any()
 
 
 @pytest.mark.parametrize("kind", ORIENTED, ids=lambda kind: kind.element.title)
@@ -166,10 +149,3 @@ def test_equal_points_of_a_turned_mesh_stay_equal() -> None:
         placed = mesh.placed(np.tile([0.1, 0.7, -0.3], (count, 1)))
         assert (placed == placed[0]).all()
         assert (placed[0] == mesh.placed(np.array([[0.1, 0.7, -0.3]]))[0]).all()
-
-
-def test_the_kind_of_each_oriented_shape_is_in_the_registry() -> None:
-    assert {kind.element.title for kind in ANGULAR} == {"box", "square", "ellipsoid"}
-    assert all(kind_of(example(kind, np.random.default_rng(1))) is kind for kind in ORIENTED)
-    assert all(isinstance(shape.frame()[2], Vec) for kind in ORIENTED for shape in rolled(kind))
-    assert sum(issubclass(kind.element, Flat) for kind in ORIENTED) == 3

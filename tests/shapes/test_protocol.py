@@ -15,9 +15,8 @@ from minirt.fields import Colour, Point
 from minirt.kernel.scene_arrays import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
-from tests.shapes.checks import U
 from tests.shapes.examples import example, hits, is_concave, place, scaled, shadow_offsets
-from tests.shapes.execution_modes import MODES, kind_of, shape_rows, surfaces
+from tests.shapes.execution_modes import MODES, U, kind_of, shape_rows, surfaces
 from tests.shapes.regimes import random_directions, unit
 
 SIZES = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e8), (1e8, 0.0)]
@@ -55,10 +54,10 @@ def test_its_file_opens_with_its_manual_page(kind: Kind) -> None:
 
 
 def test_its_formulas_have_the_parameters_of_the_protocol(kind: Kind) -> None:
-    assert [*inspect.signature(kind.intersect).parameters][1:] == ["origin", "direction"]
+    assert [*inspect.signature(kind.intersect).parameters][1:] == ["origin", "direction", "anywhere"]
     assert [*inspect.signature(kind.surface).parameters][1:] == ["point"]
     assert [*inspect.signature(kind.boundary).parameters][1:] == ["point"]
-    assert kind.intersect.__module__ == kind.surface.__module__ == kind.element.__module__ == kind.packed.__module__
+    assert kind.intersect.__module__ == kind.element.__module__ == kind.packed.__module__
 
 
 def test_it_packs_into_a_row_and_back(kind: Kind) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.shading.shade import clearance
 from minirt.lanes import Vec
-from minirt.shapes.triangle import Triangle, in_pyramid, watertight
+from minirt.shapes.triangle import PackedTriangle, Triangle, intersect, may_meet
 from tests.shapes.regimes import GREY
 
 COUNT = 4000
@@ -40,6 +40,10 @@ def vec(points: Any, number: type) -> Vec:
     return Vec(*np.asarray(points, number).T)
 
 
+def packed(corners: Any, normal: Any, number: type = np.float64) -> PackedTriangle:
+    return PackedTriangle(*(vec(each, number) for each in (*corners, normal)))
+
+
 def seen_from(corners: Any, apex: Any, share: float) -> tuple[Any, Any]:
     """Corners and apex, moved so that the origin lies behind the middle of an edge, `far` times as far from the
     apex."""
@@ -67,8 +71,8 @@ def drawn(
 @pytest.mark.parametrize("seed", range(8))
 def test_no_ray_that_hits_is_culled(seed: int, regime: tuple[float, float, float], place: str, number: type) -> None:
     corners, apex, normal, points, random = drawn(seed, *regime, number, place)
-    a, b, c = (vec(each, number) for each in corners)
-    origin, up, everything = vec(apex, number), vec(normal, number), np.ones(COUNT, bool)
+    triangle = packed(corners, normal, number)
+    origin, everything = vec(apex, number), np.ones(COUNT, bool)
     beside = random.normal(size=(COUNT, 3)) @ (corners - corners[0])  # in the plane
     middle = corners[:2].mean(0)  # of an edge
     points[::16] = middle + 1e-5 * (points[::16] - middle)
@@ -82,8 +86,8 @@ def test_no_ray_that_hits_is_culled(seed: int, regime: tuple[float, float, float
         aim = away if start is None else apex - begin
         direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
         with np.errstate(all="ignore"):  # float32 may not tell corners so far away apart
-            hit, _ = watertight(a, b, c, up, vec(begin, number), direction, True)
-        tried = in_pyramid((a, b, c), up, origin, None if start is None else vec(begin, number), direction, everything)
+            hit, _ = intersect(triangle, vec(begin, number), direction)
+        tried = may_meet(triangle, origin, None if start is None else vec(begin, number), direction, everything)
         assert hit.mean() > 0.1 or number is np.float32  # those that start on the triangle do not
         assert not (hit & ~tried).any()
 
@@ -96,15 +100,14 @@ def test_rays_beside_the_triangle_are_culled(seed: int) -> None:
     outside[:, 1] = 1 - outside[:, 0] - outside[:, 2]
     aim = outside @ corners - apex
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
-    given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
-    assert not in_pyramid(*given, None, direction, np.ones(COUNT, bool)).any()
+    given = packed(corners, normal), vec(apex, np.float64)
+    assert not may_meet(*given, None, direction, np.ones(COUNT, bool)).any()
 
 
 @pytest.mark.parametrize("number", [np.float64, np.float32])
 @pytest.mark.parametrize("seed", range(20))
 def test_rays_that_leave_a_triangle_are_culled_for_it(seed: int, number: type) -> None:
     corners, apex, normal, points, _ = drawn(seed, 1.0, 10.0, 50.0, number)
-    a, b, c = (vec(each, number) for each in corners)
     normal = normal * np.sign(normal @ (apex - corners[0]))
     point, up = vec(points, number), vec(normal, number)
     rounding = clearance(point, number(np.abs(corners).max()))
@@ -113,7 +116,8 @@ def test_rays_that_leave_a_triangle_are_culled_for_it(seed: int, number: type) -
     aim = apex - points
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
     for side in (1.0, -1.0):
-        tried = in_pyramid((a, b, c), up * number(side), vec(apex, number), start, direction, np.ones(COUNT, bool))
+        triangle = packed(corners, side * normal, number)
+        tried = may_meet(triangle, vec(apex, number), start, direction, np.ones(COUNT, bool))
         assert not tried.any()
 
 
@@ -122,6 +126,6 @@ def test_inactive_rays_stay_inactive() -> None:
     aim = points - apex
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
     asked = np.arange(COUNT) % 3 == 0
-    given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
-    assert np.array_equal(in_pyramid(*given, None, direction, asked), asked)
-    assert np.array_equal(in_pyramid(*given, vec(points + aim, np.float64), direction, asked), asked)
+    given = packed(corners, normal), vec(apex, np.float64)
+    assert np.array_equal(may_meet(*given, None, direction, asked), asked)
+    assert np.array_equal(may_meet(*given, vec(points + aim, np.float64), direction, asked), asked)

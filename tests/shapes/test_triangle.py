@@ -12,8 +12,7 @@ import pytest
 from minirt.errors import ElementError
 from minirt.shapes.triangle import Triangle, plane_normals
 from tests.oracle.body import cross
-from tests.shapes.checks import U, shoot
-from tests.shapes.execution_modes import Intersect
+from tests.shapes.execution_modes import Intersect, U, shoot
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit
 from tests.stability.mutants import in_single_precision
 

@@ -2,9 +2,9 @@
 
 A regime (`regime.Regime`) is a recipe for shapes and rays that are hard in one way, with the accuracy that answers must
 still have. `table.REGIMES` lists the regimes of every shape: those in `common` are made from the shape's declared
-fields, further ones are in the file named after the shape. The formulas run on single numbers, on arrays, compiled, and
-through `minirt.trace`; `tests.oracle` gives the right answers.
+fields, further ones are in `revolved`, `solids` and `sheets`. The formulas run on arrays, compiled, and through
+`minirt.trace`; `tests.oracle` gives the right answers.
 
 `mutants` holds formulas that look right but are wrong: the same checks must fail on them. `python -m tests.stability`
-prints the backward errors and the condition numbers of all regimes.
+prints the backward errors of all kinds.
 """

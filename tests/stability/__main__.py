@@ -1,4 +1,4 @@
-"""Print the tables of README.md: python -m tests.stability."""
+"""Print the table of README.md: python -m tests.stability."""
 
 from tests.stability.table import main
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from typing import Any
 
 import numpy as np
 from gmpy2 import sqrt
@@ -28,15 +29,9 @@ from minirt.shapes.torus import Torus
 from tests import oracle
 from tests.oracle.body import body, dot, exact, gradient
 from tests.shapes.examples import example, on_surface, place
-from tests.shapes.execution_modes import Intersect, compiled, on_arrays, on_numbers
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays
 from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
 from tests.stability.regime import Regime
-
-EVERY = 4  # on single numbers only every n-th ray is tried, as they take long
-
-
-def few_on_numbers(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    return on_numbers(shapes, origins[:, ::EVERY], directions[:, ::EVERY])
 
 
 def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
@@ -46,12 +41,7 @@ def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     return np.stack([minirt.trace(Scene((eye, shape)), o, d).distance for shape, o, d in rays])
 
 
-MODES: dict[str, tuple[Intersect, int]] = {
-    "arrays": (on_arrays, 1),
-    "numbers": (few_on_numbers, EVERY),
-    "compiled": (compiled, 1),
-    "traced": (traced, 1),
-}
+MODES: dict[str, Intersect] = {"arrays": on_arrays, "compiled": compiled, "traced": traced}
 
 
 COUNT = 8  # shapes of a regime
@@ -76,31 +66,38 @@ def towards(
     return Rays(shapes, origins, unit(targets - origins))
 
 
-def touching(kind: Kind, seed: int) -> Rays:
-    """Rays along the surface, 1e-16 to 1e-4 sizes above or below it."""
+Make = Callable[[Random], Shape]
+Shots = Callable[[Random, Any], tuple[Array, Array]]  # origins and directions of rays at a shape, (RAYS, 3) each
+
+
+def shots(seed: int, make: Make, rays: Shots, count: int = COUNT) -> Rays:
+    """Rays at each of some random shapes."""
     random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
-    for i in range(COUNT):
-        shape = example(kind, random)
-        on, out = on_surface(shape, random)
-        sign = random.choice([-1.0, 1.0], (RAYS, 1))
-        directions[i] = unit(np.cross(out, random_directions(random, RAYS)))
-        touch = on + sign * log_uniform(random, 1e-16, 1e-4, RAYS, 1) * out
-        origins[i] = touch - random.uniform(3, 20, (RAYS, 1)) * directions[i]
-        shapes.append(shape)
+    shapes, found = [], []
+    for _ in range(count):
+        shapes.append(make(random))
+        found.append(rays(random, shapes[-1]))
+    origins, directions = np.swapaxes(found, 0, 1)
     return Rays(shapes, origins, directions)
 
 
-def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) -> Rays:
-    """Rays from closely above and below the surface, in all directions."""
-    random = np.random.default_rng(seed)
-    shapes, origins = [], np.empty((COUNT, RAYS, 3))
-    for i in range(COUNT):
-        shape = example(kind, random)
-        on, out = on_surface(shape, random)
-        origins[i] = on + random.choice([-1.0, 1.0], (RAYS, 1)) * log_uniform(random, *height, RAYS, 1) * out
-        shapes.append(shape)
-    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
+def sign(random: Random) -> Array:
+    return random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+def touching(random: Random, shape: Shape) -> tuple[Array, Array]:
+    """Rays along the surface, 1e-16 to 1e-4 sizes above or below it."""
+    on, out = on_surface(shape, random)
+    side = sign(random)
+    directions = unit(np.cross(out, random_directions(random, RAYS)))
+    touch = on + side * log_uniform(random, 1e-16, 1e-4, RAYS, 1) * out
+    return touch - random.uniform(3, 20, (RAYS, 1)) * directions, directions
+
+
+def leaving(random: Random, shape: Shape) -> tuple[Array, Array]:
+    """Rays from 1e-12 to 1e-3 above and below the surface, in all directions."""
+    on, out = on_surface(shape, random)
+    return on + sign(random) * log_uniform(random, 1e-12, 1e-3, RAYS, 1) * out, random_directions(random, RAYS)
 
 
 def nearest_on_surface(shape: Shape, point: Array) -> list[float]:
@@ -112,27 +109,17 @@ def nearest_on_surface(shape: Shape, point: Array) -> list[float]:
     return [float(x - step * part) for x, part in zip(p, slope, strict=True)]
 
 
-def starting(kind: Kind, seed: int, offset: float = 0.0) -> Rays:
+def starting(random: Random, shape: Shape) -> tuple[Array, Array]:
     """Rays from points of the surface, rounded, in all directions."""
-    random = np.random.default_rng(seed)
-    shapes, origins = [], np.empty((COUNT, RAYS, 3))
-    for i in range(COUNT):
-        shapes.append(example(kind, random, 1.0, offset))
-        on, _ = on_surface(shapes[i], random)
-        origins[i] = [nearest_on_surface(shapes[i], point) for point in on]
-    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
+    on, _ = on_surface(shape, random)
+    return np.array([nearest_on_surface(shape, point) for point in on]), random_directions(random, RAYS)
 
 
-def from_above(kind: Kind, seed: int, size: float = 1e9, height: tuple[float, float] = (1e-6, 1.0)) -> Rays:
-    """Rays down onto shapes of a huge `size`, from a `height` above them."""
-    random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
-    for i in range(COUNT):
-        shapes.append(example(kind, random, size))
-        on, out = on_surface(shapes[i], random)
-        origins[i] = on + log_uniform(random, *height, RAYS, 1) * out
-        directions[i] = unit(random_perpendiculars(random, out) - random.uniform(0.1, 10, (RAYS, 1)) * out)
-    return Rays(shapes, origins, directions)
+def from_above(random: Random, shape: Shape) -> tuple[Array, Array]:
+    """Rays down onto a huge shape, from 1e-6 to 1 above it."""
+    on, out = on_surface(shape, random)
+    origins = on + log_uniform(random, 1e-6, 1.0, RAYS, 1) * out
+    return origins, unit(random_perpendiculars(random, out) - random.uniform(0.1, 10, (RAYS, 1)) * out)
 
 
 def places(shapes: list[Shape]) -> Array:
@@ -141,7 +128,7 @@ def places(shapes: list[Shape]) -> Array:
 
 def common(kind: Kind) -> list[Regime]:
     """The regimes that every kind of shape has."""
-    made = partial(towards, kind)
+    made, plain = partial(towards, kind), partial(example, kind)
     solid = body(example(kind, np.random.default_rng(1))).solid
     regimes = [
         Regime("usual", partial(made, 1)),
@@ -155,49 +142,54 @@ def common(kind: Kind) -> list[Regime]:
     ]
     if solid:
         regimes += [
-            Regime("along the surface", partial(touching, kind, 8)),
-            Regime("beside the surface", partial(leaving, kind, 9), blur=np.inf),
+            Regime("along the surface", partial(shots, 8, plain, touching)),
+            Regime("beside the surface", partial(shots, 9, plain, leaving), blur=np.inf),
         ]
     if kind.element in CURVED:
+        far = partial(example, kind, size=1.0, offset=1e4)
         regimes += [
-            Regime("on the surface", partial(starting, kind, 12), nearest=oracle.onward),
-            Regime("on the surface, a scene at 1e4", partial(starting, kind, 13, 1e4), nearest=oracle.onward),
+            Regime("on the surface", partial(shots, 12, plain, starting), nearest=oracle.onward),
+            Regime("on the surface, a scene at 1e4", partial(shots, 13, far, starting), nearest=oracle.onward),
         ]
     if kind.element in QUADRICS:
-        regimes.append(Regime("just above a huge one", partial(from_above, kind, 14), 1e-9, 0.0))
+        huge = partial(example, kind, size=1e9)
+        regimes.append(Regime("just above a huge one", partial(shots, 14, huge, from_above), 1e-9, 0.0))
     return regimes
 
 
-Make = Callable[[Random], Shape]
-Spot = Callable[[Random, Shape], Array]  # (RAYS, 3): points of a shape, or directions
+Spot = Callable[[Random, Any], Array]  # (RAYS, 3): points of a shape, or directions
 
 
 def at(seed: int, make: Make, spot: Spot, off: tuple[float, float] = (1e-16, 1e-6), count: int = COUNT) -> Rays:
     """Rays from everywhere at points of shapes, missing them by a distance in `off`."""
-    random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
-    for i in range(count):
-        shape = make(random)
+
+    def rays(random: Random, shape: Shape) -> tuple[Array, Array]:
         target = spot(random, shape) + log_uniform(random, *off, RAYS, 1) * random_directions(random, RAYS)
-        directions[i] = random_directions(random, RAYS)
-        origins[i] = target - random.uniform(3, 20, (RAYS, 1)) * directions[i]
-        shapes.append(shape)
-    return Rays(shapes, origins, directions)
+        directions = random_directions(random, RAYS)
+        return target - random.uniform(3, 20, (RAYS, 1)) * directions, directions
+
+    return shots(seed, make, rays, count)
 
 
 def along(seed: int, make: Make, way: Spot, off: tuple[float, float] | None = None, offset: float = 0.0) -> Rays:
     """Rays along directions, or off them by an angle (radians) in `off`, at points in and around shapes."""
-    random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
-    for i in range(COUNT):
+
+    def moved(random: Random) -> Shape:
         shape = make(random)
-        shape = shape.replace(**{points(shape)[0]: tuple(offset * random_directions(random))}) if offset else shape
+        return shape.replace(**{points(shape)[0]: tuple(offset * random_directions(random))}) if offset else shape
+
+    def rays(random: Random, shape: Shape) -> tuple[Array, Array]:
         exact = way(random, shape)
         angle = log_uniform(random, *off, RAYS, 1) if off else 0.0
-        directions[i] = unit(exact + angle * random_directions(random, RAYS))
-        origins[i] = place(shape) + random.uniform(-0.6, 0.6, (RAYS, 3)) - random.uniform(0, 9, (RAYS, 1)) * exact
-        shapes.append(shape)
-    return Rays(shapes, origins, directions)
+        directions = unit(exact + angle * random_directions(random, RAYS))
+        return place(shape) + random.uniform(-0.6, 0.6, (RAYS, 3)) - random.uniform(0, 9, (RAYS, 1)) * exact, directions
+
+    return shots(seed, moved, rays)
+
+
+def pose_of(random: Random) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """A random point near the origin and a random direction: where a shape is, and its axis or normal."""
+    return tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
 
 
 def points(shape: Shape) -> list[str]:

@@ -229,7 +229,7 @@ def main() -> int:
             shapes = -(-chosen.rays // EACH)
             found = []
             for group in groups(kind, chosen.seed, shapes, EACH):
-                found += wrong(MODES[chosen.mode][0], *group)
+                found += wrong(MODES[chosen.mode], *group)
             start = sum(each.again for each in found)
             print(f"{kind.element.title}: {shapes * EACH} rays, {len(found)} wrong, {start} of them where a ray starts")
             others = [each for each in found if not each.again]

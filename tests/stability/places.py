@@ -1,16 +1,18 @@
 """Special places of shapes: the points, lines, planes and circles at which their formulas degenerate.
 
-A shape's file in this folder declares them as `places(shape)`; those that follow from the shape's declared fields and
-from its surface are added here. `tests.stability.places` puts rays exactly on them.
+Files in this folder declare those of each kind by `special`. Those that follow from the shape's declared fields and
+from its surface are added here, and rays are put exactly on them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import singledispatch
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import permutations, product
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,22 +42,28 @@ class Place(NamedTuple):
 
 def places(shape: Shape) -> list[Place]:
     """All special places of a shape; TypeError where its kind declares none."""
-    declared = declaration(kind_of(shape))
-    return [*of_fields(shape), *declared(shape), surface(shape)]
+    files(kind_of(shape))  # which register them
+    return [*of_fields(shape), *special(shape), surface(shape)]
 
 
-def declaration(kind: Kind) -> Callable[[Any], list[Place]]:
-    """The function `places` of the file in this folder that is named as the shape's own."""
-    name = f"{__package__}.{kind.element.__module__.rpartition('.')[2]}"
-    found: Callable[[Any], list[Place]] | None = None
-    if find_spec(name):
-        found = getattr(import_module(name), "places", None)
-    if found is None:
-        raise TypeError(
-            f"no special places of a {kind.element.title}: declare `places` in {name.replace('.', '/')}.py, "
-            "as tests/stability/cylinder.py does"
-        )
-    return found
+@singledispatch
+def special(shape: Shape) -> list[Place]:
+    """The special places that the kind of a shape declares."""
+    path = own_file(kind_of(shape)).replace(".", "/")
+    raise TypeError(
+        f"no special places of a {shape.title}: declare them in {path}.py, as tests/stability/solids.py does"
+    )
+
+
+def own_file(kind: Kind) -> str:
+    """The module of this folder that is named as the shape's own."""
+    return f"{__package__}.{kind.element.__module__.rpartition('.')[2]}"
+
+
+def files(kind: Kind) -> list[ModuleType]:
+    """The modules of this folder that declare regimes and special places, that of a new kind of shape among them."""
+    names = (*(f"{__package__}.{name}" for name in ("revolved", "solids", "sheets")), own_file(kind))
+    return [import_module(name) for name in names if find_spec(name)]
 
 
 def of_fields(shape: Shape) -> list[Place]:

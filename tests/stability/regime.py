@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property, lru_cache
 from typing import Any, NamedTuple
 
@@ -131,18 +131,13 @@ class Right:
         point = [mpfr(o) + mpfr(t) * mpfr(d) for o, d in zip(origin, direction, strict=True)]
         return inside(body(self.rays.shapes[i], mpfr(self.swell(i, j))), point)
 
-    def wrong(self, t: Array, every: int = 1) -> list[str]:
-        """Complaints about the answers t for every n-th ray of a shape; infinity is a miss."""
-        return list(self.errors(t, every))
-
-    def errors(self, t: Array, every: int = 1) -> Iterator[str]:
-        """The complaints of `wrong`, one after the other: each is slow to find."""
-        right = self.t[:, ::every]
+    def wrong(self, t: Array) -> list[str]:
+        """Complaints about the answers t; infinity is a miss."""
         with np.errstate(invalid="ignore"):
-            near = np.isfinite(right) & (np.abs(t - right) <= self.tolerances[:, ::every] * right)
-        exact = (t == right) | (near & self.solid)
-        found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
-        return (each for each in found if each)
+            near = np.isfinite(self.t) & (np.abs(t - self.t) <= self.tolerances * self.t)
+        exact = (t == self.t) | (near & self.solid)
+        found = (self.verdict(i, j, t[i, j]) for i, j in np.argwhere(~exact).tolist())
+        return [each for each in found if each]
 
     def verdict(self, i: int, j: int, t: float) -> str:
         """A complaint about an answer that is not exact; empty if it is near enough."""

@@ -1,89 +1,137 @@
-"""Rays that are hard for a square and a disc."""
+"""Rays that are hard for a plane, a square, a disc and a triangle, and the special places of these."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
+from minirt.shapes import Shape
 from minirt.shapes.disc import Disc
+from minirt.shapes.plane import Plane
 from minirt.shapes.square import Square
-from tests.shapes.regimes import (
-    GREY,
-    RAYS,
-    Array,
-    Random,
-    Rays,
-    log_uniform,
-    random_directions,
-    random_perpendiculars,
-    unit,
-)
-from tests.stability.common import COUNT, at
-from tests.stability.places import Place, frame, line, ring, spot
+from minirt.shapes.triangle import Triangle
+from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, random_perpendiculars, unit
+from tests.stability.common import COUNT, at, pose_of, shots, sign
+from tests.stability.places import Place, flat, frame, line, ring, special, spot
 from tests.stability.regime import Regime
 
-Sheet = Square | Disc
+
+def plane(random: Random, offset: float = 0.0) -> Plane:
+    return Plane(tuple(offset * random_directions(random)), pose_of(random)[1], GREY)
 
 
 def square(random: Random) -> Square:
-    return Square(
-        tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), random.uniform(0.5, 2), GREY
-    )
+    return Square(*pose_of(random), random.uniform(0.5, 2), GREY)
 
 
 def disc(random: Random) -> Disc:
-    return Disc(
-        tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), random.uniform(0.5, 2), GREY
-    )
+    return Disc(*pose_of(random), random.uniform(0.5, 2), GREY)
 
 
-def edge(random: Random, square: Square) -> Array:
-    corners, share, start = np.array(square.corners()), random.random((RAYS, 1)), random.integers(4, size=RAYS)
-    around = corners[[0, 1, 3, 2]]
-    return around[start] * share + around[(start + 1) % 4] * (1 - share)
+def triangle(random: Random, height: float = 1.0) -> Triangle:
+    """A triangle of about size 1, its last corner at this distance from the opposite edge."""
+    a, along = random.normal(size=3), random_directions(random)
+    c = a + random.uniform(0, 1) * along + height * random_perpendiculars(random, along)
+    return Triangle(tuple(a), tuple(a + along), tuple(c), GREY)
+
+
+def corners_in_turn(shape: Square | Triangle) -> Array:
+    if isinstance(shape, Square):
+        return np.array(shape.corners())[[0, 1, 3, 2]]
+    return np.array([shape.a, shape.b, shape.c])
+
+
+def edge(random: Random, shape: Square | Triangle) -> Array:
+    corners = corners_in_turn(shape)
+    share, start = random.random((RAYS, 1)), random.integers(len(corners), size=RAYS)
+    return corners[start] * share + corners[(start + 1) % len(corners)] * (1 - share)
 
 
 def rim(random: Random, disc: Disc) -> Array:
     return np.array(disc.centre) + disc.diameter / 2 * random_perpendiculars(random, np.array(disc.normal), RAYS)
 
 
-def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, float]) -> Rays:
-    """Rays at slopes in `slope` to the sheet, at points around its centre, from both sides."""
-    random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
-    for i in range(COUNT):
-        sheet = make(random)
-        normal = np.array(sheet.normal)
-        rise = log_uniform(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
-        directions[i] = unit(random_perpendiculars(random, normal, RAYS) + rise * normal)
-        spot = np.array(sheet.centre) + 0.2 * random.random((RAYS, 1)) * random_perpendiculars(random, normal, RAYS)
-        origins[i] = spot - random.uniform(1, 9, (RAYS, 1)) * directions[i]
-        shapes.append(sheet)
-    return Rays(shapes, origins, directions)
+def corner(random: Random, triangle: Triangle) -> Array:
+    return corners_in_turn(triangle)[random.integers(3, size=RAYS)]
 
 
-def of(make: Callable[[Random], Sheet], border: Callable[[Random, Sheet], Array]) -> list[Regime]:
+def inside(random: Random, shape: Any) -> Array:
+    """Random points of a triangle, of the middle of a square or a disc, or near the point of a plane."""
+    if isinstance(shape, Triangle):
+        return random.dirichlet(np.ones(3), RAYS) @ corners_in_turn(shape)
+    middle = shape.point if isinstance(shape, Plane) else shape.centre
+    return middle + 0.2 * random.random((RAYS, 1)) * random_perpendiculars(random, np.array(shape.normal), RAYS)
+
+
+def grazing(slope: tuple[float, float], random: Random, shape: Any) -> tuple[Array, Array]:
+    """Rays at slopes in `slope` to a sheet, from both sides."""
+    normal = np.array(shape.normal() if isinstance(shape, Triangle) else shape.normal)
+    rise = log_uniform(random, *slope, RAYS, 1) * sign(random)
+    directions = unit(random_perpendiculars(random, normal, RAYS) + rise * normal)
+    return inside(random, shape) - random.uniform(1, 9, (RAYS, 1)) * directions, directions
+
+
+def over_a_plane(slope: tuple[float, float], random: Random, shape: Plane) -> tuple[Array, Array]:
+    """Rays at slopes in `slope`, from 1 to 20 above a plane; half of the rays lead away."""
+    _, directions = grazing(slope, random, shape)
+    return np.array(shape.point) + random.uniform(1, 20, (RAYS, 1)) * np.array(shape.normal), directions
+
+
+LOW, SLIVER = (1e-6, 1e-2), partial(triangle, height=1e-6)
+
+REGIMES: dict[type[Shape], list[Regime]] = {
+    Plane: [
+        Regime("at a slope of 0.01 to 1", partial(shots, 11, plane, partial(over_a_plane, (0.01, 1.0)))),
+        Regime(
+            "at a slope of 0.01 to 1, a scene at 1e8",
+            partial(shots, 12, partial(plane, offset=1e8), partial(over_a_plane, (0.01, 1.0))),
+        ),
+        Regime("at a slope of 1e-6 to 0.01", partial(shots, 13, plane, partial(over_a_plane, LOW))),
+        Regime("at a slope of 1e-12 to 1e-6", partial(shots, 14, plane, partial(over_a_plane, (1e-12, 1e-6)))),
+    ],
+    **{
+        kind: [
+            Regime("at the edge", partial(at, 11, make, border)),
+            Regime("at a slope of 1e-6 to 0.01", partial(shots, 12, make, partial(grazing, LOW))),
+        ]
+        for kind, make, border in ((Square, square, edge), (Disc, disc, rim))
+    },
+    Triangle: [
+        Regime("at an edge", partial(at, 11, triangle, edge)),
+        Regime("at a corner", partial(at, 12, triangle, corner, count=3 * COUNT)),
+        Regime("a sliver", partial(at, 13, SLIVER, inside)),
+        Regime("a sliver next to none", partial(at, 14, partial(triangle, height=1e-12), inside)),
+        Regime("at a slope of 1e-6 to 0.01", partial(shots, 15, triangle, partial(grazing, LOW))),
+        Regime("a sliver at a slope of 1e-6 to 0.01", partial(shots, 16, SLIVER, partial(grazing, LOW))),
+        Regime(
+            "a sliver of 1e-10 at a slope of 0.001 to 0.01",
+            partial(shots, 17, partial(triangle, height=1e-10), partial(grazing, (1e-3, 1e-2))),
+        ),
+    ],
+}
+
+
+@special.register
+def _(_plane: Plane) -> list[Place]:
+    """None besides those of its fields."""
+    return []
+
+
+@special.register
+def _(square: Square) -> list[Place]:
+    """Lines of the edges, and corners."""
+    corners = corners_in_turn(square)
+    ways = unit(np.roll(corners, -1, axis=0) - corners)
     return [
-        Regime("at the edge", partial(at, 11, make, border)),
-        Regime("at a slope of 1e-6 to 0.01", partial(grazing, 12, make, (1e-6, 1e-2))),
+        *(spot("corner", corner) for corner in corners),
+        *(line("edge", square, *each) for each in zip(corners, ways, strict=True)),
     ]
 
 
-SQUARES = of(square, edge)
-DISCS = of(disc, rim)
-
-
-def of_square(square: Square) -> list[Place]:
-    """Lines of the edges, and corners."""
-    corners = np.array(square.corners())
-    pairs = ((0, 1), (1, 3), (3, 2), (2, 0))
-    found = [spot("corner", corner) for corner in corners]
-    return found + [line("edge", square, corners[i], unit(corners[j] - corners[i])) for i, j in pairs]
-
-
-def of_disc(disc: Disc) -> list[Place]:
+@special.register
+def _(disc: Disc) -> list[Place]:
     """The rim, and four lines that touch it."""
     u, v, normal = frame(disc.normal)
     centre, radius = np.array(disc.centre), disc.diameter / 2
@@ -92,3 +140,11 @@ def of_disc(disc: Disc) -> list[Place]:
         ring("rim", centre, normal, radius),
         *(line("tangent", disc, centre + radius * out, along) for out, along in touching),
     ]
+
+
+@special.register
+def _(triangle: Triangle) -> list[Place]:
+    """Its plane, the lines of its edges, and its middle."""
+    corners, edges = corners_in_turn(triangle), np.array(triangle.edges())
+    found = [flat("plane", triangle, corners[0], triangle.normal()), spot("middle", corners.mean(axis=0))]
+    return found + [line("edge", triangle, *each) for each in zip(corners, unit(edges), strict=True)]

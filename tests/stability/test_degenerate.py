@@ -17,7 +17,7 @@ from tests.shapes.execution_modes import Intersect
 from tests.stability import mutants
 from tests.stability.common import MODES, common
 from tests.stability.degenerate import groups, wrong
-from tests.stability.places import declaration, places, pose
+from tests.stability.places import places, pose
 from tests.stability.regime import posed
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
@@ -31,12 +31,11 @@ def complaints(intersect: Intersect, kind: Kind, shapes: int = SHAPES) -> Iterat
 @KIND
 @pytest.mark.parametrize("mode", ["arrays", "traced"])
 def test_rays_at_special_places_have_right_answers(kind: Kind, mode: str) -> None:
-    assert not list(islice(complaints(MODES[mode][0], kind), 3))
+    assert not list(islice(complaints(MODES[mode], kind), 3))
 
 
 @KIND
 def test_every_kind_declares_its_special_places(kind: Kind) -> None:
-    declaration(kind)  # TypeError, with what to do, where there is none
     random = np.random.default_rng(1)
     for place in places(pose(kind, random)):
         points = place.points(random, 64)

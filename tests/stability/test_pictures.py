@@ -6,25 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import minirt
-from minirt.element import fields_of
-from minirt.fields import Point
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes import KINDS, Shape
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import reference
 from tests.compare import edges
 from tests.kernel.pictures import linear, picture
 from tests.paths import scene_files
-from tests.shapes.examples import example
-from tests.shapes.regimes import log_uniform, random_directions
-from tests.stability.test_properties import SEED, fixed, powers
 
 WHITE = (255, 255, 255)
 DARK = Ambient(0.0, WHITE)
@@ -101,38 +93,3 @@ def test_the_light_of_every_ray_of_every_scene_is_finite(path: Path) -> None:
     for samples in (1, 3):
         assert renderer.render(minirt.load(path, lenient=True), np.zeros((54, 96, 4), np.uint8), samples)
         assert renderer.not_finite == 0
-
-
-@fixed(max_examples=80)
-@given(SEED, powers(-12, 12), st.one_of(st.none(), powers(-2, 12)))
-def test_light_is_finite(seed: int, size: float, offset: float | None) -> None:
-    # `linear` asserts it; the picture alone would not show it.
-    light = linear(stiff(seed, 10**size, 0.0 if offset is None else min(10 ** (size + offset), 1e14)))
-    assert (light >= 0).all()
-
-
-def first_point(shape: Shape) -> str:
-    """The name of the field that says where a shape is."""
-    return next(field.name for field in fields_of(type(shape)) if isinstance(field, Point))
-
-
-def stiff(seed: int, size: float, offset: float) -> Scene:
-    """A scene of overlapping shapes of every kind, with lights and the eye among them, often exactly at a shape."""
-    random = np.random.default_rng(seed)
-    middle = offset * random_directions(random)
-    shapes = []
-    for kind in KINDS:
-        for _ in range(2):
-            each = example(kind, random, size * float(log_uniform(random, 1e-3, 1)[()]))
-            shapes.append(each.replace(**{first_point(each): tuple(middle + size * random.normal(size=3))}))
-
-    def anywhere() -> tuple[float, ...]:
-        shape = shapes[random.integers(len(shapes))]
-        exactly = getattr(shape, first_point(shape))
-        return exactly if random.random() < 0.4 else tuple(middle + 3 * size * random.normal(size=3))
-
-    lamps = [FurtherLight(anywhere(), 1.0) for _ in range(3)]
-    eye = Camera(
-        anywhere(), tuple(random_directions(random).clip(-1, 1)), float(random.choice([0, 1e-3, 60, 179.999, 180]))
-    )
-    return Scene((DIM, eye, *lamps, *shapes))
