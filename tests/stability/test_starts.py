@@ -12,25 +12,18 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from minirt.element import fields_of
-from minirt.fields import Point, Triple
-from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.fields import Triple
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from tests import oracle
-from tests.kernel.pictures import linear
 from tests.oracle.body import body
-from tests.shapes.examples import example, hits, place, scaled, shadow_offsets
-from tests.shapes.execution_modes import Intersect, compiled, surfaces
+from tests.shapes.examples import example, hits, place, shadow_offsets
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays, surfaces
 from tests.shapes.regimes import (
     GREY,
     RAYS,
@@ -43,7 +36,6 @@ from tests.shapes.regimes import (
     unit,
 )
 from tests.skipping import skip_incomplete
-from tests.stability.common import MODES
 from tests.stability.degenerate import Wrong, wrong
 from tests.stability.mutants import VARIANTS, as_of_a_shadow_ray
 
@@ -162,52 +154,6 @@ def test_other_offsets_do_not_pass(kind: Kind) -> None:
     assert closeness(kind, 1e-4, fixed) > 0.01
 
 
-WHITE, GREEN = (255, 255, 255), (0, 255, 0)
-AT_1_0_0 = (  # solids whose side contains the point 1,0,0
-    Sphere((0, 0, 0), 2, GREEN),
-    Cylinder((0, 0, 0), (0, 1, 0), 2, 5, GREEN),
-    Cone((0, 4, 0), (0, -1, 0), 4, 8, GREEN),
-    Paraboloid((0, -4, 0), (0, 1, 0), 2 * 2**0.5, 8, GREEN),
-    Hyperboloid((0, 0, 0), (0, 1, 0), 2, 4, 4, GREEN),
-    Ellipsoid((0, 0, 0), (0, 1, 0), (2, 6, 2), GREEN),
-    Torus((0, 0, 0), (0, 1, 0), 1.4, 0.6, GREEN),
-)
-
-
-def surface_place(shape: Shape) -> str:
-    """The name of the field that places a shape."""
-    return next(field.name for field in fields_of(type(shape)) if isinstance(field, Point))
-
-
-def picture(eye: Camera, lamp: Light, shape: Shape, width: int, height: int, scale: float = 1.0) -> np.ndarray:
-    """The green light of a picture of a shape. The other solids are far behind the eye: one kernel is for all."""
-    behind = [scaled(each, scale / 8).replace(**{surface_place(each): (0, 0, -1e3 * scale)}) for each in AT_1_0_0]
-    return linear(Scene((Ambient(0.3, WHITE), eye, lamp, shape, *behind)), width, height)[..., 1]
-
-
-@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e-3, 1e4, 1e9])
-@pytest.mark.parametrize("shape", AT_1_0_0, ids=lambda shape: shape.title)
-def test_an_eye_on_the_surface_sees_the_inside_on_one_side_and_nothing_on_the_other(shape: Shape, scale: float) -> None:
-    eye = Camera((scale, 0, 0), (0, 0, 1), 90)
-    lamp = Light((0, 0, 0.7 * scale), 1.0)
-    lit = picture(eye, lamp, scaled(shape, scale), 41, 31, scale)
-    outside, inside = lit[10:21, :18], lit[10:21, 23:]
-    assert (outside == 0).all()
-    assert (inside >= 0.3 * (1 - 1e-15)).all()
-    assert np.abs(np.diff(inside, axis=1)).max() < 0.1  # no grain
-    assert inside.max() > 0.4 or isinstance(shape, Torus)  # the lamp is inside, too
-
-
-@pytest.mark.parametrize("size", [3, 21, 31, 101])
-def test_a_cone_seen_along_its_axis_has_no_hole(size: int) -> None:
-    eye = Camera((0, 0, -10.4), (0, 0, 1), 60)
-    cone = Cone((0, 0, 3.42), (0, 0, -1), 0.8, 3.42, WHITE)
-    seen = picture(eye, Light((0, 0, -10), 0.5), cone, size, size) > 0
-    assert seen[size // 2, size // 2]
-    assert (seen == seen[::-1]).all()
-    assert (seen == seen[:, ::-1]).all()
-
-
 DIAGONAL = 0.5**0.5 - 2.0**-53
 HARD: dict[str, tuple[Cone, Triple, Triple]] = {
     "from the rim beside a generator: it passes the apex 5e-10 off": (
@@ -249,10 +195,9 @@ def complaints(intersect: Intersect, name: str) -> Iterator[Wrong]:
         yield from wrong(intersect, turned, posed(origin)[None], posed(direction)[None])
 
 
-@pytest.mark.parametrize("mode", ["arrays"])
 @pytest.mark.parametrize("name", HARD)
-def test_rays_from_the_side_have_right_ends(name: str, mode: str) -> None:
-    assert not [str(each) for each in complaints(MODES[mode], name)]
+def test_rays_from_the_side_have_right_ends(name: str) -> None:
+    assert not [str(each) for each in complaints(on_arrays, name)]
 
 
 @pytest.mark.parametrize("name", HARD)
