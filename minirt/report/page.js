@@ -1,7 +1,9 @@
 "use strict";
 // Two pictures of the grid lie on top of each other, and a slider moves the border between them.
-for (const comparison of document.querySelectorAll(".comparison")) {
-  const pictures = [...comparison.nextElementSibling.querySelectorAll("img")];
+for (const grid of document.querySelectorAll(".pictures")) {
+  const pictures = [...grid.querySelectorAll("img")];
+  const comparison = document.querySelector("template").content.firstElementChild.cloneNode(true);
+  grid.before(comparison);
   const panes = comparison.querySelector(".panes");
   const slider = comparison.querySelector("input");
 
@@ -29,10 +31,9 @@ for (const comparison of document.querySelectorAll(".comparison")) {
   }
 
   choose("left", 0);
-  choose("right", Number(comparison.dataset.other));
+  choose("right", Number(grid.dataset.other));
   slider.addEventListener("input", move);
   panes.addEventListener("pointerdown", drag);
   panes.addEventListener("pointermove", drag);
   move();
-  comparison.hidden = false;
 }

@@ -15,12 +15,6 @@ from pathlib import Path
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 FOLDER = Path(__file__).parent
-# Two pictures with a slider between them, which the script fills and shows.
-COMPARISON = """<figure class="comparison" data-other="{}" hidden>
-<div class="panes"><img alt="" class="left"><img alt="" class="right"><i class="edge"></i></div>
-<div class="controls"><select class="left" aria-label="left picture"></select>
-<input type="range" min="0" max="100" value="50" step="any" aria-label="border of the pictures">
-<select class="right" aria-label="right picture"></select></div></figure>"""
 
 
 class Column(NamedTuple):
@@ -115,7 +109,7 @@ class Document:
             f'decoding="async"><figcaption>{inline(each.name)}</figcaption></figure>'
             for each in pictures
         )
-        self.html += [COMPARISON.format(other), f'<div class="pictures">{images}</div>']
+        self.html.append(f'<div class="pictures" data-other="{other}">{images}</div>')
 
     def as_markdown(self) -> str:
         """Return the document as Markdown, an empty line between two blocks."""

@@ -215,7 +215,7 @@ class SettingRenderer:
 
     def measured(self, setting: Setting, right: Reference) -> tuple[Row, Picture | None]:
         """Return the row and the picture of a setting; None in place of a picture if it failed or takes too long."""
-        row, work = Row(setting.knob.name, setting.label), setting.knob.work(setting.value)
+        row, work = Row(setting.knob.name, f"{setting.value:g}"), setting.knob.work(setting.value)
         expected = self.cost.get(row.knob, 0.0) * work
         if expected > self.budget.longest:
             return row._replace(remark=f"left out: takes about {expected:.2g} s"), None

@@ -106,8 +106,12 @@ def hit_certificates(scene: Scene, width: int, height: int, seed: int) -> Iterat
     eye, right, up, forward = camera_numbers(scene.camera, width, height).reshape(4, 3)
     x, y = random.uniform(-1, 1, (2, RAYS, 1))
     seen = trace(scene, np.tile(eye, (RAYS, 1)), forward + x * right + y * up)
-    yield from by_kind(scene, seen, "from the eye")
-    yield from by_kind(scene, onward(scene, seen, random), "from what it sees")
+    kinds = np.array([type(shape) for shape in scene.shapes], object)
+    for rays, hits in (("from the eye", seen), ("from what it sees", onward(scene, seen, random))):
+        for kind in ALL_KINDS:
+            of_kind = np.isin(hits.owner, np.flatnonzero(kinds == kind.element))
+            if of_kind.any():
+                yield summarised(kind, rays, *(part[of_kind] for part in hits.certificate))
 
 
 def onward(scene: Scene, seen: Hits, random: np.random.Generator) -> Hits:
@@ -120,15 +124,6 @@ def onward(scene: Scene, seen: Hits, random: np.random.Generator) -> Hits:
     clearance = CLEARANCE * (np.abs(points).max(axis=1, initial=0.0) + seen.distance[hit])
     way = np.sign((directions * normals).sum(axis=1)) * clearance
     return trace(scene, points + way[:, None] * normals, directions)
-
-
-def by_kind(scene: Scene, hits: Hits, rays: str) -> Iterator[KindCertificates]:
-    """Summarise the certificates of the hits of each kind of shape."""
-    kinds = np.array([type(shape) for shape in scene.shapes], object)
-    for kind in ALL_KINDS:
-        of_kind = np.isin(hits.owner, np.flatnonzero(kinds == kind.element))
-        if of_kind.any():
-            yield summarised(kind, rays, *(part[of_kind] for part in hits.certificate))
 
 
 def summarised(kind: Kind, rays: str, backward: Array, condition: Array, normal: Array) -> KindCertificates:

@@ -174,14 +174,9 @@ class Setting(NamedTuple):
     value: float
 
     @property
-    def label(self) -> str:
-        """The value in words, such as `16`."""
-        return f"{self.value:g}"
-
-    @property
     def name(self) -> str:
         """Name of the setting, such as `uniform 16`."""
-        return f"{self.knob.name} {self.label}"
+        return f"{self.knob.name} {self.value:g}"
 
 
 def settings(scene: Scene, most: int, least_error: float) -> Iterator[Setting]:

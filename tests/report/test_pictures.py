@@ -200,7 +200,7 @@ def test_automatic_sampling_tells_what_was_asked_and_its_own_estimate() -> None:
     assert 0 < row.estimated <= 0.005
     assert row.rmse == pytest.approx(row.estimated, rel=0.5)
     assert 1 < row.samples < 64
-    assert [setting.label for setting in settings(ALL, 1, 0.002) if setting.knob is AUTO] == ["0.01", "0.005", "0.002"]
+    assert [setting.value for setting in settings(ALL, 1, 0.002) if setting.knob is AUTO] == [0.01, 0.005, 0.002]
     assert isnan(rows()["uniform", 4].asked)
 
 
