@@ -103,7 +103,7 @@ soak: $(DEV) $(KERNELS)  ## render, and use a window, at random for long: make s
 	$(VENV)/bin/python -m tests.fuzz.soak $(MINUTES) $(SEED)
 	$(VENV)/bin/python -m tests.viewer.monkey $(MINUTES) $(SEED)
 
-bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick for a short run
+bench: $(DEV)  ## time frames beside other programs: make bench BENCH=--quick for a short run
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
 bench-peers: $(NAME)  ## install what `make bench` compares with (Debian, Ubuntu)

@@ -206,7 +206,7 @@ class Desktop:
 
     def screenshot(self, window: int) -> NDArray[np.uint8]:
         """Return the picture that a window shows: (h, w, 3) uint8, red, green, blue."""
-        return _pixels(self.run("xwd", "-silent", "-id", str(window)))
+        return pixels(self.run("xwd", "-silent", "-id", str(window)))
 
     @contextmanager
     def _cleanup(self) -> Iterator[None]:
@@ -287,7 +287,7 @@ def open_desktop() -> Iterator[Desktop]:
         (Path(home) / "openbox" / "rc.xml").write_text(OPENBOX_CONFIG)
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
-        environment["DISPLAY"], server = stack.enter_context(_display())
+        environment["DISPLAY"], server = stack.enter_context(display())
         environment[SERVER_VARIABLE] = str(server)
         command = ["openbox", "--sm-disable"]
         manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
@@ -299,7 +299,7 @@ def open_desktop() -> Iterator[Desktop]:
 
 
 @contextmanager
-def _display() -> Iterator[tuple[str, int]]:
+def display(size: tuple[int, int] = SCREEN, *options: str) -> Iterator[tuple[str, int]]:
     """Start an X server and return its display name and its process id; it ends with the block.
 
     Its keyboard does not repeat held keys: on a busy machine the time between a press and its release may be so long
@@ -309,16 +309,19 @@ def _display() -> Iterator[tuple[str, int]]:
         reader, writer = os.pipe()
         number = stack.enter_context(os.fdopen(reader))
         with os.fdopen(writer):
-            width, height = SCREEN
-            command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
-            command += ["-noreset"]  # otherwise it restarts, without openbox, when its last client leaves
+            command = ["Xvfb", *options, "-displayfd", str(writer), "-screen", "0", "{}x{}x24".format(*size)]
+            command += [
+                "-nolisten",
+                "tcp",
+                "-noreset",
+            ]  # else it restarts when its last client leaves
             command += [
                 "-r",
                 "-ardelay",
                 "100",
                 "-arinterval",
                 "20",
-            ]  # key repeat in milliseconds, if a test turns it on
+            ]  # milliseconds of key repeat, if a test turns it on
             server = stack.enter_context(_server(command, pass_fds=(writer,)))
         # Xvfb writes its number when it is ready, or closes the pipe when it ends.
         until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's display number")
@@ -340,7 +343,7 @@ def _server(command: list[str], **options: Any) -> Iterator[subprocess.Popen[byt
             process.wait(HANG_LIMIT)
 
 
-def _pixels(dump: bytes) -> NDArray[np.uint8]:
+def pixels(dump: bytes | NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Decode the X Window Dump format: a header of big-endian words, a colour table, rows of 32-bit pixels."""
     header = np.frombuffer(dump, ">u4", 25)
     header_size, width, height, row_size, colors = (int(header[i]) for i in (0, 4, 5, 12, 19))

@@ -25,6 +25,7 @@ from tests.bench.measure import INSTALL, Cells, MissingError, Setting, System, a
 from tests.bench.peers.programs import Command, PovRay, Tachyon
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT
+from tests.windows import display, pixels
 
 Pixels = NDArray[np.uint8]  # (height, width, 3), red green blue
 QUIET: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -42,30 +43,8 @@ def virtual_screen(width: int, height: int) -> Iterator[Screen]:
     """Start a screen, which ends with the block; `MissingError` if Xvfb is not installed."""
     if not shutil.which("Xvfb"):
         raise MissingError(f"windows: Xvfb is not installed; {INSTALL}")
-    with tempfile.TemporaryDirectory() as folder:
-        reader, writer = os.pipe()
-        command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24"]
-        command += ["-fbdir", folder, "-nolisten", "tcp", "-noreset"]
-        with os.fdopen(reader) as number, started(command, pass_fds=(writer,), **QUIET) as server:
-            os.close(writer)
-            name = number.readline().strip()  # comes when the server is ready; empty if it ended
-            if not name:
-                raise MissingError("windows: Xvfb does not start")
-            try:
-                yield Screen(f":{name}", pixels_of(Path(folder) / "Xvfb_screen0"))
-            finally:
-                server.terminate()  # rather than kill, so that it removes its files
-                server.wait()
-
-
-def pixels_of(dump: Path) -> Pixels:
-    """Map a file in X Window Dump format: a header of big-endian words, a colour table, rows of 32-bit pixels."""
-    header = np.fromfile(dump, ">u4", 25)
-    header_size, width, height, row_size, colours = (int(header[i]) for i in (0, 4, 5, 12, 19))
-    if header[11] != 32 or header[7] != 0:  # bits per pixel; byte order, 0 is least significant first
-        raise ValueError("the pixels of the screen are not 32-bit BGRX")
-    rows = np.memmap(dump, np.uint8, "r", offset=header_size + 12 * colours, shape=(height, row_size))
-    return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1]
+    with tempfile.TemporaryDirectory() as folder, display((width, height), "-fbdir", folder) as (name, _):
+        yield Screen(name, pixels(np.memmap(Path(folder) / "Xvfb_screen0", np.uint8, "r")))
 
 
 WIDTH, HEIGHT = 320, 240
