@@ -26,9 +26,8 @@ from minirt.mlx.memory import Headless
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from minirt.mlx.arguments import Integer
+    from minirt.mlx.arguments import Host, Integer
     from minirt.mlx.display import Display
-    from minirt.mlx.hooks import Host
     from minirt.mlx.window import Window
 
 

@@ -18,21 +18,19 @@ from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
 from minirt.helpers.signals import signal_handlers
-from minirt.mlx.arguments import MaybeNone, integer
+from minirt.mlx.arguments import MaybeNone, integer, set_hook
 from minirt.mlx.calls import Calls
 from minirt.mlx.display import ADVICE
 from minirt.mlx.events import Event
-from minirt.mlx.hooks import set_hook
 from minirt.mlx.text import draw_text
 from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from minirt.mlx.arguments import Image, Integer
+    from minirt.mlx.arguments import Hook, Host, Image, Integer
     from minirt.mlx.display import Display
     from minirt.mlx.events import Cursor, Modifier
-    from minirt.mlx.hooks import Hook, Host
 
 PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre and align text by it
 

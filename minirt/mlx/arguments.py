@@ -1,9 +1,15 @@
-"""Arguments of MiniLibX's functions: integers, handles, images, and the options of the whole."""
+"""Arguments of MiniLibX's functions: integers, handles, images, options, hooks; Host calls a program's hooks."""
 
 from __future__ import annotations
 
 import itertools
 import operator
+import sys
+import time
+import traceback
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
@@ -61,3 +67,76 @@ class Image(Handle):
     @property
     def height(self) -> int:
         return int(self.pixels.shape[0])
+
+
+Hook: TypeAlias = Callable[..., object]  # its last argument is the parameter given with it
+Hooks: TypeAlias = dict[int | str, tuple[Hook, object]]  # with parameters, by event, or by a name for hooks of ours
+
+
+def set_hook(hooks: Hooks, event: int | str, callback: Hook | None, param: object) -> int:
+    """Set the one hook of an event, or remove it with None; return 0 as MiniLibX does."""
+    if callback:
+        hooks[event] = callback, param
+    else:
+        hooks.pop(event, None)
+    return 0
+
+
+class Host(Handle, ABC):
+    """What windows know of their display: options, a clock, and the calls of the program's hooks."""
+
+    options: Options
+
+    def __init__(self) -> None:
+        self.hooks: Hooks = {}  # those of the display: loop, wake and lost
+        self.actions: deque[Callable[[], object]] = deque()
+        self.clipboard = ""  # where the platform has none
+        self.calling = 0  # hooks that are being called now, one inside another
+        self.ending = False
+        self.failure: BaseException | None = None  # raised by a hook
+
+    def time(self) -> float:
+        """Seconds of a clock that never runs backwards."""
+        return time.perf_counter()
+
+    def do(self, action: Callable[[], object]) -> None:
+        """Let the loop perform an action before its next turn. May be called from any thread."""
+        self.actions.append(action)
+        self.wake_up()
+
+    @abstractmethod
+    def wake_up(self) -> None:
+        """Make the loop take a turn soon, one for calls that come together. May be called from any thread."""
+
+    def request_turn(self) -> None:
+        """Note that a window has had an event, where the loop does not know that by itself."""
+
+    def call(self, hooks: Hooks, event: int | str, *arguments: object) -> None:
+        """Call the hook of an event. Its exception, even SystemExit, is reported, and the loop goes on.
+
+        With `Options.strict` it ends the loop, which raises it: raised at once, a platform would lose it.
+        """
+        if event not in hooks or self.ending or self.failure is not None:
+            return
+        function, parameter = hooks[event]
+        self.calling += 1
+        try:
+            function(*arguments, parameter)
+        except BaseException as failure:
+            if self.options.strict or not isinstance(failure, Exception | SystemExit):
+                self.fail(failure)
+            else:
+                print(f"Exception ignored in the hook {getattr(function, '__qualname__', function)}:", file=sys.stderr)
+                traceback.print_exception(failure)
+        finally:
+            self.calling -= 1
+
+    def fail(self, failure: BaseException) -> None:
+        """End the loop and raise `failure` from it; of several failures the first is raised."""
+        self.failure = self.failure or failure
+
+    def raise_failure(self) -> None:
+        """Raise the exception of a hook, if there is one, once."""
+        failure, self.failure = self.failure, None
+        if failure is not None:
+            raise failure

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from minirt.errors import MlxError
-from minirt.mlx.arguments import Image, MaybeNone, Options, integer
+from minirt.mlx.arguments import Image, MaybeNone, Options, integer, set_hook
 from minirt.mlx.events import Event
-from minirt.mlx.hooks import set_hook
 from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
@@ -20,9 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from minirt.mlx.arguments import Integer
+    from minirt.mlx.arguments import Hook, Host, Integer
     from minirt.mlx.display import Display
-    from minirt.mlx.hooks import Hook, Host
 
     FileName = str | PathLike[str]
     ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure

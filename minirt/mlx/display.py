@@ -6,8 +6,8 @@ import threading
 from abc import abstractmethod
 from typing import TYPE_CHECKING
 
+from minirt.mlx.arguments import Host
 from minirt.mlx.events import Event
-from minirt.mlx.hooks import Host
 
 if TYPE_CHECKING:
     from minirt.mlx.arguments import Options

@@ -13,8 +13,7 @@ from minirt.mlx.events import MODIFIER_KEYS, Button, Cursor, Event, Modifier
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from minirt.mlx.arguments import Image, Options
-    from minirt.mlx.hooks import Hooks, Host
+    from minirt.mlx.arguments import Hooks, Host, Image, Options
 
 
 REPEAT_DELAY = 0.5  # seconds until a held key repeats

@@ -11,8 +11,7 @@ import traitlets
 
 from minirt.errors import MiniRTError
 from minirt.mlx import Mlx
-from minirt.notebook.page_back_end import PageDisplay
-from minirt.notebook.page_events import deliver
+from minirt.notebook.page_back_end import PageDisplay, deliver
 from minirt.rendering.image import Image
 from minirt.scene import size_of
 from minirt.scene.scene import check_scene

@@ -27,46 +27,6 @@ if TYPE_CHECKING:
 ROUNDS = 3  # events, the turn that follows them with its hooks, and one to come after that
 
 
-class LoopCall:
-    """A pyglet event that calls an action in each of a number of rounds of the loop."""
-
-    def __init__(self, action: Callable[[], object], rounds: int) -> None:
-        self.done = threading.Event()
-        self._action = action
-        self._left = rounds
-
-    def post(self) -> None:
-        """Call the action in the next round. May be called from any thread."""
-        import pyglet.app
-
-        pyglet.app.platform_event_loop.post_event(self, "call")
-
-    def dispatch_event(self, _name: str) -> None:
-        """Call the action; pyglet calls this in the thread of the loop."""
-        self._action()
-        self._left -= 1
-        if self._left:
-            self.post()
-        else:
-            self.done.set()
-
-
-def call_in_loop(action: Callable[[], object], running: Callable[[], bool], rounds: int = 1) -> None:
-    """Call the action in the loop's thread and wait until it is done or the loop has ended."""
-    call = LoopCall(action, rounds)
-    call.post()
-    until(lambda: call.done.is_set() or not running(), "a round of the loop")
-
-
-def wait_for_events(running: Callable[[], bool]) -> None:
-    """Wait until the loop has handled all events that the X server had for it before this call.
-
-    In the first round the loop sends a request to the server, whose answer comes after all earlier events. When the
-    last round begins, the hooks of these events were called, and their drawings were sent to the server.
-    """
-    call_in_loop(_synchronise, running, ROUNDS)
-
-
 def set_key_repeat(on: bool) -> None:
     """Turn the X server's repetition of held keys on or off. Call this in the thread of the loop."""
     from pyglet.libs.x11 import xlib
@@ -203,7 +163,13 @@ class ScreenUser(Typist):
         self.until(condition)
 
     def wait_until_handled(self) -> None:
-        wait_for_events(self._running.is_set)
+        """Wait until the loop has handled all events that the X server had for it before this call.
+
+        In the first turn the loop sends a request to the server, whose answer comes after all earlier events. When the
+        last turn begins, the hooks of these events were called, and their drawings were sent to the server.
+        """
+        for _ in range(ROUNDS):
+            self._call(_synchronise)
 
     def wait_until_asleep(self, seconds: float) -> None:
         main = os.getpid()
@@ -230,8 +196,10 @@ class ScreenUser(Typist):
         return self._harness.has_diverged or not self._running.is_set()
 
     def _call(self, action: Callable[[], object]) -> None:
-        """Call an action in the thread of the loop."""
-        call_in_loop(action, self._running.is_set)
+        """Call an action in the thread of the loop, and wait until it is done or the loop has ended."""
+        done = threading.Event()
+        self._harness.mlx.do(lambda: (action(), done.set()))
+        until(lambda: done.is_set() or not self._running.is_set(), "a turn of the loop")
 
     def _log_when_expected(self, name: str, read: Callable[[], object]) -> None:
         """Log the value of `read` as soon as it is the expected one, or its last value after the time limit.

@@ -16,7 +16,7 @@ from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
     from minirt.mlx import Window
-    from minirt.mlx.hooks import Hook
+    from minirt.mlx.arguments import Hook
 
 
 def opened(width: int, height: int, patience: float = 30.0) -> tuple[Memory, Mlx, Memory, Window]:

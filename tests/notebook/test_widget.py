@@ -16,8 +16,17 @@ from minirt.mlx import Mlx
 from minirt.mlx.display import Display
 from minirt.mlx.events import Key, Modifier
 from minirt.mlx.memory import Memory
-from minirt.notebook.page_back_end import AHEAD, COARSE, FINE, QUIET, FrameStream, encode
-from minirt.notebook.page_events import code_of, modifiers_of, text_of
+from minirt.notebook.page_back_end import (
+    AHEAD,
+    COARSE,
+    FINE,
+    QUIET,
+    FrameStream,
+    code_of,
+    encode,
+    modifiers_of,
+    text_of,
+)  # fmt: skip
 from tests.notebook.requirements import require
 
 
