@@ -47,12 +47,12 @@ FILE_CHANGES = 0.15  # probability that another program writes the file after a 
 
 
 class Report(NamedTuple):
-    """The result of a run."""
+    """The result of a run, and what it used."""
 
     status: int
     output: str
     errors: str
-    record: Record  # of what it used
+    record: Record
     lines: int  # that were performed
     full_screens: int  # how often full screen was entered or left
 
@@ -215,17 +215,18 @@ def run_monkey(
         return Report(process.returncode, output, errors, record, monkey.done, monkey.full_screens)
 
 
-def share_of_time(seconds: float) -> Callable[[int], float]:
-    """Return a function that tells which share of so many seconds is over."""
-    start = time.monotonic()
-    return lambda _: (time.monotonic() - start) / seconds
-
-
 if __name__ == "__main__":
     minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
     with open_desktop() as opened, tempfile.TemporaryDirectory() as folder:
         show = partial(print, flush=True)
-        share = share_of_time(60 * minutes)
-        report = run_monkey(opened, share, seed, Path(folder), max(6, round(minutes)), show)
+        start = time.monotonic()
+        report = run_monkey(
+            opened,
+            lambda _: (time.monotonic() - start) / (60 * minutes),
+            seed,
+            Path(folder),
+            max(6, round(minutes)),
+            show,
+        )
     print(f"{report.lines} lines, {report.record.verdict}", report.output, report.errors, sep="\n")
     sys.exit(report.status != 0 or bool(report.errors) or not report.record.is_flat)

@@ -193,10 +193,6 @@ def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
     if saved and scene.camera == saved.camera:
         new = replace(new, scene=scene.replace(scene.camera, old.scene.camera.replace(source=scene.camera.source)))
     same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
-    return replace(
-        new,
-        selected=old.selected if same else new.selected,
-        value_index=old.value_index if same else 0,
-        frame=old.frame,
-        undo_stack=stack_after_reading(old),
-    )
+    selected, value_index = (old.selected, old.value_index) if same else (new.selected, 0)
+    stack = stack_after_reading(old)
+    return replace(new, selected=selected, value_index=value_index, frame=old.frame, undo_stack=stack)

@@ -5,7 +5,6 @@ python -m tests.viewer.app.test_layouts LAYOUT LOG SCENE...   # logs the actions
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -64,33 +63,6 @@ def log_actions(layout: str, log: str, *scenes: str) -> int:
     return next((status for status in statuses if status), 0)
 
 
-class LoggingViewer:
-    """The running viewer, and the file in which it logs the actions of keys."""
-
-    def __init__(
-        self, desktop: Desktop, process: subprocess.Popen[str], log: Path, codes: dict[str, str] | None = None
-    ) -> None:
-        self.desktop = desktop
-        self.process = process
-        self._log = log
-        self._codes = codes  # of letters
-
-    @property
-    def actions(self) -> list[str]:
-        """The actions so far."""
-        return self._log.read_text().splitlines()
-
-    def press(self, scene: Path, size: tuple[int, int], *keys: str) -> None:
-        """Press keys in the window of a scene and size, and wait until each of them has led to an action.
-
-        If the program ends instead, fewer actions than keys are logged.
-        """
-        window = self.desktop.find(f"miniRT - {scene.name}", size)
-        count = len(self.actions) + len(keys)
-        do(self.desktop, window, *(f"press {key}" for key in keys), codes=self._codes)
-        until(lambda: len(self.actions) >= count or self.process.poll() is not None, f"the actions of {keys}")
-
-
 @pytest.mark.parametrize("layout", KEYBOARDS)
 def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout: str) -> None:
     keys, codes = KEYBOARDS[layout]
@@ -106,16 +78,25 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout:
     log.write_text("")
     command = [sys.executable, "-W", "error", "-m", "tests.viewer.app.test_layouts", keys, str(log), *map(str, scenes)]
     with keyboard(desktop, layout), desktop.program(*command) as process:
-        viewer = LoggingViewer(desktop, process, log, codes)
-        viewer.press(scenes[0], SIZE, *(key for key, _ in usual))
+
+        def press(scene: Path, size: tuple[int, int], *keys: str) -> None:
+            """Press keys in a window until each of them has led to an action, or the program has ended."""
+            window = desktop.find(f"miniRT - {scene.name}", size)
+            count = len(log.read_text().splitlines()) + len(keys)
+            do(desktop, window, *(f"press {key}" for key in keys), codes=codes)
+            until(
+                lambda: len(log.read_text().splitlines()) >= count or process.poll() is not None, f"actions of {keys}"
+            )
+
+        press(scenes[0], SIZE, *(key for key, _ in usual))
         for (key, _), size in zip(full_screen, (SIZE, SCREEN), strict=True):
-            viewer.press(scenes[0], size, key)
+            press(scenes[0], size, key)
         for (key, _), scene in zip(quits, scenes, strict=True):
-            viewer.press(scene, SIZE, key)
+            press(scene, SIZE, key)
         assert process.communicate(timeout=HANG_LIMIT)[1] == ""
         assert process.returncode == 0
     pressed = [*usual, *full_screen, *quits]
-    assert [(key, action) for (key, _), action in zip(pressed, viewer.actions, strict=True)] == pressed
+    assert [(key, action) for (key, _), action in zip(pressed, log.read_text().splitlines(), strict=True)] == pressed
 
 
 if __name__ == "__main__":

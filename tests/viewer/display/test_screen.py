@@ -11,7 +11,6 @@ import pytest
 
 from minirt.mlx.text import measure
 from minirt.viewer.app import session
-from minirt.viewer.display import screen
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, text_size
 from minirt.viewer.display.painter import Pixels
 from tests.processes import run
@@ -111,9 +110,3 @@ def test_memory_is_given_back_once_after_a_resize_or_a_reload(
     monkeypatch.setattr(session, "give_back_memory", lambda: calls.append(None))
     played(*lines, path=tmp_path / "scene.rt")
     assert len(calls) == expected
-
-
-def test_other_systems_have_no_such_functions(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(screen.ctypes, "CDLL", lambda _: object())
-    screen.use_one_heap()
-    screen.give_back_memory()

@@ -129,28 +129,24 @@ def test_the_camera_pans():
     assert played("drag 5,3 9,3 middle").state.scene.camera.position[0] < 0
 
 
-class TestUndo:
-    @pytest.mark.parametrize("line", [DRAG, f"{DRAG} right", f"{DRAG} middle", "drag 5,3 20,12"])
-    def test_a_drag_is_one_step(self, line):
-        session = played(line)
-        assert len(session.state.undo_stack) == 1
-        assert played(line, "press Ctrl+Z").state.scene.items == scene().items
-        assert played(line, "press Ctrl+Z", "press Ctrl+Y").state.scene.items == session.state.scene.items
+@pytest.mark.parametrize("line", [DRAG, f"{DRAG} right", f"{DRAG} middle", "drag 5,3 20,12"])
+def test_a_drag_is_one_undo_step(line):
+    session = played(line)
+    assert len(session.state.undo_stack) == 1
+    assert played(line, "press Ctrl+Z").state.scene.items == scene().items
+    assert played(line, "press Ctrl+Z", "press Ctrl+Y").state.scene.items == session.state.scene.items
 
-    def test_two_drags_are_two_steps(self):
-        assert len(played(DRAG, "drag 45,15 33,23").state.undo_stack) == 2
-        assert len(played("press Tab", "press Tab", "press d", DRAG, "press d").state.undo_stack) == 3
 
-    def test_the_path_of_the_pointer_does_not_matter(self):
-        there_and_back = played("drag 33,23 60,40", "press Ctrl+Z", DRAG)
-        assert there_and_back.state.scene.items == played(DRAG).state.scene.items
-
-    def test_a_pause_does_not_end_a_drag(self):
-        harness = dragging()
-        harness.memory.wait(3)
-        harness.memory.motion(*TO)
-        harness.memory.play()
-        assert len(harness.session.state.undo_stack) == 1
+def test_drags_are_steps_of_their_own_whatever_their_paths_and_pauses():
+    assert len(played(DRAG, "drag 45,15 33,23").state.undo_stack) == 2
+    assert len(played("press Tab", "press Tab", "press d", DRAG, "press d").state.undo_stack) == 3
+    there_and_back = played("drag 33,23 60,40", "press Ctrl+Z", DRAG)
+    assert there_and_back.state.scene.items == played(DRAG).state.scene.items
+    harness = dragging()
+    harness.memory.wait(3)
+    harness.memory.motion(*TO)
+    harness.memory.play()
+    assert len(harness.session.state.undo_stack) == 1
 
 
 def dragging() -> SessionHarness:
