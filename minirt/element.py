@@ -77,12 +77,6 @@ class Record(Immutable):
             if checked is not value:
                 object.__setattr__(self, each.name, checked)
 
-    def __repr__(self) -> str:
-        shown = sorted((each for each in fields(self) if each.repr), key=lambda each: bool(each.kw_only))
-        pairs = ((each, getattr(self, each.name)) for each in shown)
-        values = ", ".join(f"{each.name}={value!r}" for each, value in pairs if value != each.default)
-        return f"{type(self).__qualname__}({values})"
-
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed."""
         return replace(self, **changes)

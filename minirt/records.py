@@ -104,7 +104,8 @@ def record(*, kw_only: bool = False) -> Callable[[Kind], Kind]:
 
 
 class Immutable:
-    """Base class of records: the methods of a frozen dataclass, for any fields. Defaults are values, no factories."""
+    """Base class of records: the methods of a frozen dataclass, for any fields. Defaults are values, no factories, and
+    are left out of a representation."""
 
     __signature__ = FieldSignature()
 
@@ -144,9 +145,12 @@ class Immutable:
         return hash(compared_values(kind)(self))
 
     def __repr__(self) -> str:
-        shown: Any = fields(self)  # type: ignore[arg-type]  # subclasses are dataclasses
-        values = ", ".join(f"{each.name}={getattr(self, each.name)!r}" for each in shown if each.repr)
-        return f"{type(self).__qualname__}({values})"
+        kind: Any = type(self)
+        shown = [each for each in fields(kind) if each.repr]
+        shown.sort(key=lambda each: bool(each.kw_only))
+        pairs = ((each, getattr(self, each.name)) for each in shown)
+        values = ", ".join(f"{each.name}={value!r}" for each, value in pairs if value != each.default)
+        return f"{kind.__qualname__}({values})"
 
 
 @cache

@@ -55,7 +55,6 @@ SLOW = (
     "tests/rendering/test_meshes.py",
     "tests/report/",
     "tests/scene/test_fast.py",
-    "tests/scene/test_fuzz.py",
     "tests/scene/test_round_trips.py",
     "tests/shapes/test_mapping.py",
     "tests/shapes/test_protocol.py",

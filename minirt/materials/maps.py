@@ -157,8 +157,7 @@ class Wood(Pattern):
     shapes the grain runs to the right, and the middle of the rings lies behind the surface. The rings move and turn
     with the shape. They cover its texture, checkerboard and marble.
 
-    The surface is lit as if it were higher where the second colour is, by `height` sizes; a negative height makes
-    grooves. `octaves` are levels of detail, each twice as fine as the one before; the grain begins with the third one.
+    `octaves` and `height` are those of marble; the grain begins with the third octave.
 
         cy 0,0,20 0,1,0 6 9 200,150,90 wood:0.7
     """
@@ -175,9 +174,7 @@ class Clouds(Pattern):
     Soft spots of a second colour, about `size` scene units wide: fractal noise (Perlin 1985, An Image Synthesizer).
     They move and turn with the shape, and have no seam. They cover its texture, checkerboard and all other patterns.
 
-    The surface is lit as if it were higher where the second colour is, by `height` sizes; a negative height makes
-    grooves. `octaves` are levels of detail, each twice as fine as the one before; those that are finer than a pixel
-    fade.
+    `octaves` and `height` are those of marble.
 
         sp 0,0,20 8 60,120,210 clouds:3
     """

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import field
+from functools import partial
 
 from minirt.element import Element
 from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real, Triple, Whole, declare, unit
 from minirt.records import record
 
+ENDS = "renders as the nearest angle that can be drawn"
+FieldOfView = partial(Real, unit="degree", low=0.0, high=180.0, step=2.0, ends=ENDS)
+Focus = partial(Length, initial=8.0)
 TONES = ("plain", "srgb", "filmic")  # how light becomes the levels of a picture, see `minirt.rendering.tone_mapping`
 
 
@@ -46,15 +50,7 @@ class Camera(Element):
     code, title, plural, once, required = "C", "camera", "cameras", True, True
     position: Triple = declare(Point, "position of the eye")
     direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0), may_be_zero=True)
-    fov: float = declare(
-        Real,
-        "horizontal field of view",
-        unit="degree",
-        low=0.0,
-        high=180.0,
-        step=2.0,
-        ends="renders as the nearest angle that can be drawn",
-    )
+    fov: float = declare(FieldOfView, "horizontal field of view")
     roll: float = declare(
         Real, "turn about the direction, clockwise", unit="degree", low=-360.0, high=360.0, keyed=True, default=0.0
     )
@@ -68,12 +64,7 @@ class Camera(Element):
         Length, "diameter of the lens; depth of field", keyed=True, default=None, placeholder="diameter", initial=0.2
     )
     focus: float | None = declare(
-        Length,
-        "distance, along the direction, of what is sharp",
-        keyed=True,
-        default=None,
-        placeholder="distance",
-        initial=8.0,
+        Focus, "distance, along the direction, of what is sharp", keyed=True, default=None, placeholder="distance"
     )
     left_handed: bool = field(default=False, kw_only=True)
 

@@ -5,6 +5,7 @@ A light source gives a surface its colour times its brightness times the cosine 
 
 from __future__ import annotations
 
+from functools import partial
 from math import cos, radians
 from typing import Any
 
@@ -13,6 +14,7 @@ from minirt.fields import Colour, Direction, Length, Point, Real, Triple, declar
 from minirt.records import record
 
 RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
+AngularDiameter = partial(Real, unit="degree", low=0.0, high=90.0, step=0.25, initial=2.0)
 WHITE = (255, 255, 255)
 DOWN = (0.0, -1.0, 0.0)
 FADE = "distance at which its light has faded to nothing"
@@ -93,16 +95,7 @@ class ParallelLight(Lamp):
     brightness: float = declare(Real, "brightness", shared=RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
     size: float | None = declare(
-        Real,
-        "angular diameter; soft shadows",
-        unit="degree",
-        low=0.0,
-        high=90.0,
-        step=0.25,
-        keyed=True,
-        default=None,
-        placeholder="degrees",
-        initial=2.0,
+        AngularDiameter, "angular diameter; soft shadows", keyed=True, default=None, placeholder="degrees"
     )
 
     def cone(self) -> tuple[float, ...]:

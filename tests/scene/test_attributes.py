@@ -11,11 +11,10 @@ from PIL import Image
 
 from minirt.errors import SceneError
 from minirt.materials import Bump, Checker, Clouds, Glass, Marble, Mirror, Specular, Tint, Wood
-from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight, describe, dump, load, parse
+from minirt.scene import Background, FurtherLight, Light, ParallelLight, SpotLight, describe, dump, load, parse
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.scene.bad_attributes import BACKGROUNDS, LIGHTS, SHAPES
 from tests.scene.examples import CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
 from tests.shapes.examples import example
 
@@ -90,12 +89,6 @@ def test_checker_without_a_size_has_8_by_8_squares_or_unit_squares_on_a_plane(ki
         assert shape.checker == Checker(1.0 if kind.element is Plane else 0.125, (0, 0, 0))
 
 
-@pytest.mark.parametrize(("line", "column", "message"), SHAPES + LIGHTS + BACKGROUNDS)
-def test_a_wrong_line_has_one_error_at_its_place(line: str, column: int, message: str) -> None:
-    (problem,) = problems(scene_with(line))
-    assert (problem.line, problem.column, problem.message) == (3, column, message)
-
-
 def test_all_wrong_attributes_of_a_line_are_reported_in_one_run() -> None:
     errors = problems(scene_with(f"{SPHERE} mirror:2 zzz:1 glass:0 texture:no.png"))
     assert [problem.column - len(SPHERE) for problem in errors] == [9, 11, 23, 33]
@@ -129,14 +122,6 @@ def test_picture_paths_are_relative_to_the_folder_of_the_scene(folder: Path, mon
         "background paint must be a picture file, got 'below/b.png': is not a picture",
     ]
     assert dump(scene.replace(a, diameter=2.0)) == text.replace("12.6", "2", 1)  # saving needs no pictures
-
-
-def test_picture_paths_of_a_scene_without_a_file_are_relative_to_the_current_folder(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(folder)
-    scene = read("bg a.png")
-    assert scene.beside("a.png") == Path("a.png")
 
 
 def test_lights_are_in_the_order_of_the_file() -> None:
@@ -183,6 +168,8 @@ def test_there_is_at_most_one_background() -> None:
         ("l 0,0,0 1", {"fade": 7.0}, "l 0,0,0 1 fade:7"),
         ("sl 0,0,0 0,-1,0 40 1", {"rim": 0.0}, "sl 0,0,0 0,-1,0 40 1 rim:0"),
         ("dl 0,-1,0 1 # sun", {"direction": (1.0, 0.0, 0.0)}, "dl 1,0,0 1 # sun"),
+        ("dl 0,-1,0 1 size:0.53", {"size": 2.0}, "dl 0,-1,0 1 size:2"),
+        ("L 0,0,0 1 fade:9 size:2", {"size": None}, "L 0,0,0 1 fade:9"),
         ("bg 1,2,3", {"paint": (4, 5, 6)}, "bg 4,5,6"),
     ],
 )
@@ -225,9 +212,3 @@ def test_wrong_values_are_refused_in_python_too(make: Any, message: str) -> None
     with pytest.raises(ValueError, match=r".") as caught:
         make()
     assert str(caught.value).startswith(message)
-
-
-def test_absent_attributes_take_no_memory_in_a_shape() -> None:
-    shapes = read(f"{SPHERE} mirror:0.5", SPHERE, f"{SPHERE} # a comma ,", " \tsp 0,0,20 1e1 1,2,3").spheres
-    assert [set(vars(shape)) & set(ABSENT) for shape in shapes] == [{"mirror"}, set(), set(), set()]
-    assert Scene([*read().elements, *shapes]).spheres == shapes

@@ -17,9 +17,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from minirt.errors import SceneError
-from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Three, Whole, whole
+from minirt.fields import Colour, Direction, Field, Length, Point, Real, Three, Whole
 from minirt.fields.scalars import LONGEST, NUMBER, PLAIN, WHOLE, Scalar
-from minirt.records import record
 from minirt.scene import describe, element_reader, fast, parse, parser
 from minirt.scene.lines import Log, line_from
 from minirt.scene.parser import read_lines
@@ -169,29 +168,6 @@ def spelled(field: Field) -> st.SearchStrategy[str]:
     return st.tuples(one, one, one).map(",".join) if isinstance(field, Three) else one
 
 
-def test_by_default_a_field_parses_a_column_value_by_value() -> None:
-    @record(kw_only=True)
-    class Even(Field):
-        plain = PLAIN
-
-        def parse(self, text: str) -> int:
-            return whole(text)
-
-        def check(self, value: int) -> int:
-            if value % 2:
-                raise FieldError("must be even")
-            return value
-
-        def remark(self, value: int) -> str:
-            return "is nothing" if value == 0 else ""
-
-    assert Even(doc="").column(["2", "1", "e", "0", "-4"]) == [2, None, None, None, -4]
-
-
-def test_a_file_of_plain_lines_only_is_not_called_empty() -> None:
-    assert [problem.message[:13] for problem in problems(SPHERE)] == ["no ambient li", "no camera: a "]
-
-
 def unscaled(field: Any, texts: Any) -> Any:
     """Stand in for `Direction.column`: take directions as they are written."""
     return Three.column(field, texts)
@@ -239,14 +215,6 @@ def test_plain_lines_skip_the_diagnosing_reader() -> None:
         seen.clear()
         read_lines(sources, Log("test.rt", lenient=False))
     assert len(seen) == 10_003
-
-
-def test_comments_and_blank_lines_skip_the_diagnosing_reader() -> None:
-    lines = ["# a comment", "", "\t\r"] * 5000
-    with patch.object(parser, "split_line", wraps=element_reader.split_line) as split_line:
-        items = read_lines(scene_with(*lines).split("\n"), Log("test.rt", lenient=False))
-    assert items[2:-1] == lines
-    assert [call.args[0].number for call in split_line.call_args_list] == [1, 2]
 
 
 def test_garbage_collection_is_left_as_it_was() -> None:

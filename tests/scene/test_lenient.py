@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from minirt.scene import FurtherLight, Light, dump, parse
+from minirt.errors import SceneError
+from minirt.scene import FurtherLight, Light, dump, load, parse
 from minirt.scene.lines import MAX_NOTICES
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
 
@@ -150,3 +153,30 @@ def test_the_last_of_too_many_notices_says_that_there_are_more(count: int) -> No
     assert [notice.line for notice in notices] == list(range(3, 3 + min(count, MAX_NOTICES + 1)))
     are_complete = count <= MAX_NOTICES
     assert ("too many notices: those from here on are left out" in notices[-1].message) != are_complete
+
+
+# Scenes in the dialects of other miniRT programs, and in `wild/meaning` the same in the words of this program.
+
+WILD = Path(__file__).parent / "wild"
+NAMES = sorted(path.stem for path in WILD.glob("*.rt"))
+
+# Lines that only a lenient reader accepts: two lights; comments, vectors of four numbers; blanks around commas.
+LENIENT = {"cornell-box": [8], "party-hats": [1, 7], "pyramid": [3]}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_lines_outside_the_format_are_errors(name: str) -> None:
+    try:
+        load(WILD / f"{name}.rt")
+        odd = []
+    except SceneError as error:
+        odd = sorted({problem.line for problem in error.problems})
+    assert odd == LENIENT.get(name, [])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scene_means_what_it_meant_there(name: str) -> None:
+    scene = load(WILD / f"{name}.rt", lenient=True).scene
+    meant = parse((WILD / "meaning" / f"{name}.rt").read_text(), WILD / f"{name}.rt").scene
+    assert scene.elements == meant.elements
+    assert len(NAMES) >= 6

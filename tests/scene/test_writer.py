@@ -54,6 +54,7 @@ def test_only_the_changed_field_of_a_line_changes(before: str, changes: dict[str
         ("C 0,0,0 0,0,1 70 roll:5.50  # eye", {"roll": -1.0}, "C 0,0,0 0,0,1 70 roll:-1    # eye"),
         ("C 0,0,0 0,0,1 70 roll:5", {"roll": 0.0}, "C 0,0,0 0,0,1 70 roll:0"),
         ("C 0,0,0 0,0,1 70 roll:0", {"fov": 7.5}, "C 0,0,0 0,0,1 7.5 roll:0"),
+        ("C 0,0,0 0,0,1 70 lens:0.25 focus:7.5", {"lens": None}, "C 0,0,0 0,0,1 70 focus:7.5"),
         ("C 0,0,0 0,0,1 70", {"direction": (0.0, 1.0, 0.0)}, "C 0,0,0 0,1,0 70"),
     ],
 )
