@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 PACKAGE = Path(__file__).parent
 FOLDERS = (PACKAGE / "scenes", PACKAGE.parent / "scenes")  # of a wheel, and beside the sources
-FILE = re.compile(r"(?<=[\s:])(?:textures|meshes)/[^\s,#]+")  # a file that a line of an example names
+FILE = re.compile(r"(?<=[\s:])(?:textures|meshes)/[^\s,#]+")  # that a line of an example names, or its comment
 UNFIT = re.compile(r"[\s,#]")  # in a path: no line of a scene can name it
 
 
@@ -54,10 +54,4 @@ def example(name: str = "demo") -> Scene:
     if UNFIT.search(str(path.parent)):
         return load(path).scene
     text = path.read_text(encoding="utf-8")
-    lines = (line if line.startswith("#") else FILE.sub(absolute, line) for line in text.split("\n"))
-    return parse("\n".join(lines)).scene
-
-
-def absolute(match: re.Match[str]) -> str:
-    """Return the absolute path of a file that an example names."""
-    return str(folder() / match.group())
+    return parse(FILE.sub(lambda named: str(folder() / named[0]), text)).scene

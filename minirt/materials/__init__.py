@@ -43,9 +43,6 @@ class Specular(Material):
     exponent: float = declare(Factor, "how smooth", high=GREATEST, initial=30.0)
     blinn: bool = declare(Flag, "from the halfway direction", default=False)
 
-    def has_effect(self) -> bool:
-        return self.share > 0.0
-
     def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
         return {"specular": (self.share, self.exponent, self.blinn)}
 

@@ -25,8 +25,8 @@ class Material(Record):
         return {}
 
     def has_effect(self) -> bool:
-        """Whether the picture shows it: a material without effect costs no feature of the kernel."""
-        return True
+        """Whether the picture shows it: a material without effect, such as a share of 0, costs no feature."""
+        return bool(getattr(self, "share", True))
 
     def further_features(self) -> tuple[str, ...]:
         """Features of the kernel that these values need beside `feature`."""

@@ -19,7 +19,17 @@ Fade = partial(Real, low=0.0, high=FARTHEST, step=0.5, unit="scene unit, 0 for n
 
 
 @record()
-class Mirror(Material):
+class Secondary(Material):
+    """Base of materials that send secondary rays."""
+
+    feature = "reflective"
+
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        return secondary_rays(shape)
+
+
+@record()
+class Mirror(Secondary):
     """Mirror: `mirror:share[,fade]`, in short `mir:`.
 
     `share` of the light seen at a point is that along the mirrored ray (Whitted 1980, An Improved Illumination Model
@@ -31,22 +41,16 @@ class Mirror(Material):
         pl 0,-1,0 0,1,0 200,200,200 mirror:0.3
     """
 
-    title, feature = "mirror", "reflective"
+    title = "mirror"
     share: float = declare(Real, "share of mirrored light", low=0.0, high=1.0, step=0.05, initial=0.3)
     fade: float = declare(Fade, "distance at which mirrored light is gone", default=0.0)
-
-    def has_effect(self) -> bool:
-        return self.share > 0.0
 
     def further_features(self) -> tuple[str, ...]:
         return ("fades",) if self.fade else ()
 
-    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
-        return secondary_rays(shape)
-
 
 @record()
-class Glass(Material):
+class Glass(Secondary):
     """Glass: `glass:ior[,share[,fade]]`, in short `ref:`.
 
     `share` of the light seen at a point, all of it when left out, comes through the surface (Whitted 1980, An Improved
@@ -63,19 +67,13 @@ class Glass(Material):
         sp 0,0,20 8 255,255,255 glass:1.5,0.9
     """
 
-    title, feature = "glass", "reflective"
+    title = "glass"
     ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02, initial=1.5)
     share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0)
     fade: float = declare(Fade, "distance at which refracted light is gone", default=0.0)
 
-    def has_effect(self) -> bool:
-        return self.share > 0.0
-
     def further_features(self) -> tuple[str, ...]:
         return ("transparent", "fades") if self.fade else ("transparent",)
-
-    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
-        return secondary_rays(shape)
 
 
 def mirror_of(shape: Any) -> Mirror:

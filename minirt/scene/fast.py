@@ -49,27 +49,24 @@ def read(sources: Sequence[str], length: int) -> Sequence[Item | None]:
     """Parse lines as they stand in a file of `length` lines; None for each that is left to the diagnosing reader."""
     if length <= FEW_LINES:
         return [None] * len(sources)
-    indices: dict[str, list[int]] = defaultdict(list)
-    texts: dict[str, list[str]] = defaultdict(list)
+    lines: dict[str, list[tuple[int, str]]] = defaultdict(list)  # by identifier: indices and texts
     items: list[Item | None] = [None] * len(sources)
     match = plain_line().fullmatch
     for index, source in enumerate(sources):
         line = match(source)
-        if line:
-            code = line.lastgroup
-            if code is None:
-                items[index] = source
-                continue
-            indices[code].append(index)
-            texts[code].append(line[code])
-    for code, lines in indices.items():
-        parsed = read_kind(frequent_kinds()[code], texts[code], [sources[index] for index in lines])
-        for index, element in zip(lines, parsed, strict=True):
+        if line and line.lastgroup:
+            lines[line.lastgroup].append((index, line[line.lastgroup]))
+        elif line:
+            items[index] = source
+    for code, found in lines.items():
+        indices, texts = zip(*found, strict=True)
+        parsed = read_kind(frequent_kinds()[code], texts, [sources[index] for index in indices])
+        for index, element in zip(indices, parsed, strict=True):
             items[index] = element
     return items
 
 
-def read_kind(kind: type[Element], texts: list[str], sources: list[str]) -> Sequence[Element | None]:
+def read_kind(kind: type[Element], texts: Sequence[str], sources: list[str]) -> Sequence[Element | None]:
     """Parse plain lines of one kind; None for each with a value that is left to the diagnosing reader.
 
     `texts` are the lines in `sources` without their comments and the blanks around.
@@ -79,7 +76,8 @@ def read_kind(kind: type[Element], texts: list[str], sources: list[str]) -> Sequ
     columns = {field.name: field.column(words[column::width]) for column, field in enumerate(positional, 1)}
     rows = zip(*columns.values(), strict=True)
     elements = kind.checked(len(sources), {"source": sources, **columns})
-    accepted = [None if None in row else element for row, element in zip(rows, elements, strict=True)]
-    if kind.conflict is not Element.conflict:
-        accepted = [None if element is None or element.conflict() else element for element in accepted]
-    return accepted
+    accepts_all = kind.conflict is Element.conflict
+    return [
+        None if None in row or not (accepts_all or element.conflict() is None) else element
+        for row, element in zip(rows, elements, strict=True)
+    ]

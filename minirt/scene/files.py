@@ -18,6 +18,7 @@ MAX_BYTES = 64 * 2**20  # 64 MiB
 MAX_LINES = MAX_BYTES // 16  # the line of a shape has more than 16 bytes
 
 NO_ELEMENTS = "holds only blanks and comments"
+NO_SCENE = "this picture carries no scene; miniRT writes one into each PNG that it renders with -o"
 
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 
@@ -32,14 +33,6 @@ LONGEST_WRITTEN = 4 * 2**20  # bytes of a scene that a picture carries
 def is_picture(path: str | os.PathLike[str]) -> bool:
     """Whether a file may be a picture with a scene, by its name."""
     return Path(path).suffix.lower() == PICTURE_SUFFIX
-
-
-def read_from_picture(path: str | os.PathLike[str], longest: int) -> bytes:
-    """Return the text of the scene that a picture carries; FileError without one."""
-    found = read_picture_text(path, SCENE, longest)
-    if found is None:
-        raise FileError(path, "this picture carries no scene; miniRT writes one into each PNG that it renders with -o")
-    return found
 
 
 def picture_settings(path: str | os.PathLike[str]) -> str:
@@ -111,7 +104,10 @@ def read(path: str | os.PathLike[str]) -> bytes:
     if not is_picture(path):
         check_name(path)
     try:
-        return read_from_picture(path, MAX_BYTES) if is_picture(path) else file_io.read(path, MAX_BYTES)
+        data = read_picture_text(path, SCENE, MAX_BYTES) if is_picture(path) else file_io.read(path, MAX_BYTES)
+        if data is None:
+            raise FileError(path, NO_SCENE)
+        return data
     except FileError as error:
         raise file_error(path, error.reason) from None
 
