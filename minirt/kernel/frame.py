@@ -6,7 +6,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, fetch_add, store_estimate, store_packet
-from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.scene_arrays import SceneArrays, vector
 from minirt.kernel.shading.lights import remember_sample, sampled_eye
 from minirt.kernel.shading.texturing import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
@@ -21,13 +21,12 @@ CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture h
 
 def ray_direction(camera: Any, x: float, y: float) -> Vec:
     """Return the direction, not normalised, of the primary ray at x, y: pixels from the picture's upper left corner."""
-    corner = Vec(camera[3], camera[4], camera[5])
-    return corner + x * Vec(camera[6], camera[7], camera[8]) + y * Vec(camera[9], camera[10], camera[11])
+    return vector(camera, 3) + x * vector(camera, 6) + y * vector(camera, 9)
 
 
 def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
     """Trace one sample of each pixel of the packet whose upper left pixel is x, y; `rays` are the sample's offsets."""
-    origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
+    origin = vector(scene.camera, 0)
     if scene.lens is not None:
         origin = sampled_eye(scene, rays)
     if scene.soft is not None:

@@ -76,8 +76,16 @@ class SceneArrays(NamedTuple):
 
 
 def has_rows(table: Any) -> bool:
-    """Whether an array of a feature, or the rows of a kind of shape, show that the scene has it."""
-    return bool(table.shape[0] > 0)
+    """Whether an array of a feature, or the rows of a kind of shape, show that the scene has it.
+
+    The compiler knows the answer for None: there is no code then for what the feature needs.
+    """
+    return table is not None and bool(table.shape[0] > 0)
+
+
+def vector(row: Any, at: int) -> Vec:
+    """Return the Vec of three numbers of a row."""
+    return Vec(row[at], row[at + 1], row[at + 2])
 
 
 def range_in_tile(group: Group, tile: int) -> tuple[int, int]:

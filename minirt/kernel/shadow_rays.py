@@ -9,7 +9,7 @@ list of the shapes that can be hit in it, which holds for all unit vectors near 
 from __future__ import annotations
 
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, is_batched, may_meet, occludes, range_in_cell, read
 from minirt.kernel.trace import BATCH, for_each_kind, in_cone
@@ -67,100 +67,92 @@ def light_buffer_cell(direction: Vec, cells: int) -> Number:
     return (face * cells + row) * cells + column
 
 
-def unoccluded(
-    scene: SceneArrays,
-    memory: Any,
-    light: int,
-    position: Vec,
-    towards: Vec,
-    origin: Vec,
-    direction: Vec,
-    distance: Number,
-    active: Mask,
-    glass: bool,
-) -> Mask:
-    """Trace shadow rays to the `position` of a light source: the `active` rays that hit nothing nearer than `distance`.
+class ShadowRays(NamedTuple):
+    """Rays of a packet to one light source."""
+
+    light: int
+    position: Vec  # where the rays end
+    towards: Vec  # directions towards the centre of the light source; it may have a size
+    origin: Vec
+    direction: Vec
+    distance: Number  # of the end
+
+
+def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, glass: bool) -> Mask:
+    """Trace shadow rays: the `active` rays that hit nothing nearer than their end.
 
     Only opaque shapes count, or with `glass` only transparent ones; in kernels without glass all shapes.
     Only shapes in the light-buffer cell of a ray are tested (Haines and Greenberg 1986). The shapes of a cell hold for
     directions close around it too, and `memory` (m, 4) caches for each light the direction that was last looked up and
     its cell: most rays of a packet, and of the next packet, need no other lookup. Cells and cones are those of the
-    directions `towards` the centre of the light source; they differ from `direction` where that has a size.
+    directions `towards` the centre of the light source.
     """
     if scene.light_buffer_cells == 1:
-        return for_each_kind(
-            unoccluded_by_kind,
-            scene.groups,
-            active,
-            (scene, light, position, towards, 0, active, origin, direction, distance, glass),
-        )
+        return for_each_kind(unoccluded_by_kind, scene.groups, active, (scene, rays, 0, active, glass))
     visible = active
     remaining = active
-    for _ in range(width(distance)):  # at most one lookup for each ray
+    tolerance = scene.light_tolerances[rays.light]
+    for _ in range(width(rays.distance)):  # at most one lookup for each ray
         if not any(remaining):
             break
-        in_cell = remaining & is_close(memory[light], scene.light_tolerances[light], towards)
+        in_cell = remaining & is_close(memory[rays.light], tolerance, rays.towards)
         if rarely(not any(in_cell)):
-            remember_cell(memory[light], scene.light_buffer_cells, towards, first(remaining))
-            in_cell = remaining & is_close(memory[light], scene.light_tolerances[light], towards)
-        cell = int(memory[light, 3])
-        arguments = (scene, light, position, towards, cell, in_cell, origin, direction, distance, glass)
+            remember_cell(memory[rays.light], scene.light_buffer_cells, rays.towards, first(remaining))
+            in_cell = remaining & is_close(memory[rays.light], tolerance, rays.towards)
+        arguments = (scene, rays, int(memory[rays.light, 3]), in_cell, glass)
         visible = for_each_kind(unoccluded_by_kind, scene.groups, visible, arguments)
         remaining = remaining & ~in_cell
     return visible
 
 
-def unoccluded_by_kind(
-    group: Group, visible: Mask, arguments: tuple[SceneArrays, int, Vec, Vec, int, Mask, Vec, Vec, Number, bool]
-) -> Mask:
+Arguments = tuple[SceneArrays, ShadowRays, int, Mask, bool]  # and the rays' cell, which of them are in it, and glass
+
+
+def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mask:
     """Remove the shadow rays that a shape of one kind occludes from `visible`; only rays `in_cell` are tested."""
     return (unoccluded_batched if is_batched(group.rows) else unoccluded_one_by_one)(group, visible, arguments)
 
 
-def unoccluded_one_by_one(
-    group: Group, visible: Mask, arguments: tuple[SceneArrays, int, Vec, Vec, int, Mask, Vec, Vec, Number, bool]
-) -> Mask:
+def unoccluded_one_by_one(group: Group, visible: Mask, arguments: Arguments) -> Mask:
     """Remove occluded shadow rays from `visible`, testing the shapes of one kind one after the other."""
-    scene, light, position, towards, cell, in_cell, origin, direction, distance, glass = arguments
-    start, end = range_in_cell(group, light, cell)
+    scene, rays, cell, in_cell, glass = arguments
+    start, end = range_in_cell(group, rays.light, cell)
     for i in range(start, end):
         index = scene.light_shapes[i]
-        cone = scene.light_cones[light, index]
-        if not any(visible & in_cell & (distance > cone[4])):
+        cone = scene.light_cones[rays.light, index]
+        if not any(visible & in_cell & (rays.distance > cone[4])):
             break
         everywhere = cone[3] <= -1.0
-        if counts(scene, index, glass) and (everywhere or rarely(in_cell & in_cone(cone, -towards))):
+        if counts(scene, index, glass) and (everywhere or rarely(in_cell & in_cone(cone, -rays.towards))):
             shape = read(group.rows, scene.slots[index, 1])
-            if everywhere or any(may_meet(shape, position, origin, direction, visible & in_cell)):
-                hit, t = occludes(shape, origin, direction)
-                visible = visible & ~(in_cell & hit & (t < distance))
+            if everywhere or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & in_cell)):
+                hit, t = occludes(shape, rays.origin, rays.direction)
+                visible = visible & ~(in_cell & hit & (t < rays.distance))
     return visible
 
 
-def unoccluded_batched(
-    group: Group, visible: Mask, arguments: tuple[SceneArrays, int, Vec, Vec, int, Mask, Vec, Vec, Number, bool]
-) -> Mask:
+def unoccluded_batched(group: Group, visible: Mask, arguments: Arguments) -> Mask:
     """Remove occluded shadow rays from `visible`, testing the bounding cones of a whole batch of shapes first."""
-    scene, light, position, towards, cell, in_cell, origin, direction, distance, glass = arguments
-    start, end = range_in_cell(group, light, cell)
+    scene, rays, cell, in_cell, glass = arguments
+    start, end = range_in_cell(group, rays.light, cell)
     while start < end:
-        farthest = greatest(where(visible & in_cell, distance, -inf))
+        farthest = greatest(where(visible & in_cell, rays.distance, -inf))
         candidates = 0
         for i in range(start, min(start + BATCH, end)):
-            cone = scene.light_cones[light, scene.light_shapes[i]]
+            cone = scene.light_cones[rays.light, scene.light_shapes[i]]
             if not farthest > cone[4]:
                 end = i
                 break
             if counts(scene, scene.light_shapes[i], glass):
-                candidates |= int(any(in_cell & in_cone(cone, -towards))) << (i - start)
+                candidates |= int(any(in_cell & in_cone(cone, -rays.towards))) << (i - start)
         while candidates != 0:
             index = scene.light_shapes[start + lowest(candidates)]
             candidates &= candidates - 1
             shape = read(group.rows, scene.slots[index, 1])
-            everywhere = scene.light_cones[light, index, 3] <= -1.0
-            if everywhere or any(may_meet(shape, position, origin, direction, visible & in_cell)):
-                hit, t = occludes(shape, origin, direction)
-                visible = visible & ~(in_cell & hit & (t < distance))
+            everywhere = scene.light_cones[rays.light, index, 3] <= -1.0
+            if everywhere or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & in_cell)):
+                hit, t = occludes(shape, rays.origin, rays.direction)
+                visible = visible & ~(in_cell & hit & (t < rays.distance))
         start += BATCH
     return visible
 

@@ -38,18 +38,9 @@ def arctan(q: Number) -> Number:
     c = where(upper, 1.0, where(middle, 0.5, splat(0.0, q)))
     s = (q - c) / (1.0 + c * q)
     z = s * s
-    series = 1.0 / 25.0
-    series = 1.0 / 23.0 - z * series
-    series = 1.0 / 21.0 - z * series
-    series = 1.0 / 19.0 - z * series
-    series = 1.0 / 17.0 - z * series
-    series = 1.0 / 15.0 - z * series
-    series = 1.0 / 13.0 - z * series
-    series = 1.0 / 11.0 - z * series
-    series = 1.0 / 9.0 - z * series
-    series = 1.0 / 7.0 - z * series
-    series = 1.0 / 5.0 - z * series
-    series = 1.0 / 3.0 - z * series
+    series = splat(1.0 / 25.0, z)
+    for n in range(23, 1, -2):
+        series = 1.0 / n - z * series
     nearest = where(upper, 0.25 * pi, where(middle, ATAN_HALF, splat(0.0, q)))
     return nearest + (s - s * z * series)
 
@@ -75,18 +66,9 @@ def log2(x: Number) -> Number:
     whole = where(upper, whole + 1.0, whole)
     s = (m - 1.0) / (m + 1.0)
     z = s * s
-    series = 1.0 / 23.0
-    series = series * z + 1.0 / 21.0
-    series = series * z + 1.0 / 19.0
-    series = series * z + 1.0 / 17.0
-    series = series * z + 1.0 / 15.0
-    series = series * z + 1.0 / 13.0
-    series = series * z + 1.0 / 11.0
-    series = series * z + 1.0 / 9.0
-    series = series * z + 1.0 / 7.0
-    series = series * z + 1.0 / 5.0
-    series = series * z + 1.0 / 3.0
-    series = series * z + 1.0
+    series = splat(1.0 / 23.0, z)
+    for n in range(21, 0, -2):
+        series = series * z + 1.0 / n
     return whole + 2.885390081777926815 * s * series
 
 
@@ -94,20 +76,9 @@ def exp2(y: Number) -> Number:
     """Return 2^y for y in [`LOWEST`, 0]: 2 to the nearest whole number, times the Taylor series of the remainder."""
     whole = floor(y + 0.5)
     x = 0.693147180559945309 * (y - whole)
-    series = 1.0 + x / 14.0
-    series = 1.0 + x / 13.0 * series
-    series = 1.0 + x / 12.0 * series
-    series = 1.0 + x / 11.0 * series
-    series = 1.0 + x / 10.0 * series
-    series = 1.0 + x / 9.0 * series
-    series = 1.0 + x / 8.0 * series
-    series = 1.0 + x / 7.0 * series
-    series = 1.0 + x / 6.0 * series
-    series = 1.0 + x / 5.0 * series
-    series = 1.0 + x / 4.0 * series
-    series = 1.0 + x / 3.0 * series
-    series = 1.0 + x / 2.0 * series
-    series = 1.0 + x * series
+    series = splat(1.0, x)
+    for n in range(14, 0, -1):
+        series = 1.0 + x / n * series
     return series * two_to(whole)
 
 

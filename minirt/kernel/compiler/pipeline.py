@@ -25,12 +25,13 @@ from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTyp
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 from numba.extending import register_jitable
 
+from minirt.kernel.scene_arrays import has_rows
 from minirt.lanes.compiled.types import REGISTERED
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class NoneChecks(FunctionPass):
-    """Replace `x is None` and `x.y is None`, for an argument x, by True or False.
+    """Replace `x is None` and `x.y is None`, for an argument x, by True or False, and `has_rows` of None by False.
 
     numba's pass DeadBranchPrune, which runs next, drops the branch that is never taken. By itself it does so only where
     x is an argument. Fields of a scene are None by type too, and code for what a scene lacks is not even well typed.
@@ -56,23 +57,27 @@ class NoneChecks(FunctionPass):
 
 def known_answer(state: Any, expression: Any) -> bool | None:
     """Return the value of a check for None that types decide, or None for any other expression."""
-    is_binary = isinstance(expression, ir.Expr) and expression.op == "binop"
-    if not is_binary or expression.fn not in (operator.is_, operator.is_not):
+    if not isinstance(expression, ir.Expr):
         return None
-    left, right = (guard(get_definition, state.func_ir, side) for side in (expression.lhs, expression.rhs))
-    kind = type_of(state, left)
+    if expression.op == "call":
+        called = getattr(guard(get_definition, state.func_ir, expression.func), "value", None)
+        return False if called is has_rows and type_of(state, expression.args[0]) == types.none else None
+    if expression.op != "binop" or expression.fn not in (operator.is_, operator.is_not):
+        return None
+    kind, right = type_of(state, expression.lhs), guard(get_definition, state.func_ir, expression.rhs)
     if kind is None or not (isinstance(right, ir.Const) and right.value is None):
         return None
     return bool((kind == types.none) == (expression.fn is operator.is_))
 
 
-def type_of(state: Any, definition: Any) -> Any:
-    """Return the type of an argument or of a field of one; None for any other definition."""
+def type_of(state: Any, variable: Any) -> Any:
+    """Return the type of a variable that is an argument or a field of one; None for any other."""
+    definition = guard(get_definition, state.func_ir, variable)
     if isinstance(definition, ir.Arg):
         return state.args[definition.index]
     if not (isinstance(definition, ir.Expr) and definition.op == "getattr"):
         return None
-    owner = type_of(state, guard(get_definition, state.func_ir, definition.value))
+    owner = type_of(state, definition.value)
     return owner and state.typingctx.resolve_getattr(owner, definition.attr)
 
 

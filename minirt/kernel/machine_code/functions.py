@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from minirt.kernel import binning, bvh_build, bvh_traversal
-from minirt.kernel import bvh_build as collapsing
+from minirt.kernel import binning, bvh_build, bvh_traversal, pixels
 from minirt.kernel.frame import frame as interpreted_frame
 from minirt.kernel.machine_code.library import LIBRARY, Call
-from minirt.kernel.pixels import classify as interpreted_classify
 
 
 class CompiledFunction:
@@ -28,8 +26,7 @@ class CompiledFunction:
 
 
 project_all, fill_bins = CompiledFunction(binning.project_all), CompiledFunction(binning.fill_bins)
-divide, weigh = CompiledFunction(bvh_build.divide), CompiledFunction(collapsing.weigh)
-collapse = CompiledFunction(collapsing.collapse)
+divide, collapse = CompiledFunction(bvh_build.divide), CompiledFunction(bvh_build.collapse)
 trace_rays = CompiledFunction(bvh_traversal.trace_rays)
 frame = CompiledFunction(interpreted_frame)
-classify = CompiledFunction(interpreted_classify)
+classify = CompiledFunction(pixels.classify)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from minirt.kernel.scene_arrays import SceneArrays, has_rows
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
 from minirt.lanes import (
     Mask,
     Number,
@@ -40,9 +40,9 @@ def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[V
     per_length = inverse_root(squared)
     to_light = offset * per_length
     distance = squared * per_length
-    if spots is None or not has_rows(spots):
+    if not has_rows(spots):
         return to_light, distance, splat(1.0, distance)
-    axis = Vec(spots[light, 0], spots[light, 1], spots[light, 2])
+    axis = vector(spots[light], 0)
     parallel = spots[light, 6] > 0.5
     to_light = where(parallel, -axis, to_light)
     distance = where(parallel, inf, distance)
@@ -76,7 +76,7 @@ KEPT = 4  # column of the last row of `memory` from which the points in the disc
 
 def sampled_eye(scene: SceneArrays, rays: Any) -> Vec:
     """Return the eye of each ray of a packet: a point of the lens."""
-    eye = splat(Vec(scene.camera[0], scene.camera[1], scene.camera[2]), load(rays, 0))
+    eye = splat(vector(scene.camera, 0), load(rays, 0))
     if has_rows(scene.lens):
         eye = eye + load_vec(rays, EYE * width(rays))
     return eye

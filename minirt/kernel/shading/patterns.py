@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import has_rows
+from minirt.kernel.scene_arrays import has_rows, vector
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
 from minirt.lanes import (
     Number,
@@ -160,10 +160,9 @@ def apply_patterns(
     if has_rows(patterns.ranges):
         for i in range(patterns.ranges[index, 0], patterns.ranges[index, 1]):
             row = patterns.rows[i]
-            second = Vec(row[COLOUR], row[COLOUR + 1], row[COLOUR + 2])
             share, gradient = pattern_at(row, point, footprint)
-            colour = colour + share * (second - colour)
-            if patterns.heights is not None and has_rows(patterns.heights):
+            colour = colour + share * (vector(row, COLOUR) - colour)
+            if has_rows(patterns.heights):
                 normal = raised(normal, patterns.heights[i] * gradient)
     return normal, colour
 
@@ -182,19 +181,17 @@ def pixel_footprint(camera: Any, point: Vec, t: Number, direction: Vec, normal: 
 
     The way of a ray that was mirrored is not known, but it is at least the distance of the point from the eye.
     """
-    offset = point - Vec(camera[0], camera[1], camera[2])
+    offset = point - vector(camera, 0)
     squared = maximum(t * t, dot(offset, offset)) / maximum(fabs(dot(normal, direction)), FLATTEST)
-    right = Vec(camera[6], camera[7], camera[8])
+    right = vector(camera, 6)
     return sqrt(squared * dot(right, right))
 
 
 def pattern_at(row: Any, point: Vec, footprint: Number) -> tuple[Number, Vec]:
     """Return the share of a pattern at some points, and its gradient; `footprint` is the width of a pixel there."""
     per_size = row[PER_SIZE]
-    x = Vec(row[FRAME], row[FRAME + 1], row[FRAME + 2])
-    y = Vec(row[FRAME + 3], row[FRAME + 4], row[FRAME + 5])
-    z = Vec(row[FRAME + 6], row[FRAME + 7], row[FRAME + 8])
-    offset = per_size * (point - Vec(row[ORIGIN], row[ORIGIN + 1], row[ORIGIN + 2]))
+    x, y, z = vector(row, FRAME), vector(row, FRAME + 3), vector(row, FRAME + 6)
+    offset = per_size * (point - vector(row, ORIGIN))
     p = Vec(dot(offset, x), dot(offset, y), dot(offset, z))
     share, slope = share_and_slope(row[KIND], int(row[OCTAVES]), p, per_size * footprint)
     return share, per_size * (slope.x * x + slope.y * y + slope.z * z)

@@ -13,8 +13,6 @@ refraction, the index of refraction, and how far Fresnel's equations count.
 
 from __future__ import annotations
 
-from typing import Any
-
 from minirt.kernel import bvh_traversal
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, smooth_point
 from minirt.kernel.shading.surfaces import (
@@ -25,9 +23,10 @@ from minirt.kernel.shading.surfaces import (
     medium_behind,
     row_of,
     shares_at_angle,
-    surface_of_kind,
+    surface_of,
     tint,
 )
+from minirt.kernel.shadow_rays import ShadowRays
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
@@ -82,52 +81,45 @@ def bump_fading(base: Vec, bumped: Vec, to_light: Vec) -> Number:
 
 def has_bumps(scene: SceneArrays) -> bool:
     """Whether any shape of a scene has a bump map, a normal map or a raised pattern."""
-    if scene.patterns is not None and is_used(scene.patterns.heights):
+    if scene.patterns is not None and has_rows(scene.patterns.heights):
         return True
     if scene.surface_maps is None:
         return False
-    return is_used(scene.surface_maps.bumps) or is_used(scene.surface_maps.normals)
+    return has_rows(scene.surface_maps.bumps) or has_rows(scene.surface_maps.normals)
 
 
-def is_used(table: Any) -> bool:
-    """Whether any shape of a scene has this kind of map."""
-    if table is None:
-        return False
-    return has_rows(table)
+def light_through_glass(scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: Mask, clear: Mask) -> Vec:
+    """Return the shares of red, green and blue of a light source that reach the origin of shadow rays.
 
-
-def light_through_glass(
-    scene: SceneArrays, start: Vec, to_light: Vec, reach: Number, medium: Vec, lit: Mask, clear: Mask
-) -> Vec:
-    """Return the shares of red, green and blue of a light source that reach the start of shadow rays.
-
-    Of the `lit` rays those that are `clear` meet nothing nearer than `reach`. Rays start in a `medium`.
+    Of the `lit` rays those that are `clear` meet nothing. Rays start in a `medium`.
     """
-    share = where(clear, splat(1.0, reach), 0.0)
+    share = where(clear, splat(1.0, rays.distance), 0.0)
     light = Vec(share, share, share)
+    reach = rays.distance
     occluded = lit & ~clear
     if has_rows(scene.transparent) and any(occluded):
-        light, medium, reach = follow_shadow_rays(scene, start, to_light, reach, medium, light, occluded)
-    if scene.media is not None and has_rows(scene.media):
+        light, medium, reach = follow_shadow_rays(scene, rays, medium, light, occluded)
+    if has_rows(scene.media):
         light = absorbed(light, medium, reach)
     return light
 
 
 def follow_shadow_rays(
-    scene: SceneArrays, start: Vec, to_light: Vec, reach: Number, medium: Vec, light: Vec, occluded: Mask
+    scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, occluded: Mask
 ) -> tuple[Vec, Vec, Number]:
     """Follow `occluded` shadow rays from surface to surface.
 
     Returns the shares that are left behind the last one, and the medium and the distance to the light source there.
     """
-    light = Vec(where(occluded, 1.0, light.x), where(occluded, 1.0, light.y), where(occluded, 1.0, light.z))
+    start, to_light, reach = rays.origin, rays.direction, rays.distance
+    light = where(occluded, Vec(1.0, 1.0, 1.0), light)
     active = occluded
     for _ in range(MOST_SURFACES):
         t, owner, extent = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
         active = active & (t < reach)
         if not any(active):
             break
-        if scene.media is not None and has_rows(scene.media):
+        if has_rows(scene.media):
             light = where(active, absorbed(light, medium, where(active, t, 0.0)), light)
         reach = where(active, reach - t, reach)
         point = start + where(active, t, 0.0) * to_light
@@ -149,16 +141,13 @@ def behind_surface(
     scene: SceneArrays, index: int, point: Vec, direction: Vec, extent: Number, light: Vec, medium: Vec
 ) -> Way:
     """Return where rays go on that cross the surface of a shape, and the light and the medium behind it."""
-    slot = scene.slots[index]
-    on, normal, shading_normal = for_each_kind(
-        surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point)
-    )
+    on, normal, shading_normal = surface_of(scene, index, point)
     cosine = fabs(dot(shading_normal, direction))
     reflective, fresnel = row_of(scene.transparent, index, extent), splat(scene.transparent[index, 3], extent)
     light = shares_at_angle(reflective, fresnel, cosine, cosine).y * light
     leaves = dot(normal, direction) > 0.0
     start = on + where(leaves, clearance(on, extent), -clearance(on, extent)) * normal
-    if scene.media is not None and has_rows(scene.media):
+    if has_rows(scene.media):
         light = tint(light, filter_of(scene.media, index, extent))
         medium = medium_behind(medium, row_of(scene.media, index, extent), leaves)
     return start, light, medium

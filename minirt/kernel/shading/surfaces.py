@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, shading, surface
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, shading, surface, vector
 from minirt.kernel.shading.patterns import apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
 from minirt.kernel.trace import ROUNDING, for_each_kind
@@ -96,7 +96,7 @@ def rate_behind(rate: Number, change: Number, leaves: Mask) -> Number:
 
 def filter_of(media: Any, index: int, like: Number) -> Vec:
     """Return the shares of light that the surface of a shape lets through, the same for all rays."""
-    return splat(Vec(media[index, 3], media[index, 4], media[index, 5]), like)
+    return splat(vector(media[index], 3), like) if has_rows(media) else splat(Vec(0.0, 0.0, 0.0), like)
 
 
 def brightest(light: Vec) -> Number:
@@ -165,35 +165,39 @@ def surfaces(
 
 def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction: Vec) -> Surface:
     """Compute the surface of one shape for all rays of the packet, which come in a `direction` from a distance t."""
-    slot = scene.slots[index]
-    on, normal, base_normal = for_each_kind(
-        surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point)
-    )
-    zero = splat(0.0, point.x)
-    specular = reflective = fades = absorption = through = Vec(zero, zero, zero)
-    glow = fresnel = zero
+    on, normal, base_normal = surface_of(scene, index, point)
     colour = row_of(scene.colours_and_extents, index, point.x)
     shading_normal = base_normal
     if scene.surface_maps is not None:
-        shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, base_normal, colour)
+        shading_normal, colour = apply_maps(
+            scene.surface_maps, scene.groups, index, scene.slots[index], on, base_normal, colour
+        )
     if scene.patterns is not None:
         footprint = pixel_footprint(scene.camera, on, t, direction, normal)
         shading_normal, colour = apply_patterns(scene.patterns, index, on, footprint, shading_normal, colour)
-    if scene.specular is not None and has_rows(scene.specular):
-        specular = row_of(scene.specular, index, point.x)
-    if scene.reflective is not None and has_rows(scene.reflective):
-        reflective = row_of(scene.reflective, index, point.x)
-    if scene.glow is not None and has_rows(scene.glow):
-        glow = splat(scene.glow[index], point.x)
-    if scene.fresnel is not None and has_rows(scene.fresnel):
-        fresnel = splat(scene.fresnel[index], point.x)
-    if scene.fades is not None and has_rows(scene.fades):
+    fades = splat(Vec(0.0, 0.0, 0.0), point.x)
+    if has_rows(scene.fades):
         fades = splat(Vec(scene.fades[index, 0], scene.fades[index, 1], 0.0), point.x)
-    if scene.media is not None and has_rows(scene.media):
-        absorption, through = row_of(scene.media, index, point.x), filter_of(scene.media, index, point.x)
     return Surface(
-        on, normal, shading_normal, base_normal, colour, specular, reflective, glow, fresnel, fades, absorption, through
+        on,
+        normal,
+        shading_normal,
+        base_normal,
+        colour,
+        row_of(scene.specular, index, point.x),
+        row_of(scene.reflective, index, point.x),
+        number_of(scene.glow, index, point.x),
+        number_of(scene.fresnel, index, point.x),
+        fades,
+        row_of(scene.media, index, point.x),
+        filter_of(scene.media, index, point.x),
     )
+
+
+def surface_of(scene: SceneArrays, index: int, point: Vec) -> tuple[Vec, Vec, Vec]:
+    """Compute points on the surface of a shape, near some points, its normals and its shading normals there."""
+    slot = scene.slots[index]
+    return for_each_kind(surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point))
 
 
 def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, Vec]:
@@ -209,8 +213,13 @@ def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[
 
 
 def row_of(table: Any, index: int, like: Number) -> Vec:
-    """Return the first three numbers of a row of a table, the same for all rays."""
-    return splat(Vec(table[index, 0], table[index, 1], table[index, 2]), like)
+    """Return the first three numbers of a row of a table, the same for all rays; zeros without the table."""
+    return splat(vector(table[index], 0), like) if has_rows(table) else splat(Vec(0.0, 0.0, 0.0), like)
+
+
+def number_of(table: Any, index: int, like: Number) -> Number:
+    """Return a number of a table, the same for all rays; 0 where a scene lacks the table."""
+    return splat(table[index], like) if has_rows(table) else splat(0.0, like)
 
 
 def tint(light: Vec, colour: Vec) -> Vec:

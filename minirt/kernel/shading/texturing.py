@@ -8,7 +8,7 @@ from __future__ import annotations
 from math import pi
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, mapping, read
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, mapping, read, vector
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import (
     Mask,
@@ -46,12 +46,8 @@ def texture_lookup(texels: Any, pictures: Any, which: int, u: Number, v: Number)
 
 def channel_lookup(texels: Any, pictures: Any, which: int, channel: int, u: Number, v: Number) -> Number:
     """Look up one channel of a picture at u, v, interpolated like `texture_lookup`."""
-    base, columns, rows, step = (
-        pictures[which, 0] + channel,
-        pictures[which, 1],
-        pictures[which, 2],
-        pictures[which, 3],
-    )
+    layout = pictures[which]
+    base, columns, rows, step = layout[0] + channel, layout[1], layout[2], layout[3]
     x = u * columns - 0.5
     y = (1.0 - v) * rows - 0.5
     left, top = floor(x), floor(y)
@@ -131,9 +127,7 @@ def mapping_of_kind(group: Group, state: Mapped, arguments: tuple[int, int, Vec,
 
 def in_own_frame(placements: Any, index: int, normal: Vec) -> Vec:
     """Return a normal in the axes of a turned shape whose `mapping` takes those of the scene for its own."""
-    if placements is None or not has_rows(placements):
-        return normal
-    if placements[index, 0] == 0.0:
+    if not has_rows(placements) or placements[index, 0] == 0.0:
         return normal
     x, y, z = own_axes(placements, index)
     return Vec(dot(normal, x), dot(normal, y), dot(normal, z))
@@ -141,18 +135,12 @@ def in_own_frame(placements: Any, index: int, normal: Vec) -> Vec:
 
 def own_axes(placements: Any, index: int) -> tuple[Vec, Vec, Vec]:
     """Return the own x, y and z axes of a shape; those of the scene where its `mapping` knows how it is turned."""
-    return (
-        Vec(placements[index, 6], placements[index, 7], placements[index, 8]),
-        Vec(placements[index, 9], placements[index, 10], placements[index, 11]),
-        Vec(placements[index, 12], placements[index, 13], placements[index, 14]),
-    )
+    return vector(placements[index], 6), vector(placements[index], 9), vector(placements[index], 12)
 
 
 def placed(placements: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec) -> Mapped:
     """Shift, turn and scale u and v, and give the tangents along the new ones, in the scene's axes."""
-    if placements is None or not has_rows(placements):
-        return u, v, along_u, along_v
-    if placements[index, 0] == 0.0:
+    if not has_rows(placements) or placements[index, 0] == 0.0:
         return u, v, along_u, along_v
     scale_u, scale_v = placements[index, 0], placements[index, 1]
     u, v = u - placements[index, 2], v - placements[index, 3]
@@ -170,20 +158,16 @@ def placed(placements: Any, index: int, u: Number, v: Number, along_u: Vec, alon
 
 def checkered(checks: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
     """Return the second colour of the checkerboard in every other square, and `colour` in all other squares."""
-    if checks is None or not has_rows(checks):
+    if not has_rows(checks) or checks[index, 0] == 0.0:
         return colour
     size = checks[index, 0]
-    if size == 0.0:
-        return colour
     half = 0.5 * (floor(u / size) + floor(v / size))
-    return where(half == floor(half), colour, Vec(checks[index, 1], checks[index, 2], checks[index, 3]))
+    return where(half == floor(half), colour, vector(checks[index], 1))
 
 
 def textured(textures: Any, maps: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
     """Return the colour of the shape's texture at u, v, or `colour` if it has none."""
-    if textures is None or not has_rows(textures):
-        return colour
-    if textures[index] == 0:
+    if not has_rows(textures) or textures[index] == 0:
         return colour
     return texture_lookup(maps.texels, maps.pictures, textures[index] - 1, u, v)
 
@@ -196,9 +180,7 @@ def bump_mapped(
     Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the
     normal, which need not be that of the tangents (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
     """
-    if bumps is None or not has_rows(bumps):
-        return normal
-    if bumps[index, 0] == 0.0:
+    if not has_rows(bumps) or bumps[index, 0] == 0.0:
         return normal
     slope_u, slope_v = height_gradient(maps.texels, maps.pictures, int(bumps[index, 0]) - 1, u, v)
     per_width = inverse_length(along_u)
@@ -216,9 +198,7 @@ def normal_mapped(
 
     Red, green and blue are its components along u, v and the normal before.
     """
-    if normals is None or not has_rows(normals):
-        return normal
-    if normals[index] == 0:
+    if not has_rows(normals) or normals[index] == 0:
         return normal
     decoded = decode_normal(texture_lookup(maps.texels, maps.pictures, normals[index] - 1, u, v))
     right, up = inverse_length(along_u) * along_u, inverse_length(along_v) * along_v
@@ -255,7 +235,7 @@ def has_environment(scene: SceneArrays) -> bool:
 def background_light(scene: SceneArrays, hit: Mask, radiance: Vec, direction: Vec) -> Vec:
     """Return `radiance` for rays that hit a shape, and the background's radiance for all other rays."""
     if scene.background is not None:
-        radiance = where(hit, radiance, Vec(scene.background[0], scene.background[1], scene.background[2]))
+        radiance = where(hit, radiance, vector(scene.background, 0))
     if scene.environment is not None and has_rows(scene.environment.pictures) and any(~hit):
         radiance = where(hit, radiance, environment_lookup(scene.environment, direction))
     return radiance

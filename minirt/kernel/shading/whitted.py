@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel import bvh_traversal
-from minirt.kernel.scene_arrays import SceneArrays, has_rows
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
 from minirt.kernel.shading.shade import direct_light, own_share
 from minirt.kernel.shading.surfaces import (
     MIN_WEIGHT,
@@ -137,7 +137,7 @@ def shade(
         normal = where(back_side, -normal, normal)
         shading_normal = where(back_side, -shading_normal, shading_normal)
         base_normal = where(back_side, -base_normal, base_normal)
-    if scene.fresnel is not None and has_rows(scene.fresnel):
+    if has_rows(scene.fresnel):
         surface = with_fresnel(surface, reflecting_normal(shading_normal, normal, direction), direction)
     light, highlight = direct_light(
         scene, memory, surface, normal, shading_normal, base_normal, direction, owner, extent, medium, hit
@@ -145,9 +145,9 @@ def shade(
     radiance = tint(light, surface.colour)
     if scene.reflective is not None:
         radiance = radiance * own_share(surface)
-    if scene.specular is not None and has_rows(scene.specular):
+    if has_rows(scene.specular):
         radiance = radiance + highlight
-    if scene.glow is not None and has_rows(scene.glow):
+    if has_rows(scene.glow):
         radiance = radiance + where(hit, surface.glow, 0.0) * surface.colour
     return radiance, surface
 
@@ -231,16 +231,16 @@ def primary_ray(scene: SceneArrays, origin: Vec, direction: Vec, zero: Number) -
     one = zero + 1.0
     medium = Vec(zero, zero, zero)
     if scene.eye_medium is not None:
-        medium = medium + Vec(scene.eye_medium[0], scene.eye_medium[1], scene.eye_medium[2])
+        medium = medium + vector(scene.eye_medium, 0)
     return Ray(origin, direction, one, zero, Vec(one, one, one), medium)
 
 
 def attenuated(scene: SceneArrays, ray: Ray, t: Number) -> tuple[Number, Vec]:
     """Return weight and colour of rays after a distance t, which is infinite for rays that hit nothing."""
     weight, colour = ray.weight, ray.colour
-    if scene.fades is not None and has_rows(scene.fades):
+    if has_rows(scene.fades):
         weight = where(ray.fade > 0.0, weight * maximum(1.0 - ray.fade * t, 0.0), weight)
-    if scene.media is not None and has_rows(scene.media):
+    if has_rows(scene.media):
         colour = absorbed(colour, ray.medium, t)
     return weight, colour
 
@@ -261,7 +261,7 @@ def worth_tracing(scene: SceneArrays, weight: Number, colour: Vec) -> Number:
 
 def behind_surface(scene: SceneArrays, surface: Surface, colour: Vec, medium: Vec, leaves: Mask) -> tuple[Vec, Vec]:
     """Return colour and medium of rays that are refracted by a surface of tinted glass."""
-    if scene.media is not None and has_rows(scene.media):
+    if has_rows(scene.media):
         colour = tint(colour, surface.filter)
         medium = medium_behind(medium, surface.absorption, leaves)
     return colour, medium

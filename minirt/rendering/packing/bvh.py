@@ -82,10 +82,8 @@ def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:
     tree = BinaryTree(boxes, bounds, links, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack)
     count = kernel.divide(tree)
     tree = tree._replace(bounds=bounds[:count], links=links[:count])
-    choices = np.empty((count, WIDTH + 1), np.int64)
-    kernel.weigh(tree, np.empty((count, WIDTH + 1)), choices)
     nodes, leaves = aligned(NODE * (count // 2 + 1), np.dtype(np.float64)), np.empty(count, np.int64)
-    used, named = kernel.collapse(tree, choices, nodes, leaves, stack, np.empty((WIDTH, 2), np.int64))
+    used, named = kernel.collapse(tree, nodes, leaves, np.empty(WIDTH, np.int64))
     return nodes[: used * NODE], links[leaves[:named]]
 
 

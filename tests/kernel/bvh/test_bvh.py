@@ -40,7 +40,6 @@ class Interpreted:
     """The functions that build a tree, interpreted."""
 
     divide = staticmethod(bvh_build.divide)
-    weigh = staticmethod(bvh_build.weigh)
     collapse = staticmethod(bvh_build.collapse)
 
 
