@@ -7,10 +7,10 @@ import os
 import subprocess
 import sys
 from contextlib import suppress
-from threading import Thread
+from tempfile import TemporaryFile
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code.cache import ObjectCode, notice, unpack
+from minirt.kernel.machine_code.cache import ObjectCode, unpack
 from minirt.kernel.machine_code.fingerprint import NATIVE, V3, V4, processor
 
 # With -P nothing is imported from the current folder.
@@ -39,9 +39,6 @@ class CompileProcess:
         if status:
             reason = messages[-1] if messages else f"the compiler ended with status {status}"
             raise RenderError(f"the kernel cannot be compiled: {reason}")
-        for message in messages:
-            if message.startswith("notice: "):
-                notice("%s", message.removeprefix("notice: "))
         try:
             lines = map(bytes.fromhex, output.decode().split())
             return [unpack(request, line) for request, line in zip(requests, lines, strict=True)]
@@ -51,31 +48,27 @@ class CompileProcess:
     def run(self, requests: list[str], target: str | None) -> tuple[int, bytes, list[str]]:
         """Run the process; return its exit status, its output and the lines of its standard error. RenderError where it
         cannot be started."""
-        try:
-            self.process = process = subprocess.Popen(
-                (*COMMAND, *["--patient"] * self.patient),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                env=environment(target or processor()),
-                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-            )
-        except OSError as error:
-            raise RenderError(f"the compiler cannot be started: {error}") from error
-        errors = process.stderr
-        assert process.stdin
-        assert process.stdout
-        assert errors
-        with process:
-            with suppress(BrokenPipeError):
-                process.stdin.write(json.dumps(requests).encode() + b"\n")
-                process.stdin.flush()
-            written: list[bytes] = []
-            reader = Thread(target=lambda: written.append(errors.read()))  # else the process waits with a full pipe
-            reader.start()
-            output = process.stdout.read()
-            reader.join()
-        return process.returncode, output, written[0].decode(errors="replace").strip().splitlines()
+        with TemporaryFile() as errors:  # a process that writes to a pipe would wait with a full one
+            try:
+                self.process = process = subprocess.Popen(
+                    (*COMMAND, *["--patient"] * self.patient),
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=errors,
+                    env=environment(target or processor()),
+                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+                )
+            except OSError as error:
+                raise RenderError(f"the compiler cannot be started: {error}") from error
+            assert process.stdin
+            assert process.stdout
+            with process:
+                with suppress(BrokenPipeError):
+                    process.stdin.write(json.dumps(requests).encode() + b"\n")
+                    process.stdin.flush()
+                output = process.stdout.read()
+            errors.seek(0)
+            return process.returncode, output, errors.read().decode(errors="replace").strip().splitlines()
 
     def stop(self) -> None:
         """Kill the process, if there is one; callable from any thread."""
