@@ -16,14 +16,6 @@ from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, int
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
 
 
-def test_interpreted_and_compiled_kernels_agree() -> None:
-    pixels, light = picture(ALL)
-    interpreted_pixels, interpreted_light = interpreted(ALL)
-    assert np.abs(light - interpreted_light).max() <= 1e-12
-    assert np.array_equal(pixels, interpreted_pixels)
-    assert len(np.unique(pixels.reshape(-1, 4), axis=0)) > 100  # there is something to see
-
-
 @pytest.mark.parametrize("index", range(len(SHAPES)))
 def test_interpreted_and_compiled_kernels_agree_with_a_single_kind(index: int) -> None:
     scene = Scene((AMBIENT, EYE, LAMP, SHAPES[index]))

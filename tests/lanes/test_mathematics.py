@@ -214,12 +214,6 @@ def test_noise_repeats_after_its_period(noise_of: Any) -> None:
         assert not np.array_equal(noise_of(p + shift[:, None] / PERIOD), noise_of(p))
 
 
-def test_gradients_are_evenly_distributed() -> None:
-    g = corner_gradient(np.arange(-74.0, 75.0))
-    _, counts = np.unique(np.stack([g.x, g.y, g.z]), axis=1, return_counts=True)
-    assert sorted(counts) == [12] * 7 + [13] * 5
-
-
 def bound_at(p: np.ndarray) -> np.ndarray:
     """Return the greatest noise possible at points of the first cell, whatever the gradients of its corners."""
     total = np.zeros(p.shape[1:])
@@ -238,16 +232,6 @@ def test_noise_keeps_its_bound() -> None:
     fine = np.linspace(-0.02, 0.02, 81)
     assert 0 <= GREATEST - bound_at(best[:, None, None, None] + np.array(np.meshgrid(fine, fine, fine))).max() < 1e-5
     assert 0.9 < np.abs(interpreted_noise(RANDOM.uniform(0, PERIOD, (3, 200_000)))[0]).max() < GREATEST
-
-
-@BOTH_NOISES
-def test_noise_is_smooth_across_cells(noise_of: Any) -> None:
-    inside = np.floor(POINTS) + RANDOM.random(POINTS.shape)
-    for axis in range(3):
-        before, behind = inside.copy(), inside.copy()
-        behind[axis] = np.floor(behind[axis])
-        before[axis] = behind[axis] - 1e-9
-        assert np.abs(noise_of(before) - noise_of(behind)).max() < 1e-7  # also the gradient
 
 
 def test_the_gradient_is_that_of_differences_of_50_digits() -> None:

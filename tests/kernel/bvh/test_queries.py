@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import typeof
 
 from minirt.kernel import bvh_traversal
 from minirt.kernel.bvh_nodes import WIDTH
@@ -118,9 +117,3 @@ def test_the_first_of_caps_in_one_plane_is_hit() -> None:
     distances, owners, *_ = trace(build_tree(columns), origins, np.tile([0.0, -1.0, 0.0], (4000, 1)))
     assert np.array_equal(owners, np.where(covers.any(axis=1), covers.argmax(axis=1), -1))
     assert np.allclose(distances[owners >= 0], origins[owners >= 0, 1] - 1, atol=1e-14)
-
-
-def test_scenes_of_the_same_kinds_share_a_kernel() -> None:
-    random = np.random.default_rng(0)
-    types = {typeof(build_tree(random_shapes(random, count))) for count in (len(KINDS), 17, 90, 1000)}
-    assert len(types) == 1

@@ -17,7 +17,7 @@ from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code.cache import CodeCache
 from minirt.kernel.machine_code.fingerprint import processor
-from minirt.kernel.machine_code.library import Call, Entry, Library, identity_of
+from minirt.kernel.machine_code.library import Call, Entry, Library
 from tests.kernel.machine_code import small_kernels
 from tests.kernel.machine_code.small_kernels import Compiler, call, count, double, is_found, library, square
 
@@ -52,19 +52,6 @@ def test_a_kernel_is_compiled_once_and_found_by_the_next_library(tmp_path: Path)
     assert compiled_by(kernels, SQUARE, DOUBLE, COUNT, SQUARE) == 2
     assert compiled_by(library(tmp_path), DOUBLE, SQUARE) == 0
     assert compiled_by(library(None), DOUBLE) == 1
-
-
-def test_only_calls_with_equal_functions_signatures_and_fingerprints_share_a_kernel() -> None:
-    kernels = Library()
-    assert kernels.identity(DOUBLE) == kernels.identity(call(double, np.zeros(7)))
-    others = [
-        SQUARE,
-        call(double, np.zeros((2, 1))),
-        call(double, np.zeros(1, np.float32)),
-        call(double, np.zeros(1), 7),
-    ]
-    assert len({kernels.identity(each) for each in (DOUBLE, *others)}) == 5
-    assert identity_of(*DOUBLE, "sources") != identity_of(*DOUBLE, "other sources")
 
 
 def test_kernels_in_memory_are_limited_to_those_that_were_used_last(

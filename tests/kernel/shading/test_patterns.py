@@ -16,7 +16,7 @@ from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply
 from minirt.lanes import Vec, load, save, width
 from minirt.materials import Clouds, Marble, Wood
 from minirt.rendering.packing.lights import Colours
-from minirt.rendering.packing.textures import frame, pack_patterns
+from minirt.rendering.packing.textures import pack_patterns
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -123,21 +123,6 @@ ALL_PATTERNS = {"marble": Marble(0.7, (255, 0, 0)), "wood": Wood(0.5, (0, 255, 0
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-def test_the_frame_of_every_kind_moves_with_it(kind: Kind) -> None:
-    shape = example(kind, np.random.default_rng(2))
-    origin, x, y, z = (np.array([v.x, v.y, v.z]) for v in frame(shape, 1.0))
-    axes = np.stack([x, y, z])
-    assert np.abs(axes @ axes.T - np.eye(3)).max() < 1e-12
-    assert np.linalg.det(axes) > 0
-    known, expected = reference.frame(shape)
-    assert np.abs(axes - expected).max() < 1e-12
-    if hasattr(shape, "axis"):
-        assert np.abs(z - shape.axis).max() < 1e-12
-    else:
-        assert np.abs(np.cross(origin - known, y)).max() < 1e-12
-
-
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 def test_patterns_of_every_kind_are_those_of_the_reference(kind: Kind) -> None:
     shape = example(kind, np.random.default_rng(3)).replace(**ALL_PATTERNS)
     points = np.random.default_rng(4).normal(size=(64, 3)) + reference.frame(shape)[0]
@@ -198,14 +183,6 @@ def test_a_far_floor_has_its_mean_colour_and_no_moire(kind: Any) -> None:
     assert abs(faded.mean() - truth.mean()) < 0.02
     aliased = np.sqrt(np.mean((far_floor(kind, rows, 1, 0.0) - truth) ** 2))
     assert np.sqrt(np.mean((faded - truth) ** 2)) < 0.3 * aliased
-
-
-@EACH
-def test_fading_is_nearer_to_the_truth_at_every_distance_at_which_it_begins(kind: Any) -> None:
-    for rows in ((2, 4), (4, 8), (8, 14)):
-        truth = far_floor(kind, rows, 8, 0.0)
-        faded, aliased = (np.mean((far_floor(kind, rows, 1, pixel) - truth) ** 2) for pixel in (1.0, 0.0))
-        assert faded < aliased
 
 
 def test_a_mesh_of_many_primitives_has_one_row() -> None:

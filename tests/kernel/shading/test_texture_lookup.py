@@ -117,17 +117,6 @@ def expected_colours(which: int, u: Array, v: Array) -> Array:
 
 @EITHER
 @pytest.mark.parametrize("which", COLOURED)
-def test_the_centre_of_a_pixel_has_its_colour(which: int, lookup: Lookup) -> None:
-    pixels = picture_of(which)
-    height, width = pixels.shape[:2]
-    for row in range(height):
-        for column in range(width):
-            u, v = np.full(16, (column + 0.5) / width), np.full(16, 1 - (row + 0.5) / height)
-            assert np.abs(lookup(which, u, v)[0] - pixels[row, column]).max() < 1e-6
-
-
-@EITHER
-@pytest.mark.parametrize("which", COLOURED)
 def test_lookup_is_bilinear_and_repeats_beyond_the_edges(which: int, lookup: Lookup) -> None:
     u, v = np.random.default_rng(which).uniform(-3, 3, (2, 320))
     assert np.abs(lookup(which, u, v) - expected_colours(which, u, v)).max() < 1e-6
