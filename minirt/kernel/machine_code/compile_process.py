@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 from contextlib import suppress
-from tempfile import TemporaryFile
+from threading import Thread
 
 from minirt.errors import RenderError
 from minirt.kernel.machine_code.cache import ObjectCode, unpack
@@ -48,27 +48,31 @@ class CompileProcess:
     def run(self, requests: list[str], target: str | None) -> tuple[int, bytes, list[str]]:
         """Run the process; return its exit status, its output and the lines of its standard error. RenderError where it
         cannot be started."""
-        with TemporaryFile() as errors:  # a process that writes to a pipe would wait with a full one
-            try:
-                self.process = process = subprocess.Popen(
-                    (*COMMAND, *["--patient"] * self.patient),
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    stderr=errors,
-                    env=environment(target or processor()),
-                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-                )
-            except OSError as error:
-                raise RenderError(f"the compiler cannot be started: {error}") from error
-            assert process.stdin
-            assert process.stdout
-            with process:
-                with suppress(BrokenPipeError):
-                    process.stdin.write(json.dumps(requests).encode() + b"\n")
-                    process.stdin.flush()
-                output = process.stdout.read()
-            errors.seek(0)
-            return process.returncode, output, errors.read().decode(errors="replace").strip().splitlines()
+        try:
+            self.process = process = subprocess.Popen(
+                (*COMMAND, *["--patient"] * self.patient),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env=environment(target or processor()),
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except OSError as error:
+            raise RenderError(f"the compiler cannot be started: {error}") from error
+        errors = process.stderr
+        assert process.stdin
+        assert process.stdout
+        assert errors
+        with process:
+            with suppress(BrokenPipeError):
+                process.stdin.write(json.dumps(requests).encode() + b"\n")
+                process.stdin.flush()
+            written: list[bytes] = []
+            reader = Thread(target=lambda: written.append(errors.read()))  # else the process waits with a full pipe
+            reader.start()
+            output = process.stdout.read()
+            reader.join()
+        return process.returncode, output, written[0].decode(errors="replace").strip().splitlines()
 
     def stop(self) -> None:
         """Kill the process, if there is one; callable from any thread."""
