@@ -19,14 +19,13 @@ from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
 from minirt.kernel.machine_code.library import Call, identity_of
 from minirt.rendering.needed_kernels import generic_call, packing_calls, ray_query
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
-from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.threads import usable_cores
 
 
 def calls() -> list[list[Call]]:
     """Return calls of the kernels to compile, in groups for one process each, the slowest first."""
     full, plain, *single = map(generic_call, sorted(GENERIC_KERNELS, key=lambda each: (each.precision, each.name)))
-    return [[full], [*packing_calls(), classify_call(), plain], *([each] for each in single), [ray_query()]]
+    return [[full], [*packing_calls(), plain], *([each] for each in single), [ray_query()]]
 
 
 def build(folder: Path, target: str) -> int:

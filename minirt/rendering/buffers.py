@@ -13,7 +13,7 @@ from minirt.lanes import Vec
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.rays import camera_rays, trace
+from minirt.rendering.queries.rays import Hits, camera_rays, trace
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Ambient, Scene
 from minirt.scene.scene import check_scene
@@ -59,7 +59,7 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
         hits.owner.reshape(height, width),
         hits.point.reshape(height, width, 3),
         hits.normal.reshape(height, width, 3),
-        coordinates(scene.shapes, hits.owner, hits.point, hits.normal, hits.primitive).reshape(height, width, 2),
+        coordinates(scene.shapes, hits).reshape(height, width, 2),
         albedo(scene, width, height, threads),
     )
 
@@ -79,51 +79,26 @@ def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArra
     return light
 
 
-def coordinates(
-    shapes: tuple[Shape, ...],
-    owner: NDArray[np.int64],
-    point: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    primitive: NDArray[np.int64],
-) -> NDArray[np.float64]:
+def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
     """Return u and v of n hits, (n, 2)."""
     arrays = ShapeArrays()
     arrays.update(shapes)
-    blocks = (slice(start, start + BLOCK) for start in range(0, len(owner), BLOCK))
-    return np.concatenate(
-        [coordinates_of_block(shapes, arrays, owner[at], point[at], normal[at], primitive[at]) for at in blocks]
-    )
-
-
-def coordinates_of_block(
-    shapes: tuple[Shape, ...],
-    arrays: ShapeArrays,
-    owner: NDArray[np.int64],
-    point: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    primitive: NDArray[np.int64],
-) -> NDArray[np.float64]:
-    """Return u and v of some hits, (n, 2)."""
-    uv = np.full((len(owner), 2), np.nan)
-    placements = {i: placement_numbers(shapes[i]) for i in np.unique(owner[owner >= 0]) if is_placed(shapes[i])}
-    own_normal = normal.copy()
+    owner, primitive = hits.owner, hits.primitive
+    uv, normal = np.full((len(owner), 2), np.nan), hits.normal.copy()
+    # Where `uv:` or a turn of the shape changes its coordinates from those of its `mapping`.
+    turned = [i for i in np.unique(owner[owner >= 0]) if shapes[i].uv or shapes[i].map_frame()]
+    placements = {i: placement_numbers(shapes[i]) for i in turned}
     for i, numbers in placements.items():
-        own_normal[owner == i] = normal[owner == i] @ np.reshape(numbers[6:], (3, 3)).T
-    group_and_row = np.full((len(owner), 2), -1)
-    group_and_row[owner >= 0] = arrays.slots[primitive[owner >= 0]]
+        normal[owner == i] = normal[owner == i] @ np.reshape(numbers[6:], (3, 3)).T
     for group, rows in enumerate(arrays.rows):
-        here = np.flatnonzero(group_and_row[:, 0] == group)
-        if len(here):
-            packed = packed_columns(rows[group_and_row[here, 1]])
+        of_group = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
+        for start in range(0, len(of_group), BLOCK):
+            here = of_group[start : start + BLOCK]
+            packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
             with np.errstate(all="ignore"):
-                u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*point[here].T), Vec(*own_normal[here].T))
+                u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*hits.point[here].T), Vec(*normal[here].T))
             uv[here, 0], uv[here, 1] = u, v
     for i, (scale_u, scale_v, shift_u, shift_v, c, s, *_) in placements.items():
         u, v = uv[owner == i].T - np.array([[shift_u], [shift_v]])
         uv[owner == i] = np.stack([scale_u * (c * u + s * v), scale_v * (c * v - s * u)], axis=-1)
     return uv
-
-
-def is_placed(shape: Shape) -> bool:
-    """Whether `uv:` or a turn of the shape changes its coordinates from those of its `mapping`."""
-    return bool(shape.uv or shape.map_frame())

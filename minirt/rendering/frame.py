@@ -109,7 +109,7 @@ def frame_arguments(
             plan = plan_of_variants(pixels.shape, lanes, samples, variants, crop or whole)
     return Frame(
         next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=as_uint32(pixels),
+        pixels=pixels.view(np.uint32)[..., 0],  # numbers 0xAARRGGBB
         linear=linear,
         rays=rays,
         plan=plan,
@@ -118,12 +118,6 @@ def frame_arguments(
         sums=sum_buffer(arrays),
         scene=arrays,
     )
-
-
-def as_uint32(pixels: np.ndarray) -> np.ndarray:
-    """View pixels (h, w, 4) as numbers 0xAARRGGBB (h, w), in the same memory."""
-    numbers: np.ndarray = pixels.view(np.uint32)[..., 0]
-    return numbers
 
 
 def sum_buffer(arrays: Any) -> np.ndarray:

@@ -4,27 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
-from itertools import takewhile
 from time import perf_counter
 
 import numpy as np
 
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.arguments import words_of
-from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width
 from minirt.rendering.frame import Frame, frame_arguments, sum_buffer, thread_memory
 from minirt.rendering.kernels import Choice, Kernels
 from minirt.rendering.outcome import ROUNDING_DECIDES, Outcome
-from minirt.rendering.packing.camera import Crop, has_apertures, packet_pixels, with_apertures
+from minirt.rendering.packing.camera import Request, has_apertures, packet_pixels, with_apertures
 from minirt.rendering.sampling.auto import AutoSampler, Sweep
-from minirt.rendering.sampling.contrast import contrast_classes, edge_packets
+from minirt.rendering.sampling.contrast import EDGE, contrast_classes
 from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import table_rays
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.threads import Job, ThreadPool
-from minirt.scene import Scene
 
 
 class FrameRunner:
@@ -73,7 +70,7 @@ class FrameRunner:
         jobs: list[Job] = []
         for memory, sums in memories:
             arguments = [words_of(each._replace(memory=memory, sums=sums)[:-1]) + scene for each in frames]
-            jobs.append(partial(run_all, choice.entry, arguments))
+            jobs.append(partial(list, map(choice.entry.run, arguments)))
         self.run_jobs(jobs)
         self.kernels.count(choice, perf_counter() - start)
         self.not_finite += int(sum(memory[-1, 1] for memory, _ in memories))
@@ -84,36 +81,27 @@ class FrameRunner:
         self.next_row[:] = CANCELLED
 
 
-def run_all(entry: Entry, arguments: list[list[int]]) -> None:
-    """Run a kernel with the words of its arguments, once for each frame."""
-    for words in arguments:
-        entry.run(words)
-
-
 def render_samples(
     runner: FrameRunner,
     packing: Packing,
-    scene: Scene,
-    pixels: np.ndarray,
-    linear: np.ndarray,
+    request: Request,
+    light: np.ndarray,
     samples: int,
     is_wanted: Callable[[], bool],
     edges_only: bool,
-    crop: Crop | None = None,
 ) -> bool:
-    """Render a scene that has shapes, or a crop, into `pixels` and `linear`; with `edges_only` only packets in which
-    neighbouring pixels differ, unless a lens or a light with a size blurs others, too. False where it was cancelled or
-    `is_wanted` said no."""
+    """Render a scene that has shapes, and its light into `light`, if it has rows; with `edges_only` only packets in
+    which neighbouring pixels differ, unless a lens or a light with a size blurs others, too. False where it was
+    cancelled or `is_wanted` said no."""
+    scene, pixels, _, crop = request
     counter = runner.new_counters(1)
     if not is_wanted():
         return False
     arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
-    frame = frame_arguments(arrays, pixels, samples, linear, counter, crop)
+    frame = frame_arguments(arrays, pixels, samples, light, counter, crop)
     if edges_only and not has_apertures(arrays):
-        strips = edge_packets(pixels, width(arrays.camera) // PACKET_HEIGHT)
-        found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
-        if found:
-            frame = frame.with_samples_where(np.concatenate(found))
+        classes, _ = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, runner.run_jobs, runner.threads)
+        frame = frame.with_samples_where(classes >= EDGE)
     runner.run([frame], runner.threads)
     return bool(counter[0] < CANCELLED)
 
@@ -121,24 +109,22 @@ def render_samples(
 def render_to_error(
     runner: FrameRunner,
     packing: Packing,
-    scene: Scene,
-    pixels: np.ndarray,
-    linear: np.ndarray,
+    request: Request,
+    light: np.ndarray,
     error: float,
     seconds: float,
     least: float | None = None,
-    crop: Crop | None = None,
 ) -> Outcome | None:
-    """Render a scene that has shapes, or a crop of its picture, as `minirt.rendering.sampling.auto` tells.
+    """Render a scene that has shapes, as `minirt.rendering.sampling.auto` tells, and its light, if `light` has rows.
 
-    `pixels` and, where it has rows, `linear` are incomplete where `cancel` ended it early, which returns None. `least`
-    is the error below which more samples are useless: where it is not given, that at which rounding to 8 bits decides,
-    and 0 with `linear`.
+    Both are incomplete where `cancel` ended it early, which returns None. `least` is the error below which more samples
+    are useless: where it is not given, that at which rounding to 8 bits decides, and 0 with light.
     """
+    scene, pixels, _, crop = request
     start, cancellations = perf_counter(), runner.cancellations
     height, across, _ = pixels.shape
     arrays = packing.pack(scene, across, height, crop)
-    frame = frame_arguments(arrays, pixels, linear=linear)
+    frame = frame_arguments(arrays, pixels, linear=light)
     with_places = has_apertures(arrays)
     packet_width = width(arrays.camera) // PACKET_HEIGHT
     offsets = packet_pixels(width(arrays.camera))
@@ -159,7 +145,7 @@ def render_to_error(
         return contrast_classes(pixels, packet_width, runner.run_jobs, runner.threads)
 
     if least is None:  # rounding to 8 bits, where nobody wants the light itself, makes less error useless
-        least = 0.0 if len(linear) else ROUNDING_DECIDES
+        least = 0.0 if len(light) else ROUNDING_DECIDES
     packets = Packets(height, across, packet_width)
     auto = AutoSampler(draw, classify, packets, 3 * height * across, len(offsets[0]), with_places)
     outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))

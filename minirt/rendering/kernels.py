@@ -1,14 +1,11 @@
-"""Kernels of one renderer: chooses the one that draws a frame, and has missing ones compiled.
-
-A process of the lowest priority compiles specialised kernels in the background while a generic one draws.
-"""
+"""Kernels of one renderer: chooses the one that draws a frame, and has missing ones compiled, in the background where
+a generic one draws meanwhile."""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from functools import cache, cached_property
 from threading import Lock, Thread
 from typing import NamedTuple
@@ -25,14 +22,13 @@ from minirt.scene import Scene
 
 
 class BackgroundCompiler:
-    """Compiles one kernel at a time; of those that are wanted meanwhile, the last one is next."""
+    """Compiles one kernel at a time, of those that are wanted the one that was asked for last."""
 
     def __init__(self) -> None:
         self.process = CompileProcess(patient=True)
         self.lock = Lock()
-        self.wanted: str | None = None
-        self.later: list[str] = []  # when nothing else is wanted
-        self.asked: set[str] = set()  # identities that were compiled, or failed
+        self.wanted: list[str] = []
+        self.asked: set[str] = set()  # identities, once and for all
         self.thread: Thread | None = None
         self.notify: Callable[[], object] = lambda: None  # called when nothing is being compiled any more
 
@@ -41,27 +37,14 @@ class BackgroundCompiler:
         """Whether a kernel is being compiled."""
         return self.thread is not None
 
-    def compile(self, identity: str) -> None:
-        """Ask for a kernel, unless that was done before; callable from any thread."""
+    def compile(self, *identities: str) -> None:
+        """Ask for kernels, unless that was done before; callable from any thread."""
         with self.lock:
-            if identity not in self.asked:
-                self.wanted = identity
-                self.start()
-
-    def compile_later(self, identities: Iterable[str]) -> None:
-        """Ask for kernels that are compiled when nothing else is wanted; callable from any thread."""
-        with self.lock:
-            self.later = [each for each in identities if each not in self.asked]
-            if self.later:
-                self.start()
-
-    def start(self) -> None:
-        """Start the thread, unless it runs or the system allows no more threads. The caller holds the lock."""
-        if not self.thread:
-            thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
-            with suppress(RuntimeError):
-                thread.start()
-                self.thread = thread
+            self.wanted += [each for each in identities if each not in self.asked]
+            self.asked.update(identities)
+            if self.wanted and not self.thread:
+                self.thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
+                self.thread.start()
 
     def work(self) -> None:
         """Compile what is wanted until nothing is: the body of the thread."""
@@ -75,17 +58,15 @@ class BackgroundCompiler:
     def next(self) -> str | None:
         """Return the identity of the next kernel; None, which ends the thread, where there is none."""
         with self.lock:
-            identity, self.wanted = self.wanted or (self.later.pop(0) if self.later else None), None
-            if identity is None:
-                self.thread = None
-            else:
-                self.asked.add(identity)
-            return identity
+            if self.wanted:
+                return self.wanted.pop()
+            self.thread = None
+            return None
 
     def stop(self) -> None:
         """End compiling; callable from any thread."""
         with self.lock:
-            self.wanted, self.later = None, []
+            self.wanted.clear()
         self.process.stop()
 
 
@@ -113,19 +94,14 @@ class Kernels:
         self.precision = precision
         self.depth = depth
         self.specialised_after = SPECIALISED_AFTER
-        self.wants_generic = True
         self.specialised_kernels: dict[frozenset[Hashable], list[str]] = {}  # identities, for each set of features
         self.generic_seconds: dict[str, float] = {}  # of generic kernels, by specialised one
-        self.start_anew()
-
-    def start_anew(self) -> None:
-        """Forget compiling processes."""
-        self.compile_process, self.packing_process = CompileProcess(), CompileProcess()
-        self.background = BackgroundCompiler()
+        self.after_fork()
 
     def after_fork(self) -> None:
-        """In a child process: leave the compiling processes, if there are any, to the parent."""
-        self.start_anew()
+        """Begin without compiling processes; in a child process those, if there are any, are the parent's."""
+        self.compile_process, self.packing_process = CompileProcess(), CompileProcess()
+        self.background = BackgroundCompiler()
 
     def choose(self, frame: Frame) -> Choice:
         """Return the most specialised kernel that is there for a frame; where there is none compile it."""
@@ -149,18 +125,13 @@ class Kernels:
             self.generic_seconds[choice.specialised] = total
             if total >= self.specialised_after:
                 self.background.compile(choice.specialised)
-        elif self.wants_generic and not self.specialised_after:
-            self.compile_generic()
+        elif not self.specialised_after:  # so that edits need not wait for specialised ones
+            self.background.compile(*self.missing_for_all_scenes)
 
-    def compile_generic(self) -> None:
-        """Compile the missing generic kernels in the background, so that edits need not wait for specialised ones."""
-        self.wants_generic = False
-        self.background.compile_later([each for each in self.for_all_scenes if not LIBRARY.has(each)])
-
-    @property
-    def is_generic_kernel_there(self) -> bool:
-        """Whether a kernel that was compiled ahead of time can draw all scenes of this precision."""
-        return LIBRARY.has(self.for_all_scenes[-1])
+    @cached_property
+    def missing_for_all_scenes(self) -> list[str]:
+        """Those of the kernels for all scenes that were not there when they were first looked for."""
+        return [each for each in self.for_all_scenes if not LIBRARY.has(each)]
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
@@ -169,11 +140,6 @@ class Kernels:
             or all(map(LIBRARY.has, self.for_all_scenes))
             or all(map(LIBRARY.has, self.specialised(scene)))
         )
-
-    def make_ready(self, scene: Scene) -> None:
-        """Compile the specialised kernels for a scene that no kernel can draw. RenderError where compiling fails."""
-        if not self.is_ready(scene):
-            self.compile(scene)
 
     @cached_property
     def for_all_scenes(self) -> list[str]:

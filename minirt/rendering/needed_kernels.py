@@ -14,6 +14,7 @@ from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.features import DEPTH, SPREAD, features, primitive_count, shape_features
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, GenericKernel, empty_arrays
 from minirt.rendering.packing.visibility import SMALL
+from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, parse
 
@@ -43,11 +44,12 @@ PIXEL = np.zeros((1, 1, 4), np.uint8)
 
 
 def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
-    """Return calls of the kernels for a scene: of those that pack it, and of the specialised one that draws it."""
+    """Return calls of the kernels for a scene: of those that pack it and that find contrast, and of the specialised
+    one that draws it."""
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
-    return [*recorder.calls.values(), functions.frame.call(*frame_arguments(arrays, PIXEL))]
+    return [*recorder.calls.values(), classify_call(), functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
 
 def generic_call(generic: GenericKernel) -> Call:
@@ -56,7 +58,7 @@ def generic_call(generic: GenericKernel) -> Call:
 
 
 def packing_calls() -> list[Call]:
-    """Return calls of all functions that pack scenes in double precision, whose types are the same for all scenes."""
+    """Return calls of all functions beside those that draw, whose types are the same for all scenes."""
     *packing, _ = calls_for(parse(EXAMPLE).scene, "double", DEPTH)
     return packing
 

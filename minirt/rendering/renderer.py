@@ -18,9 +18,8 @@ from minirt.rendering.frame_runner import FrameRunner, render_samples, render_to
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.notes import NO_GENERIC_KERNEL, kernel_notes
 from minirt.rendering.outcome import Outcome
-from minirt.rendering.packing.camera import Crop
+from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.threads import usable_cores
 from minirt.rendering.tone_mapping import ToneMapper
@@ -52,10 +51,7 @@ class Renderer:
         renew_after_fork(self)
 
     def after_fork(self) -> None:
-        """In a child process: replace the lock and drop the threads, which are the parent's.
-
-        The packed scene goes too, since a thread may have been packing it.
-        """
+        """In a child process: replace the lock, and drop the parent's threads and what they may have been packing."""
         self.busy = Lock()
         self.__dict__.pop("packing", None)
         self.kernels.after_fork()
@@ -83,7 +79,7 @@ class Renderer:
         choice, last = self.runner.choice, self.packing.last
         if not choice or not last:
             return []
-        missing = [] if self.kernels.is_generic_kernel_there else [NO_GENERIC_KERNEL]
+        missing = [] if LIBRARY.has(self.kernels.for_all_scenes[-1]) else [NO_GENERIC_KERNEL]
         sentences = kernel_notes(last[0], choice.generic, self.kernels.background.busy)
         return [*sentences, *missing, *self.packing.notes]
 
@@ -92,16 +88,12 @@ class Renderer:
         return self.kernels.is_ready(scene)
 
     def prepare(self, scene: Scene) -> None:
-        """Load a kernel that can draw this scene. Where there is none, another process compiles the specialised one,
-        which takes seconds. RenderError where that fails.
-        """
+        """Load a kernel that can draw this scene; where there is none, have the specialised one compiled, which takes
+        seconds. RenderError where that fails."""
         self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
     def specialise(self, scene: Scene) -> None:
-        """Load or compile the specialised kernel for this scene, so that measurements are those of this kernel alone.
-
-        RenderError where compiling fails.
-        """
+        """Load or compile the specialised kernel for this scene, to measure it alone. RenderError where that fails."""
         self.kernels.compile(scene)
         self.prepare(scene)
 
@@ -138,7 +130,7 @@ class Renderer:
         stops wanting the picture and then cancels is heard at any time.
         """
         with self.busy:
-            return self._draw(scene, pixels, samples, linear, is_wanted, edges_only=False, crop=crop)
+            return self._draw(Request(scene, pixels, linear, crop), samples, is_wanted)
 
     def refine(
         self,
@@ -153,33 +145,35 @@ class Renderer:
         The result, `is_wanted` and `linear` are as for `render`; light stays as it is where no pixel differs.
         """
         with self.busy:
-            return self._draw(scene, pixels, samples, linear, is_wanted, edges_only=True)
+            return self._draw(Request(scene, pixels, linear), samples, is_wanted, edges_only=True)
 
     def _draw(
-        self,
-        scene: Scene,
-        pixels: np.ndarray,
-        samples: int,
-        linear: np.ndarray | None,
-        is_wanted: Callable[[], bool],
-        edges_only: bool,
-        crop: Crop | None = None,
+        self, request: Request, samples: int, is_wanted: Callable[[], bool] = lambda: True, edges_only: bool = False
     ) -> bool:
-        """Render a scene, whether it has shapes or not. The caller holds `busy`."""
+        """Render a picture with a number of samples. The caller holds `busy`."""
         check_whole("samples", samples, 1)
-        self.runner.not_finite = 0
-        light = self.tone_mapper.light_for(scene, pixels, linear, edges_only)
-        is_done = True
-        if not scene.shapes or not pixels.size:
-            draw_background(scene, pixels, light, crop)
-        else:
-            self.kernels.make_ready(scene)
-            is_done = render_samples(
-                self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only, crop
-            )
+        light, is_done = self._begin(request, edges_only)
+        if not is_done:
+            arguments = self.runner, self.packing, request, light, samples, is_wanted, edges_only
+            is_done = render_samples(*arguments)
         if is_done:
-            self.tone_mapper.apply(scene, pixels, light, *corner(crop))
+            self.tone_mapper.apply(request, light)
         return is_done
+
+    def _begin(self, request: Request, edges_only: bool = False) -> tuple[np.ndarray, bool]:
+        """Return the array for the light of a picture, and whether it is done, as it shows the background alone.
+
+        Otherwise there is a kernel that can draw it."""
+        self.runner.not_finite = 0
+        light = self.tone_mapper.light_for(request, edges_only)
+        if request.scene.shapes and request.pixels.size:
+            if not self.is_ready(request.scene):
+                self.kernels.compile(request.scene)
+            return light, False
+        from minirt.rendering.queries.preview import draw_background
+
+        draw_background(request, light)
+        return light, True
 
     def reach(
         self,
@@ -193,25 +187,20 @@ class Renderer:
         """Render into `pixels` and `linear`, as `render` does, until the estimated error is at most `error` or that
         many seconds have passed; see `minirt.rendering.sampling.auto`. Without `linear` it ends where rounding to 8
         bits decides. None where `cancel` ended it early; then the picture is incomplete."""
+        request, start = Request(scene, pixels, linear, crop), perf_counter()
         with self.busy:
-            start = perf_counter()
-            self.runner.not_finite = 0
-            light = self.tone_mapper.light_for(scene, pixels, linear)
-            if not scene.shapes or not pixels.size:
-                draw_background(scene, pixels, light, crop)
-                outcome: Outcome | None = Outcome(1.0, 1, 0.0, perf_counter() - start, error)
-            else:
-                self.kernels.make_ready(scene)
-                LIBRARY.get(classify_call())
+            light, is_done = self._begin(request)
+            outcome: Outcome | None = Outcome(1.0, 1, 0.0, perf_counter() - start, error)
+            is_mapped = self.tone_mapper.needed(scene)
+            if not is_done:
                 least = None
-                if linear is None and self.tone_mapper.needed(scene):
-                    first = partial(self._draw, scene, pixels, 1, None, lambda: True, edges_only=False, crop=crop)
-                    least = self.tone_mapper.floor(scene, pixels, error, first)
+                if linear is None and is_mapped:
+                    least = self.tone_mapper.floor(request, error, partial(self._draw, request, 1))
                 left = seconds - (perf_counter() - start)
-                outcome = render_to_error(self.runner, self.packing, scene, pixels, light, error, left, least, crop)
-            if outcome and self.tone_mapper.needed(scene):
-                self.tone_mapper.apply(scene, pixels, light, *corner(crop))
-                outcome = outcome._replace(rounding=self.tone_mapper.rounding(scene, pixels))
+                outcome = render_to_error(self.runner, self.packing, request, light, error, left, least)
+            if outcome and is_mapped:
+                self.tone_mapper.apply(request, light)
+                outcome = outcome._replace(rounding=self.tone_mapper.rounding(request))
             return outcome
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
@@ -244,21 +233,7 @@ class Renderer:
         self.runner.cancel()
 
 
-def corner(crop: Crop | None) -> tuple[int, int]:
-    """Return the column and row of a picture at which a rectangle begins."""
-    return (crop.left, crop.top) if crop else (0, 0)
-
-
-def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray, crop: Crop | None = None) -> None:
-    """Draw a scene without shapes, see `minirt.rendering.queries.preview`."""
-    from minirt.rendering.queries import preview
-
-    preview.draw_background(scene, pixels, linear, crop)
-
-
-Settings = tuple[int | None, str, int | None, bool]
-
-renderers: dict[Settings, Renderer] = {}
+renderers: dict[tuple[int | None, str, int | None, bool], Renderer] = {}
 lock = ForkSafeLock()  # two threads that ask at once get the same renderer
 
 

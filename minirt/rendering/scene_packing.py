@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from minirt.helpers.system import TooLargeError
+from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.notes import notes
@@ -31,7 +32,7 @@ from minirt.rendering.packing.lights import (
     sizes,
     spot_parameters,
 )
-from minirt.rendering.packing.materials import effective, medium_at, pack_environment, pack_materials, without_unseen
+from minirt.rendering.packing.materials import medium_at, pack_environment, pack_materials, without_unseen
 from minirt.rendering.packing.planes import never_occludes
 from minirt.rendering.packing.ray_casting import distance_in_the_middle
 from minirt.rendering.packing.shape_arrays import ShapeArrays, smooth_primitives
@@ -50,23 +51,34 @@ from minirt.shapes import Shape
 class Packing:
     """Packs scene after scene, in "double" precision or, where a scene allows it, in "single".
 
-    With `minirt.kernel.interpreted` as the kernel it does without compiled functions.
+    With `minirt.kernel.interpreted` as the kernel it does without compiled functions. Without `culls` there is one tile
+    and one cell of each light, with all shapes.
     """
 
-    def __init__(self, kernel: Any = functions, precision: str = "double", depth: int = DEPTH) -> None:
+    def __init__(
+        self, kernel: Any = functions, precision: str = "double", depth: int = DEPTH, culls: bool = True
+    ) -> None:
         self.kernel = kernel
+        self.culls = culls
         self.precision = precision
         self.depth = depth  # bounces at most
         self.shape_arrays = ShapeArrays()
         self.cache: dict[Hashable, Any] = {}  # results for the last scene, by what they depend on beside its shapes
         self.cells_that_fit: dict[int, int] = {}  # by the number of lights, where the usual cells do not fit
+        self.bvh: Tree | None = None  # of the last shapes, once it was needed
         self.last: tuple[Scene, tuple[int, int, Crop], SceneArrays] | None = None
 
     def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
         """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
         if self.shape_arrays.update(shapes):
-            self.cache, self.last, self.cells_that_fit = {}, None, {}
+            self.cache, self.last, self.cells_that_fit, self.bvh = {}, None, {}, None
         return self.shape_arrays
+
+    def bvh_of(self, shapes: tuple[Shape, ...]) -> Tree:
+        """Return the BVH over these shapes, which is kept until other ones are packed."""
+        arrays = self.shape_arrays_for(shapes)
+        self.bvh = self.bvh or build_bvh(arrays, self.kernel)
+        return self.bvh
 
     def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:
         """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one."""
@@ -95,8 +107,11 @@ class Packing:
         lens = self.lens(scene, camera, cached) if "lens" in used else None
         radius, per_focus = radius_and_focus(lens)
         view = camera, width, height, crop, radius, per_focus
-        eye = cached((camera.tobytes(), *view[1:]), seen_by_eye, self.kernel, shapes, *view)
-        cells = self.cells_that_fit.get(len(sources), light_buffer_cells(shapes))
+        if self.culls:
+            eye = cached((camera.tobytes(), *view[1:]), seen_by_eye, self.kernel, shapes, *view)
+        else:
+            eye = seen_by_light(self.kernel, shapes, camera[:3], 1, np.zeros(len(shapes.planes), bool))
+        cells = self.cells_that_fit.get(len(sources), light_buffer_cells(shapes)) if self.culls else 1
         while True:
             try:
                 binned, keys = self.seen_by_lights(scene, cells, cached, radius)
@@ -114,7 +129,7 @@ class Packing:
             shapes.owner,
             used,
         )
-        materials = without_unseen(materials, cached(("effective", used), effective, materials), eye.members)
+        materials = without_unseen(materials, eye.members)
         needs_bvh = "reflective" in used or (cells > 1 and not SPREAD.isdisjoint(used))
         paint: Any = scene.background and scene.background.paint
         return SceneArrays(
@@ -142,8 +157,8 @@ class Packing:
             environment=cached(("environment", paint, colours), pack_environment, scene, paint)
             if "environment" in used
             else None,
-            bvh=cached("bvh", build_bvh, shapes, self.kernel) if needs_bvh else None,
-            **materials._asdict(),
+            bvh=self.bvh_of(scene.shapes) if needs_bvh else None,
+            **materials,
         )
 
     def seen_by_lights(

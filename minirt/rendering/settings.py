@@ -1,8 +1,9 @@
-"""Settings of a picture, and rendering it: the same for the library, the command line, workers and journals."""
+"""Settings of a picture, rendering it, and its identity: for the library, the command line, workers and journals."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from inspect import Parameter, signature
 from math import inf
@@ -11,14 +12,17 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 import numpy as np
 
+from minirt.element import Element, fields_of
 from minirt.errors import RenderError, check_whole
-from minirt.helpers import system
+from minirt.fields import MeshFile
+from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
+from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.records import Immutable, record
 from minirt.rendering.image import Image, LinearImage
 from minirt.rendering.packing.camera import cut_for
 from minirt.rendering.renderer import Renderer, renderer
-from minirt.scene import Scene
+from minirt.scene import Scene, dump
 from minirt.scene.scene import check_scene, size_for
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -173,3 +177,24 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
     if light is None:
         return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone)
     return LinearImage.from_bgra(pixels[kept], np.ascontiguousarray(light[kept]), reached, scene.camera.tone)
+
+
+def identity(scene: Scene, settings: str) -> str:
+    """Return a hash of a scene, the files that it names, the settings and the kernel. FileError where a file cannot be
+    read."""
+    found = hashlib.sha256(f"{fingerprint_of(V3)} {settings}\n{dump(scene)}".encode())
+    for name in sorted({name for element in scene.elements for name in files_of(element)}):
+        data = file_io.read(scene.beside(name), file_io.LARGEST_ASSET)
+        found.update(f"{name} {len(data)}\n".encode())
+        found.update(data)
+    return found.hexdigest()
+
+
+def files_of(element: Element) -> Iterator[str]:
+    """Yield the names of the pictures and meshes of an element, as the scene file has them."""
+    for field in fields_of(type(element)):
+        value = getattr(element, field.name)
+        if isinstance(value, MeshFile):
+            yield value.name
+        elif value is not None:
+            yield from (each.name for each in field.pictures(value))

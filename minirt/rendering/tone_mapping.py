@@ -19,13 +19,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from math import inf, nan, sqrt
+from math import nan, sqrt
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from minirt.rendering.outcome import ROUNDING
+from minirt.rendering.packing.camera import Crop, Request
 from minirt.scene import Scene
 
 LEVELS = 256
@@ -83,38 +84,6 @@ def uncompressed(shown: np.ndarray) -> np.ndarray:
     return light
 
 
-KEPT_BITS = 8  # of the 52 bits of a float64's fraction: 256 cells between a power of two and the next
-
-
-class Steps:
-    """At most 255 increasing thresholds above 0, and a table of cells, each with at most one threshold.
-
-    The highest bits of a number are the index of its cell.
-    """
-
-    def __init__(self, thresholds: np.ndarray) -> None:
-        self.low, self.high = float(thresholds[0]) / 2, float(thresholds[-1])
-        self.first, last = cells_of(np.array([self.low, self.high])).tolist()
-        edges = (np.arange(self.first, last + 2) << (52 - KEPT_BITS)).view(np.float64)
-        reached = np.searchsorted(thresholds, edges, "left")
-        assert (np.diff(reached) <= 1).all(), "two thresholds in a cell"
-        self.reached = reached[:-1].astype(np.uint8)  # thresholds below each cell
-        self.next = np.append(thresholds, inf)
-
-    def count(self, numbers: np.ndarray) -> np.ndarray:
-        """Return how many thresholds each number is not below, uint8; numbers are float64, and NaN gives anything."""
-        cells = cells_of(np.clip(numbers, self.low, self.high)) - self.first
-        counts: np.ndarray = self.reached.take(cells, mode="clip")
-        counts += numbers >= self.next.take(counts)
-        return counts
-
-
-def cells_of(numbers: np.ndarray) -> np.ndarray:
-    """Return the highest bits of positive float64 numbers, which increase with the numbers."""
-    cells: np.ndarray = numbers.view(np.int64) >> (52 - KEPT_BITS)
-    return cells
-
-
 NOISE = 64  # pixels along an edge of the square of blue noise
 
 
@@ -139,75 +108,51 @@ CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is
 Job = Callable[[], object]
 
 
-def map_tones(
-    light: np.ndarray,
-    pixels: np.ndarray,
-    tone: str,
-    dither: bool = False,
-    run: Callable[[list[Job]], object] | None = None,
-    threads: int = 1,
-    left: int = 0,
-    top: int = 0,
-) -> None:
-    """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
-
-    Pixels whose light is NaN stay as they are. `run` runs jobs side by side. The first pixel is that at column `left`
-    and row `top` of the pattern that dithers.
-    """
-    tops, pattern = range(0, len(light), STRIP), (shifted_pattern(left, top) if dither else None)
-    jobs: list[Job] = [partial(map_strips, light, pixels, tone, pattern, tops[i::threads]) for i in range(threads)]
-    (run or run_in_turn)(jobs)
-
-
 def run_in_turn(jobs: list[Job]) -> None:
     """Run jobs one after the other."""
     for job in jobs:
         job()
 
 
-def shifted_pattern(left: int, top: int) -> np.ndarray:
-    """Return the thresholds of dithering, shifted so that those at a column and a row come first."""
-    return np.roll(blue_noise(), (-top, -left), axis=(0, 1))
+def map_tones(
+    light: np.ndarray,
+    pixels: np.ndarray,
+    tone: str,
+    dither: bool = False,
+    run: Callable[[list[Job]], object] = run_in_turn,
+    threads: int = 1,
+    crop: Crop | None = None,
+) -> None:
+    """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
+
+    Pixels whose light is NaN stay as they are. `run` runs jobs side by side. The pattern that dithers begins with the
+    whole picture, of which `crop` may be a part.
+    """
+    pattern = None
+    if dither:
+        pattern = np.roll(blue_noise(), (-crop.top, -crop.left), axis=(0, 1)) if crop else blue_noise()
+    tops = range(0, len(light), STRIP)
+    run([partial(map_strips, light, pixels, tone, pattern, tops[i::threads]) for i in range(threads)])
 
 
 def map_strips(light: np.ndarray, pixels: np.ndarray, tone: str, pattern: np.ndarray | None, tops: range) -> None:
     """Map the strips of a picture whose first lines are `tops`; thresholds, if given, dither."""
+    curve = tone_named(tone)
     for top in tops:
         strip = np.ascontiguousarray(light[top : top + STRIP])
-        levels = rounding_steps(tone).count(strip) if pattern is None else dithered(strip, tone, top, pattern)
+        if pattern is None:
+            levels = np.searchsorted(curve.halfway, strip, "right").astype(np.uint8)
+        else:
+            exact = np.interp(strip, curve.light, np.arange(LEVELS))
+            with np.errstate(invalid="ignore"):  # NaN, whose level is not used
+                levels = exact.astype(np.uint8)
+            rows, columns = np.arange(top, top + len(strip)) % NOISE, np.arange(strip.shape[1]) % NOISE
+            levels += exact - levels > pattern[np.ix_(rows, columns)][..., None]
         into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
         if known.all():
             into[..., 2::-1], into[..., 3] = levels, 255
         else:
             into[known] = np.insert(levels[known][:, ::-1], 3, 255, axis=-1)
-
-
-def dithered(light: np.ndarray, tone: str, top: int, pattern: np.ndarray) -> np.ndarray:
-    """Return the levels of some lines of a picture, the first of which is line `top`, dithered by thresholds."""
-    of_level, per_light = tone_named(tone).light, light_to_levels(tone)
-    levels = level_steps(tone).count(light)
-    share = (light - of_level.take(levels)) * per_light.take(levels)
-    rows, columns = np.arange(top, top + len(light)) % NOISE, np.arange(light.shape[1]) % NOISE
-    levels += share > pattern[np.ix_(rows, columns)][..., None]
-    return levels
-
-
-@cache
-def rounding_steps(tone: str) -> Steps:
-    """The light from which on each level is the nearest."""
-    return Steps(tone_named(tone).halfway)
-
-
-@cache
-def level_steps(tone: str) -> Steps:
-    """The light of each level."""
-    return Steps(tone_named(tone).light[1:])
-
-
-@cache
-def light_to_levels(tone: str) -> np.ndarray:
-    """Levels by light, from each level to the next; 0 for the highest, (256,)."""
-    return np.append(1 / np.diff(tone_named(tone).light), 0.0)
 
 
 def clipped_pixels(light: np.ndarray, tone: str) -> int:
@@ -245,38 +190,37 @@ class ToneMapper:
         """Whether the levels of a scene's pictures are others than the kernel's: rounded, in proportion to light."""
         return scene.camera.tone != PLAIN or self.dither
 
-    def light_for(
-        self, scene: Scene, pixels: np.ndarray, linear: np.ndarray | None, edges_only: bool = False
-    ) -> np.ndarray:
-        """Return the array for the light of a picture: `linear` if given, one without rows where no one needs it.
+    def light_for(self, request: Request, edges_only: bool = False) -> np.ndarray:
+        """Return the array for the light of a picture: that of the request, one without rows where no one needs it.
 
-        With `edges_only` the light of pixels that are not drawn is NaN, unless it is in `linear`.
+        With `edges_only` the light of pixels that are not drawn is NaN, unless it is in that of the request.
         """
-        if linear is not None or not self.needed(scene):
+        if request.linear is not None or not self.needed(request.scene):
             self.scratch = NO_LINEAR
-            return NO_LINEAR if linear is None else linear
-        shape = (*pixels.shape[:2], 3)
+            return NO_LINEAR if request.linear is None else request.linear
+        shape = (*request.pixels.shape[:2], 3)
         if self.scratch.shape != shape:
             self.scratch = np.empty(shape)
         if edges_only:
             self.scratch[...] = nan
         return self.scratch
 
-    def apply(self, scene: Scene, pixels: np.ndarray, light: np.ndarray, left: int = 0, top: int = 0) -> None:
-        """Write the levels of a picture, or of a rectangle of it that begins at a pixel, if the kernel has not."""
+    def apply(self, request: Request, light: np.ndarray) -> None:
+        """Write the levels of a picture, if the kernel has not."""
+        scene, pixels, _, crop = request
         if self.needed(scene):
-            map_tones(light, pixels, scene.camera.tone, self.dither, self.run, self.threads, left, top)
+            map_tones(light, pixels, scene.camera.tone, self.dither, self.run, self.threads, crop)
 
-    def rounding(self, scene: Scene, pixels: np.ndarray) -> float:
+    def rounding(self, request: Request) -> float:
         """Return the RMSE of rounding or dithering a picture, in light clamped to [0, 1]."""
-        if scene.camera.tone == PLAIN:
+        if request.scene.camera.tone == PLAIN:
             return DITHERING * ROUNDING if self.dither else ROUNDING
-        return rounding_error(pixels, scene.camera.tone, self.dither)
+        return rounding_error(request.pixels, request.scene.camera.tone, self.dither)
 
-    def floor(self, scene: Scene, pixels: np.ndarray, error: float, draw: Callable[[], object]) -> float:
+    def floor(self, request: Request, error: float, draw: Callable[[], object]) -> float:
         """Return the error below which rounding decides; `draw` draws a first picture, which tells it for a curve."""
-        if scene.camera.tone != PLAIN:
+        if request.scene.camera.tone != PLAIN:
             if error >= LARGEST_FLOOR:
                 return 0.0
             draw()
-        return self.rounding(scene, pixels) / 2
+        return self.rounding(request) / 2

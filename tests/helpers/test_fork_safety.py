@@ -23,7 +23,6 @@ from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code.library import Library
 from minirt.materials import pictures
 from minirt.rendering import Renderer
-from minirt.rendering.queries.rays import Tracer
 from tests.cli.program import SCENE, environment
 from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library
 from tests.kernel.pictures import ALL
@@ -125,10 +124,9 @@ def is_free(lock: Any) -> bool:
     return bool(lock.acquire(blocking=False))
 
 
-RENDERER, TRACER = Renderer(1), Tracer(1)
+RENDERER = Renderer(1)
 LOCKS: dict[str, Callable[[], Any]] = {
     "renderer": lambda: RENDERER.busy,
-    "tracer": lambda: TRACER.busy,
     "pictures": lambda: pictures.lock.lock,
     "meshes": lambda: meshes.lock.lock,
 }
@@ -145,14 +143,13 @@ def test_locks_that_other_threads_hold_are_free_in_a_child(owner: str, monkeypat
 
 
 def test_pools_of_threads_are_new_in_a_child(monkeypatch: pytest.MonkeyPatch) -> None:
-    renderer, tracer = Renderer(1), Tracer(1)
+    renderer = Renderer(1)
     assert renderer.render(ALL, np.zeros((4, 4, 4), np.uint8))
-    pools = renderer.runner.pool, tracer.pool
-    are_new = lambda: renderer.runner.pool is not pools[0] and tracer.pool is not pools[1]  # noqa: E731
-    assert holds_in_child(are_new)
-    assert (renderer.runner.pool, tracer.pool) == pools
+    pool = renderer.runner.pool
+    assert holds_in_child(lambda: renderer.runner.pool is not pool)
+    assert renderer.runner.pool is pool
     monkeypatch.setattr(system, "renewables", WeakSet())
-    assert not holds_in_child(are_new)
+    assert not holds_in_child(lambda: renderer.runner.pool is not pool)
 
 
 def test_a_child_leaves_the_compiling_processes_to_its_parent() -> None:

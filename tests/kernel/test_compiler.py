@@ -27,7 +27,6 @@ from minirt.materials import Checker, Clouds
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.needed_kernels import calls_for, ray_query
-from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
@@ -76,7 +75,7 @@ def code_of(function: Any, *arguments: Any) -> ObjectCode:
 @pytest.mark.skipif(LIBRARY.cache is None, reason="kernels cannot be kept here")
 def test_kernels_refer_to_nothing_outside_of_themselves() -> None:
     Renderer(1).kernels.compile(ALL)
-    calls = [*calls_for(ALL, "double", 8), classify_call(), ray_query()]
+    calls = [*calls_for(ALL, "double", 8), ray_query()]
     assert len({name for name, _ in calls}) > 3
     for each in calls:
         LIBRARY.get(each)

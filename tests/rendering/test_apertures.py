@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from minirt.kernel import frame, interpreted
+from minirt.kernel.pixels import TILE
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
@@ -105,30 +106,6 @@ def soft_scene(spread: float = 1.0) -> Scene:
     return Scene((*(each for each in items if type(each) is not Camera), camera))
 
 
-def everything_listed(arrays: Any, tiles: int) -> Any:
-    """Put all shapes into the lists of all tiles and of all lights, in cones that take in all directions."""
-    kinds, lights = arrays.slots[:, 0], len(arrays.lights)
-    by_kind = [np.flatnonzero(kinds == kind) for kind in range(len(arrays.groups))]
-    first = np.cumsum([0, *map(len, by_kind)])
-    cones, light_cones = arrays.cones.copy(), arrays.light_cones.copy()
-    for each in (cones, light_cones):
-        each[..., 3], each[..., 4] = -2.0, 0.0
-    return arrays._replace(
-        tile_shapes=np.concatenate([np.tile(each, tiles) for each in by_kind]).astype(np.int32),
-        cones=cones,
-        light_cones=light_cones,
-        light_buffer_cells=1,
-        light_shapes=np.tile(np.concatenate(by_kind), lights).astype(np.int32),
-        groups=tuple(
-            group._replace(
-                tile_starts=tiles * first[i] + len(by_kind[i]) * np.arange(tiles + 1),
-                light_starts=len(kinds) * np.arange(lights)[:, None] + first[[i, i + 1]],
-            )
-            for i, group in enumerate(arrays.groups)
-        ),
-    )
-
-
 def light_of(arrays: Any, width: int, height: int) -> np.ndarray:
     """Render a packed scene by the interpreted kernel, with four samples."""
     pixels, light = np.zeros((height, width, 4), np.uint8), np.zeros((height, width, 3))
@@ -138,11 +115,13 @@ def light_of(arrays: Any, width: int, height: int) -> np.ndarray:
 
 
 def test_culling_leaves_out_nothing_that_a_moved_eye_or_light_sees() -> None:
-    size, tiles = (32, 16), 2
-    arrays = Packing(interpreted).pack(soft_scene(), *size)
-    hard = Packing(interpreted).pack(EVERY, *size)
+    size = TILE, TILE
+    arrays, hard = (Packing(interpreted).pack(each, *size) for each in (soft_scene(), EVERY))
     assert arrays.light_buffer_cells > 1
-    expected = light_of(everything_listed(arrays, tiles), *size)
+    every = Packing(interpreted, culls=False).pack(soft_scene(), *size)
+    for cones in (every.cones, every.light_cones):  # that take in all directions
+        cones[..., 3], cones[..., 4] = -2.0, 0.0
+    expected = light_of(every, *size)
     assert np.array_equal(light_of(arrays, *size), expected)
     fields = ("tile_shapes", "cones", "light_tolerances", "light_shapes", "light_cones", "groups")
     narrow = arrays._replace(**{name: getattr(hard, name) for name in fields})

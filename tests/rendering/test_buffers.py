@@ -41,13 +41,6 @@ def test_rays_are_those_of_the_reference(name: str) -> None:
     assert all(np.allclose(one, other, rtol=0, atol=1e-12) for one, other in zip(rays, expected, strict=True))
 
 
-def test_a_left_handed_camera_mirrors_its_rays() -> None:
-    _, directions = minirt.camera_rays(CAMERA, *SIZE)
-    _, mirrored = minirt.camera_rays(CAMERA.replace(left_handed=True), *SIZE)
-    assert np.allclose(mirrored, directions[:, ::-1], rtol=0, atol=1e-12)
-    assert not np.allclose(mirrored, directions, rtol=0, atol=1e-3)
-
-
 def test_a_triangle_of_a_mesh_has_the_buffers_of_a_triangle(tmp_path: Path) -> None:
     (tmp_path / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     mesh = minirt.Mesh(minirt.MeshFile(str(tmp_path / "one.obj")), (-1, -1, 0), 3, WHITE)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import count
+from threading import Thread
+from typing import TypeVar
 
 import numpy as np
 import pytest
@@ -12,12 +15,31 @@ from minirt.kernel.frame import CANCELLED
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import Renderer, frame_runner
 from minirt.rendering.frame import sample_positions
-from minirt.rendering.sampling.contrast import edge_pixels
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture
-from tests.rendering.cancelling import ENDLESS, SAMPLES, cancelled
-from tests.rendering.sampling.test_contrast import Pixels, flat
-from tests.waiting import until
+from tests.waiting import HANG_LIMIT, until
+
+Pixels = NDArray[np.uint8]
+EDGE = 8  # levels by which neighbours differ at an edge
+
+
+ENDLESS = (32, 65536)  # height and width: two rows of tiles, one for each thread, which are never done
+SAMPLES = 50_000  # a pixel: a quarter of an hour for a thread that traces 50 million rays a second
+
+Answer = TypeVar("Answer")
+
+
+def cancelled(renderer: Renderer, work: Callable[[], Answer]) -> Answer:
+    """Run `work`, which makes `renderer` render, cancel it when its first row has begun, and return its answer."""
+    before, answers = renderer.runner.next_row, list[Answer]()
+    thread = Thread(target=lambda: answers.append(work()), daemon=True)
+    thread.start()
+    until(lambda: renderer.runner.next_row is not before and renderer.runner.next_row[0] > 0, "the first row")
+    assert renderer.runner.next_row.max() < CANCELLED
+    renderer.cancel()
+    thread.join(HANG_LIMIT)
+    (answer,) = answers
+    return answer
 
 
 def test_cancelling_ends_a_long_frame_and_the_next_is_right() -> None:
@@ -86,6 +108,17 @@ def error(pixels: Pixels, fine: Pixels) -> float:
     return float(np.sqrt(((pixels.astype(float) - fine)[..., :3] ** 2).mean()))
 
 
+def edge_pixels(pixels: Pixels) -> NDArray[np.bool_]:
+    """Pixels that differ from the one beside, above or below in some colour as they do at an edge."""
+    edge = np.zeros(pixels.shape[:2], bool)
+    beside, below = (np.abs(np.diff(pixels[..., :3].astype(int), axis=axis)).max(axis=2) >= EDGE for axis in (1, 0))
+    edge[:, 1:] |= beside
+    edge[:, :-1] |= beside
+    edge[1:] |= below
+    edge[:-1] |= below
+    return edge
+
+
 def near_edges(pixels: Pixels) -> NDArray[np.bool_]:
     """Pixels that may change: so close to one at an edge that they may be in its packet."""
     near = np.zeros(pixels.shape[:2], bool)
@@ -113,13 +146,18 @@ def test_the_refined_picture_is_as_good_as_one_with_as_many_samples_everywhere()
 
 
 def test_refining_leaves_a_picture_without_edges_alone() -> None:
-    pixels = flat(40, 50, 77)
+    pixels = np.full((40, 50, 4), 77, np.uint8)
+    pixels[20:, :, 1] += EDGE - 1
+    before = pixels.copy()
     assert TWO.refine(ALL, pixels, 4)
-    assert (pixels[..., :3] == 77).all()
+    assert np.array_equal(pixels, before)
+    pixels[20:, :, 1] += 1
+    assert TWO.refine(ALL, pixels, 4)
+    assert not np.array_equal(pixels[16:24], before[16:24])
 
 
 def test_pictures_without_shapes_or_pixels_are_refined_at_once() -> None:
-    pixels = flat(5, 7)
+    pixels = np.full((5, 7, 4), 100, np.uint8)
     assert TWO.refine(Scene((AMBIENT, EYE)), pixels, 4)
     assert (pixels == (0, 0, 0, 255)).all()
     assert TWO.refine(ALL, np.zeros((0, 7, 4), np.uint8), 4)

@@ -130,14 +130,6 @@ def test_arrays_after_edits_equal_those_of_a_fresh_packing() -> None:
         assert packing.shape_arrays.first_primitive.tolist() == [0, *np.cumsum(sizes)]
 
 
-def test_triangles_have_the_materials_of_their_mesh() -> None:
-    first = named("icosahedron", specular=Specular(0.5, 20), mirror=0.25)
-    second = named("icosahedron", (3, 0, 0), specular=Specular(0.1, 5))
-    arrays = Packing().pack(Scene((EYE, LIGHT, first, Sphere((0, 3, 0), 1, GREY), second)), 32, 32)
-    assert np.array_equal(arrays.specular[:, :2], np.repeat([[0.5, 20], [0, 0], [0.1, 5]], [20, 1, 20], axis=0))
-    assert np.array_equal(arrays.reflective[:, 0], np.repeat([0.25, 0, 0], [20, 1, 20]))
-
-
 def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:
     shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Sphere((0, 2, 0), 2, GREY)
     scene, shape_arrays = Scene((EYE, *shapes)), ShapeArrays()

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-import minirt
 from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, memory_of
 from minirt.rendering import Renderer
@@ -22,7 +20,7 @@ from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.cli.program import SCENE, environment
-from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO
+from tests.kernel.pictures import ALL, TWO
 from tests.processes import run
 
 
@@ -32,38 +30,14 @@ def test_fewer_than_one_sample_is_an_error(samples: int) -> None:
         TWO.render(ALL, np.zeros((4, 4, 4), np.uint8), samples)
 
 
-def test_a_scene_without_shapes_is_black() -> None:
-    pixels = np.full((5, 7, 4), 9, np.uint8)
-    assert TWO.render(Scene((AMBIENT, EYE)), pixels)
-    assert (pixels == (0, 0, 0, 255)).all()
-
-
 def test_a_picture_without_pixels_is_done_at_once() -> None:
     assert TWO.render(ALL, np.zeros((0, 7, 4), np.uint8))
     assert TWO.render(ALL, np.zeros((7, 0, 4), np.uint8))
 
 
-def test_several_threads_may_render_at_once() -> None:
-    scenes = [ALL.replace(ALL.spheres[0], diameter=1 + i / 4) for i in range(8)]
-    expected = [minirt.render(scene, 50, 40).array for scene in scenes]
-    with ThreadPoolExecutor(8) as pool:
-        made = list(pool.map(lambda scene: minirt.render(scene, 50, 40).array, scenes * 3))
-    assert all(np.array_equal(image, expected[i % 8]) for i, image in enumerate(made))
-
-
 def test_the_number_of_threads_is_as_given_or_at_least_one() -> None:
     assert Renderer(5).threads == 5
     assert Renderer().threads >= 1
-
-
-def test_a_child_process_leaves_busy_locks_and_compiling_to_its_parent() -> None:
-    renderer = Renderer(1)
-    compiling, background = renderer.kernels.compile_process, renderer.kernels.background
-    renderer.busy.acquire()
-    renderer.after_fork()
-    assert not renderer.busy.locked()
-    assert renderer.kernels.compile_process is not compiling
-    assert renderer.kernels.background is not background
 
 
 # The notes of a packing describe its decisions for a scene.

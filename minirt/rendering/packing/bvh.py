@@ -9,12 +9,11 @@ import numpy as np
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, NODE, WIDTH, Group, Tree
 from minirt.kernel.scene_arrays import kind_of, row_type
-from minirt.rendering.packing.shape_arrays import ShapeArrays, primitives_of
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
 
 CACHE_LINE = 64  # bytes
 NO_LEAF = -GROUPS  # a reference for the lanes to spare of a node, which rays of NaN hit, too: to a leaf of no group
-EMPTY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def block_type(kind: Kind) -> np.dtype[Any]:
@@ -23,30 +22,14 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def is_infinite(rows: np.ndarray) -> bool:
-    """Whether these rows are of a kind whose shapes have no bounding box."""
-    return kind_of(rows.dtype.names).infinite
-
-
-def primitive_boxes(shape_arrays: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
-    """The bounding boxes of the primitives as `BinaryTree` has them, and the indices of those that are infinite."""
-    bounds = [shape.bounds() for shape in shape_arrays.shapes]
-    first = shape_arrays.first_primitive
-    infinite = first[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
-    bounded = np.delete(np.arange(len(shape_arrays.slots)), infinite)
-    corners = np.repeat([box or EMPTY for box in bounds], np.diff(first), axis=0)
-    for index, shape in enumerate(shape_arrays.shapes):
-        if shape.parts > 1:
-            corners[first[index] : first[index + 1]] = primitives_of([shape]).boxes
-    boxes = np.empty((len(bounded), 8))
-    boxes[:, :3], boxes[:, 3:6] = -corners[bounded, 0], corners[bounded, 1]
-    boxes[:, INDEX], boxes[:, GROUP] = bounded, shape_arrays.slots[bounded, 0]
-    return boxes, infinite
-
-
 def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
     """Build the BVH over the shapes with the functions of `kernel`, compiled or interpreted."""
-    boxes, infinite = primitive_boxes(shape_arrays)
+    kinds_are_infinite = [element.infinite for element in shape_arrays.group_numbers]
+    is_infinite = np.array(kinds_are_infinite, bool)[shape_arrays.slots[:, 0]]
+    infinite, bounded = np.flatnonzero(is_infinite), np.flatnonzero(~is_infinite)
+    boxes = np.empty((len(bounded), 8))
+    boxes[:, :3], boxes[:, 3:6] = -shape_arrays.boxes[bounded, 0], shape_arrays.boxes[bounded, 1]
+    boxes[:, INDEX], boxes[:, GROUP] = bounded, shape_arrays.slots[bounded, 0]
     nodes, leaves = wide_nodes(boxes, kernel)
     # The blocks of each kind are in the order of the leaves.
     kinds = boxes[leaves[:, 0], GROUP]
@@ -61,7 +44,7 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
         group_blocks = as_blocks(rows, shape_arrays.slots[members, 1])
         labels = np.stack([members, extents[members]], axis=-1)
         unbounded = infinite[shape_arrays.slots[infinite, 0] == group]
-        groups.append(Group(rows, group_blocks, labels, unbounded if is_infinite(rows) else None, group))
+        groups.append(Group(rows, group_blocks, labels, unbounded if kinds_are_infinite[group] else None, group))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)

@@ -20,7 +20,7 @@ from minirt.errors import RenderError
 from minirt.fields import Triple, clamp, upright
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.lanes import width
-from minirt.scene import Camera
+from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 
 
@@ -43,6 +43,15 @@ class Crop(NamedTuple):
     height: int
     left: int = 0  # column and row of the picture at which the rectangle begins: multiples of `TILE`
     top: int = 0
+
+
+class Request(NamedTuple):
+    """A picture to render: of which scene, and into which arrays."""
+
+    scene: Scene
+    pixels: np.ndarray  # C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha
+    linear: np.ndarray | None = None  # float64 (h, w, 3), if its light is wanted
+    crop: Crop | None = None  # None: the whole picture
 
 
 class Cut(NamedTuple):

@@ -1,22 +1,16 @@
 """Forms of a packed scene: float32, and the arguments of generic kernels.
 
 float32 is less precise, with twice as many rays per SIMD register. Everything is moved so that the eye is the origin
-before it is rounded. So whatever is near the eye is precise, wherever in the world that is. Bounds used for culling are
-rounded to the safe side.
+before it is rounded, so that whatever is near the eye is precise. Bounds used for culling are rounded to the safe side.
 
-A specialised kernel is compiled for the kinds of shapes and the features of one scene. A generic kernel is the same
-function, compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time:
-what a scene lacks is an array without rows, which the kernel skips. Its picture has the same bits as that of the
-specialised kernel.
-
-To draw a packed scene with a generic kernel: `generic = fitting(arrays)[0]`, then call the kernel that is compiled for
-the types of `empty_arrays(generic)` with `generalised(arrays, generic)` in place of the scene. All scenes have the same
-types there.
+A generic kernel is the same function as a specialised one, compiled for all kinds of shapes and for a fixed set of
+features. What a scene lacks is an array without rows, which the kernel skips. To draw a packed scene with it, take
+`generic = fitting(arrays)[0]`, and call the kernel for the types of `empty_arrays(generic)` with
+`generalised(arrays, generic)` in place of the scene.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cache, partial
 from typing import Any, NamedTuple
 
@@ -29,6 +23,7 @@ from minirt.kernel.shading.patterns import COLUMNS, ORIGIN, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.rendering.packing.bvh import block_type
 from minirt.rendering.packing.features import FEATURES, MAPS
+from minirt.rendering.packing.shape_arrays import extents_from
 from minirt.shapes import ALL_KINDS, Kind
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
@@ -37,47 +32,36 @@ MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit ve
 def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
     """Return a scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
     eye = arrays.camera[:3]
-    colours_and_extents = arrays.colours_and_extents.copy()
-    colours_and_extents[:, 3] = np.abs(boxes[:, :3] - eye).max(axis=1) + boxes[:, 3]
-    eye_and_no_light = np.concatenate([eye, np.zeros(3)])
-    return SceneArrays(
-        camera=as_single(np.concatenate([np.zeros(3), arrays.camera[3:]])),
-        ambient=as_single(arrays.ambient),
-        lights=as_single(arrays.lights - eye_and_no_light),
-        colours_and_extents=as_single(colours_and_extents),
-        slots=arrays.slots,
-        tile_shapes=arrays.tile_shapes,
+    moved = arrays._replace(
+        camera=np.concatenate([np.zeros(3), arrays.camera[3:]]),
+        lights=arrays.lights - np.concatenate([eye, np.zeros(3)]),
+        colours_and_extents=np.column_stack([arrays.colours_and_extents[:, :3], extents_from(eye, boxes)]),
+        patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
+    )
+    single: SceneArrays = as_single(moved)
+    return single._replace(
         cones=widened_cones(arrays.cones),
-        light_buffer_cells=arrays.light_buffer_cells,
         light_tolerances=narrowed(arrays.light_tolerances),
-        light_shapes=arrays.light_shapes,
         light_cones=widened_cones(arrays.light_cones),
         groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
-        surface_maps=arrays.surface_maps and arrays.surface_maps._replace(**singles(arrays.surface_maps, MAPS)),
-        patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
-        smooth=arrays.smooth,
-        **singles(arrays, ROWS),
     )
 
 
-def singles(arrays: Any, names: Iterable[str]) -> dict[str, Any]:
-    """Return the arrays of the features that single precision has, rounded to float32; None stays None."""
-    found = {name: getattr(arrays, name) for name in names if FEATURES[name].single}
-    return {name: None if each is None else as_single(each) for name, each in found.items()}
-
-
 def patterns_relative_to(patterns: Patterns, eye: np.ndarray) -> Patterns:
-    """Move the frames of patterns so that the eye is the origin, and round them to float32."""
+    """Move the frames of patterns so that the eye is the origin."""
     rows = patterns.rows.copy()
     rows[:, ORIGIN : ORIGIN + 3] -= eye
-    heights = None if patterns.heights is None else as_single(patterns.heights)
-    return patterns._replace(rows=as_single(rows), heights=heights)
+    return patterns._replace(rows=rows)
 
 
-def as_single(numbers: np.ndarray) -> np.ndarray:
-    """Round to the nearest float32."""
-    with np.errstate(over="ignore"):
-        return numbers.astype(np.float32)
+def as_single(part: Any) -> Any:
+    """Round float64 to the nearest float32 in an array, or in the arrays of a NamedTuple; leave others as they are."""
+    if hasattr(part, "_fields"):
+        return part._replace(**{name: as_single(each) for name, each in part._asdict().items()})
+    if isinstance(part, np.ndarray) and part.dtype == np.float64:
+        with np.errstate(over="ignore"):
+            return part.astype(np.float32)
+    return part
 
 
 def widened_cones(cones: np.ndarray) -> np.ndarray:
@@ -85,15 +69,16 @@ def widened_cones(cones: np.ndarray) -> np.ndarray:
 
     That holds also when a scalar product in float32 decides whether a direction is inside.
     """
-    cones = as_single(cones)
-    cones[..., 3] -= MARGIN
-    cones[..., 4] = np.nextafter(cones[..., 4], np.float32(-np.inf))
-    return cones
+    wider: np.ndarray = as_single(cones)
+    wider[..., 3] -= MARGIN
+    wider[..., 4] = np.nextafter(wider[..., 4], np.float32(-np.inf))
+    return wider
 
 
 def narrowed(tolerances: np.ndarray) -> np.ndarray:
     """Round the tolerances of light buffers to float32 so that fewer directions count as close to another."""
-    return as_single(np.maximum(np.sqrt(tolerances) - MARGIN, 0.0) ** 2)
+    narrower: np.ndarray = as_single(np.maximum(np.sqrt(tolerances) - MARGIN, 0.0) ** 2)
+    return narrower
 
 
 def rows_relative_to(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:

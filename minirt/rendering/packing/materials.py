@@ -1,52 +1,48 @@
-"""Packs materials, textures and environment maps into the arrays of the kernel; None where no shape needs one.
+"""Packs materials, textures, patterns and environment maps into the arrays of the kernel.
 
 Each material states its own rows: see `minirt.materials.Material.rows`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Set
+from collections.abc import Callable, Hashable, Iterable, Set
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from minirt.fields import cos_and_sin
+from minirt.element import fields_of
+from minirt.fields import Point, cos_and_sin
 from minirt.kernel.scene_arrays import kind_of_packed
+from minirt.kernel.shading.patterns import CLOUDS, COLUMNS, MARBLE, WOOD, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
-from minirt.lanes import Vec, dot
+from minirt.lanes import Vec, cross, dot, unit
 from minirt.materials import Placement, pictures
 from minirt.materials.pictures import check_textures
 from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, PLAIN
 from minirt.rendering.packing.lights import Colours, colours_of
-from minirt.rendering.packing.textures import PATTERN_FEATURES, pack_patterns
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
-from minirt.shapes.shape import UPRIGHT
+from minirt.shapes.shape import UPRIGHT, Flat, Oriented
+from minirt.shapes.triangle import Triangle
 
 PictureReader = Callable[[Path], np.ndarray]
+PATTERN_FEATURES = {"patterns", "raised_patterns"}
+KINDS = {"marble": MARBLE, "wood": WOOD, "clouds": CLOUDS}  # in the order in which a shape gets them
+BEHIND = 3.5  # sizes from a flat surface to the middle of its rings
+
+Frame = tuple[Vec, Vec, Vec, Vec]  # origin and three axes, the last one along the grain of wood
 OF_SHAPES = {name for name, feature in FEATURES.items() if feature.of_shapes}  # features with a row for each shape
 
 
-class Materials(NamedTuple):
-    """The fields of `minirt.kernel.scene_arrays.SceneArrays` about materials."""
+def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> dict[str, Any]:
+    """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each.
 
-    specular: Any = None
-    reflective: Any = None
-    transparent: Any = None
-    media: Any = None
-    fresnel: Any = None
-    fades: Any = None
-    glow: Any = None
-    surface_maps: Any = None
-    patterns: Any = None
-
-
-def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
-    """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
+    They are fields of `minirt.kernel.scene_arrays.SceneArrays`; those that are missing are None.
+    """
     if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
-        return Materials()
+        return {}
     with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     reader = Reader(scene)
     arrays = {name: FEATURES[name].rows(len(scene.shapes)) for name in FEATURES if name in used & OF_SHAPES}
@@ -54,11 +50,13 @@ def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Mate
         for name, row in rows_of(shape, reader):
             if name in arrays:
                 arrays[name][i] = row
-    packed = {name: array[owner] for name, array in arrays.items()}
+    packed: dict[str, Any] = {name: array[owner] for name, array in arrays.items()}
     maps = {name: packed.pop(name) for name in MAPS if name in packed}
-    surface_maps = pack_surface_maps(maps, reader, len(owner)) if maps else None
-    patterns = pack_patterns(with_materials, owner, used, reader.colours) if used & PATTERN_FEATURES else None
-    return Materials(**packed, surface_maps=surface_maps, patterns=patterns)
+    if maps:
+        packed["surface_maps"] = pack_surface_maps(maps, reader, len(owner))
+    if used & PATTERN_FEATURES:
+        packed["patterns"] = pack_patterns(with_materials, owner, used, reader.colours)
+    return packed
 
 
 def rows_of(shape: Shape, reader: Reader) -> list[tuple[str, Any]]:
@@ -92,6 +90,46 @@ def pack_environment(scene: Scene, file: str) -> Environment:
     reader = Reader(scene)
     reader.number(file, reader.colours.sky)
     return Environment(**reader.arrays())
+
+
+def pack_patterns(
+    shapes: Iterable[tuple[int, Shape]], owner: np.ndarray, used: Set[Hashable], colours: Colours
+) -> Patterns:
+    """Pack the patterns of shapes, given with their indices; `owner` (n,) has the shape of each primitive."""
+    rows: list[list[float]] = []
+    heights: list[float] = []
+    ranges = np.zeros((owner.max(initial=-1) + 1, 2), np.int64)
+    for index, shape in shapes:
+        first = len(rows)
+        for name, kind in KINDS.items():
+            pattern = getattr(shape, name)
+            if pattern:
+                numbers = [kind, *colours.shares(pattern.colour), pattern.octaves, 1 / pattern.size]
+                rows.append([*numbers, *(part for v in frame(shape, pattern.size) for part in (v.x, v.y, v.z))])
+                heights.append(pattern.height * pattern.size)
+        ranges[index] = first, len(rows)
+    packed = np.array(rows, np.float64).reshape(-1, COLUMNS)
+    return Patterns(ranges[owner], packed, np.array(heights) if "raised_patterns" in used else None)
+
+
+def frame(shape: Shape, size: float) -> Frame:
+    """Return the frame in which a pattern of this size lies: it moves and turns with the shape.
+
+    The grain of wood runs along the axis of a shape, and on flat shapes to the right.
+    """
+    origin = Vec(*next(getattr(shape, field.name) for field in fields_of(type(shape)) if isinstance(field, Point)))
+    x, y, z = own_axes(shape)
+    if isinstance(shape, Flat | Triangle):
+        return origin - BEHIND * size * z, y, z, x
+    return origin, x, y, z
+
+
+def own_axes(shape: Shape) -> tuple[Vec, Vec, Vec]:
+    """Return the right-handed axes of a shape, the last one its axis or normal: y where it has neither."""
+    if isinstance(shape, Triangle):
+        along, normal = Vec(*np.subtract(shape.b, shape.a)), Vec(*shape.normal())
+        return unit(along), unit(cross(normal, along)), normal
+    return shape.frame() if isinstance(shape, Oriented) else basis(UPRIGHT)
 
 
 class Reader:
@@ -184,32 +222,15 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
 # seconds of compiling, which pay off after more than a minute of rendering.
 
 
-class Effective(NamedTuple):
-    """Masks of the shapes that a material changes, (n,) each; None where the scene lacks the feature."""
-
-    specular: np.ndarray | None
-    reflective: np.ndarray | None
-
-
-def effective(materials: Materials) -> Effective:
-    """Return which shapes have a highlight, and which reflect or refract."""
-    specular, reflective = materials.specular, materials.reflective
-    return Effective(
-        None if specular is None else specular[:, 0] > 0.0,
-        None if reflective is None else reflective[:, :2].any(axis=1),
-    )
-
-
-def without_unseen(materials: Materials, changed: Effective, seen: np.ndarray) -> Materials:
+def without_unseen(materials: dict[str, Any], seen: np.ndarray) -> dict[str, Any]:
     """Return materials without the rows of the features that no pixel can show.
 
     `seen` has the shapes of the lists of all tiles, which may repeat. Mirrors and glass that are seen may show every
-    shape.
+    shape. Light shines through glass that is not seen: its other rows stay.
     """
-    if changed.reflective is not None:
-        if changed.reflective[seen].any():
-            return materials
-        materials = materials._replace(reflective=materials.reflective[:0])  # light still shines through glass
-    if changed.specular is not None and not changed.specular[seen].any():
-        materials = materials._replace(specular=materials.specular[:0])
+    for name, columns in (("reflective", 2), ("specular", 1)):
+        if name in materials:
+            if any((materials[name][:, column] != 0.0)[seen].any() for column in range(columns)):
+                break
+            materials = materials | {name: materials[name][:0]}
     return materials

@@ -67,15 +67,10 @@ def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radi
         harmless = never_hit(shape_arrays.planes, eye, -np.array(light.cone()[:3]), radius, tangent_of(light))
     else:
         harmless = same_side(shape_arrays.planes, eye, light_position(light), radius, radius_of(light))
-    skipped: np.ndarray = harmless & opaque_planes(shape_arrays)
+    owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
+    glass = [shape_arrays.shapes[owner].glass for owner in owners]
+    skipped: np.ndarray = harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
     return skipped
-
-
-def opaque_planes(shape_arrays: ShapeArrays) -> np.ndarray:
-    """Whether no light passes through each plane."""
-    shapes = shape_arrays.shapes
-    glass = [shapes[owner].glass for owner in shape_arrays.owner[shape_arrays.plane_indices].tolist()]
-    return np.array([each is None or each.share <= 0 for each in glass], bool)
 
 
 def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> CellRuns:

@@ -16,7 +16,6 @@ from minirt.kernel.pixels import TILE
 from minirt.rendering.packing.camera import Crop
 from minirt.rendering.packing.planes import cell_runs, signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
 # Vectors across, down and forward of the six faces of a cube, in the order of `cell_of_cube` in
@@ -32,14 +31,11 @@ SMALL = 8
 FEW, SIDE_BY_SIDE = 200, 8
 CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
-# Estimates of the memory that lists of shapes take, before they are built.
 MEMBER, START = 4, 8  # bytes of a member and of a start of a list
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**29  # bytes of lists that are built within seconds
-WHAT = "the lists of shapes in view need"
-ADVICE = "fewer or smaller shapes, or fewer lights, need less"
-RUN = 120  # bytes of a plane in a row of cells, while its runs are computed
 SAMPLE = 128  # shapes whose members are counted for an estimate
+RUN = 120  # bytes of a plane in a row of cells, while its runs are computed
 
 # Positive floating-point numbers sort like their bits, the exponent first. Depths sort by their upper 25 bits, from
 # 2^-128 on: a relative precision of 2^-13, which is more than `minirt.kernel.trace.COINCIDENT`.
@@ -58,14 +54,10 @@ class BinnedShapes(NamedTuple):
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
     """Choose the cells along an edge of the cube around a light; 1 where trying all shapes is faster than a lookup."""
-    groups = zip(shape_arrays.group_numbers, shape_arrays.rows, strict=True)
-    shapes = sum(effective_count(kind, len(rows)) for kind, rows in groups)
+    shapes = 0
+    for kind, rows in zip(shape_arrays.group_numbers, shape_arrays.rows, strict=True):
+        shapes += min(len(rows), FEW + len(rows) // SIDE_BY_SIDE) if kind is Mesh else len(rows)
     return next(cells for most, cells in CELLS_BY_SHAPES if shapes <= most)
-
-
-def effective_count(kind: type[Shape], primitives: int) -> int:
-    """The number of separate shapes that primitives of a kind count as."""
-    return min(primitives, FEW + primitives // SIDE_BY_SIDE) if kind is Mesh else primitives
 
 
 def tolerance(cells: int) -> float:
@@ -130,13 +122,11 @@ def seen_by_light(
 ) -> BinnedShapes:
     """Bin the shapes into the light buffer of a light of some radius, without the planes that are `skipped` (p,).
 
-    `TooLargeError` where there is no room for so many copies of its lists.
+    `TooLargeError` where there is no room for so many copies of its lists. With one cell this serves eyes, too.
     """
-    largest, origin = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED, np.array(light)
-    lists = copies, largest
-    binned = bin_shapes(
-        kernel, shape_arrays, shape_arrays.balls, origin, cube_grid(cells), skipped, radius, 0.0, *lists
-    )
+    largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
+    place = np.array(light), cube_grid(cells)
+    binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, *place, skipped, radius, 0.0, copies, largest)
     if cells == 1:
         return in_one_cell(shape_arrays, binned.cones, skipped)
     return binned._replace(tolerance=tolerance(cells))
@@ -167,14 +157,17 @@ def bin_shapes(
     """Bin the shapes, which `balls` enclose, into the cells of a grid of directions from a point.
 
     The lists hold for rays from all points within `radius`, in the directions of a cell. They hold for planes in
-    directions, not normalised, up to `lean` away, too.
+    directions, not normalised, up to `lean` away, too. `TooLargeError` where there is no room for so many copies of
+    the lists, or where they would have more than `largest` bytes.
     """
     height = signed_heights(shape_arrays.planes, origin, radius)
     shown = ~skipped
     planes, heights = shape_arrays.planes[shown], height[shown]
     towards = -np.sign(heights[:, None]) * planes[:, :3]
-    check_lists(kernel, shape_arrays, balls, origin, grid, copies, largest, len(planes))
     kinds, stride = len(shape_arrays.rows), grid.cells + 1
+    most = most_members(len(shape_arrays.slots), kinds, len(planes), grid, copies, largest)
+    if most < system.UNLIMITED:
+        check_members(estimated_members(kernel, shape_arrays, balls, origin, grid), most, copies)
     cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
     plane_rectangles = np.zeros((0, 4), np.int64)
     if len(planes):
@@ -189,16 +182,45 @@ def bin_shapes(
     slack = MARGIN * float(np.abs(origin).max()) + radius
     output = rectangles, len(plane_rectangles), cones, counts
     used = kernel.project_all(origin, grid, balls, slack, shape_arrays.first_ball, shape_arrays.slots, *output)
+    starts = np.cumsum(counts)  # the ends, until `fill_bins` has counted them down
+    count = int(starts[-1]) if kinds else 0
+    check_members(count, most, copies)
     cones[shape_arrays.plane_indices, 3] = -2.0
     cones[shape_arrays.plane_indices, 4] = np.abs(height)
     cones[:, 4], depths = quantised_depths(cones[:, 4].copy())
     order = depth_order(depths[rectangles[:used, 0]])
-    starts = np.cumsum(counts)  # the ends, until `fill_bins` has counted them down
-    count = int(starts[-1]) if kinds else 0
-    system.check_memory(copies * count * MEMBER, WHAT, ADVICE)
     members = np.empty(count, np.int32)
     kernel.fill_bins(rectangles, order, grid.across, starts, members)
     return BinnedShapes(starts.reshape(kinds, stride), members, cones)
+
+
+def most_members(shapes: int, kinds: int, planes: int, grid: Grid, copies: int, largest: int) -> int:
+    """Return how many members the lists of all cells may have together, so that there is room for copies of them."""
+    fixed = copies * kinds * (grid.cells + 1) * START + planes * len(grid.frames) * grid.down * RUN
+    if system.is_small_need(fixed + copies * shapes * grid.cells * MEMBER):
+        return system.UNLIMITED
+    return max(0, min(system.room(), largest) - fixed) // (copies * MEMBER)
+
+
+def estimated_members(kernel: Any, shape_arrays: ShapeArrays, balls: np.ndarray, origin: np.ndarray, grid: Grid) -> int:
+    """Estimate the members of the lists of all cells, infinite planes left out, from those of some shapes."""
+    shapes, first = len(shape_arrays.slots), shape_arrays.first_ball
+    chosen = np.linspace(0, shapes - 1, SAMPLE).astype(np.int64)
+    counts, cones = np.zeros(len(shape_arrays.rows) * (grid.cells + 1), np.int64), np.zeros((1, 5))
+    rectangles = np.empty((len(grid.frames), 4), np.int32)
+    for each in chosen:
+        ends, slots = first[each : each + 2], shape_arrays.slots[each : each + 1]
+        kernel.project_all(origin, grid, balls, 0.0, ends, slots, rectangles, 0, cones, counts)
+    return int(counts.sum()) * shapes // SAMPLE
+
+
+def check_members(count: int, most: int, copies: int) -> None:
+    """Raise `TooLargeError` where lists have more members than they may."""
+    if count > most:
+        raise system.TooLargeError(
+            f"the lists of shapes in view need more than {system.size_in_words(most * copies * MEMBER)} of memory, "
+            "all that is allowed; fewer or smaller shapes, or fewer lights, need less"
+        )
 
 
 def quantised_depths(distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -225,41 +247,3 @@ def in_one_cell(shape_arrays: ShapeArrays, cones: np.ndarray, skipped: np.ndarra
     order = np.lexsort((cones[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(shape_arrays.rows))[:, None] + [0, 1])
     return BinnedShapes(starts, shapes[order].astype(np.int32), cones)
-
-
-def check_lists(
-    kernel: Any,
-    shape_arrays: ShapeArrays,
-    balls: np.ndarray,
-    origin: np.ndarray,
-    grid: Grid,
-    copies: int,
-    largest: int,
-    planes: int,
-) -> None:
-    """Check that there is memory for the lists of all cells, and copies of them, and that they have at most `largest`
-    bytes; `TooLargeError` otherwise. Each plane is taken to be in half of the cells."""
-    shapes, kinds = len(shape_arrays.slots), len(shape_arrays.rows)
-    fixed = copies * kinds * (grid.cells + 1) * START + planes * len(grid.frames) * grid.down * RUN
-    if system.is_small_need(fixed + copies * shapes * grid.cells * MEMBER):
-        return
-    members = planes * grid.cells / 2
-    if len(grid.frames) > 1:  # tiles, which are binned for every picture, are not estimated
-        members += estimated_members(kernel, shape_arrays, balls, origin, grid)
-    system.check_memory(int(fixed + copies * members * MEMBER), WHAT, ADVICE, largest)
-
-
-def estimated_members(
-    kernel: Any, shape_arrays: ShapeArrays, balls: np.ndarray, origin: np.ndarray, grid: Grid
-) -> float:
-    """Estimate the members of the lists of all cells, infinite planes left out, from those of some shapes."""
-    shapes = len(shape_arrays.slots)
-    chosen = np.unique(np.linspace(0, shapes - 1, min(SAMPLE, shapes)).astype(np.int64))
-    begins, ends = shape_arrays.first_ball[chosen], shape_arrays.first_ball[chosen + 1]
-    first = np.concatenate([[0], np.cumsum(ends - begins)]).astype(shape_arrays.first_ball.dtype)
-    kept = np.concatenate([balls[begin:end] for begin, end in zip(begins, ends, strict=True)])
-    counts = np.zeros(len(shape_arrays.rows) * (grid.cells + 1), np.int64)
-    rectangles = np.empty((len(chosen) * len(grid.frames), 4), np.int32)
-    cones = np.zeros((len(chosen), 5))
-    kernel.project_all(origin, grid, kept, 0.0, first, shape_arrays.slots[chosen], rectangles, 0, cones, counts)
-    return int(counts.sum()) / len(chosen) * shapes

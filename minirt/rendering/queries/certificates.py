@@ -52,10 +52,6 @@ class ExactFields(NamedTuple):
     sizes: Array  # (n,) sum of the lengths and of the distances of the points from the first one
     first_row: Integers  # of each shape
 
-    def first_point(self, rows: Integers) -> Array:
-        """The first point that each shape is given by."""
-        return next(iter(self.points.values()))[rows]
-
     def shape(self, rows: Integers, first: Array, power: Integers) -> SimpleNamespace:
         """The shapes in some rows as one shape: its fields by name, relative to the `first` points, times 2^power.
 
@@ -212,10 +208,6 @@ class Rays(NamedTuple):
     distances: Array  # (n,) in scene units
     normals: Array  # (n, 3); where they are NaN, the nearest face counts as the one that was hit
 
-    def some(self, indices: Integers) -> Rays:
-        """Some of the rays, by their indices."""
-        return Rays(*(part[indices] for part in self))
-
 
 class Certificate(NamedTuple):
     """Errors and condition numbers of n hits; NaN where nothing was hit."""
@@ -239,7 +231,9 @@ def certify(shapes: tuple[Shape, ...], owners: Integers, parts: Integers, rays: 
         for start in range(0, len(hits), CHUNK):
             some = hits[start : start + CHUNK]
             with np.errstate(all="ignore"):
-                certificate = certify_kind(kind, fields, rows[start : start + CHUNK], rays.some(some))
+                certificate = certify_kind(
+                    kind, fields, rows[start : start + CHUNK], Rays(*(part[some] for part in rays))
+                )
             for whole, part in zip(found, certificate, strict=True):
                 whole[some] = part
     return found
@@ -250,7 +244,7 @@ def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) ->
 
     The face that was hit is the one whose normal is closest to the hit's, or the nearest one where none fits.
     """
-    first = fields.first_point(rows)
+    first = next(iter(fields.points.values()))[rows]  # point that the shape is given by
     magnitude = rays.distances + lengths_of(rays.origins - first) + fields.sizes[rows]
     # Scaled by a power of two all numbers are about 1, so that no product under- or overflows.
     power = -np.frexp(magnitude)[1]

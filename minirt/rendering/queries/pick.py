@@ -11,8 +11,6 @@ import numpy as np
 
 from minirt.fields import Triple
 from minirt.kernel import interpreted
-from minirt.kernel.frame import tile_count
-from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat
@@ -53,10 +51,10 @@ def pick(
             )
             for each in owners
         ]
-        packing = Packing(interpreted)
+        packing = Packing(interpreted, depth=0, culls=False)
         arrays = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
         rays = Vec(*(splat(part, arrays.camera) for part in (direction.x, direction.y, direction.z)))
-        _, owner, _ = closest_hit(arrays, y // TILE * tile_count(width) + x // TILE, origin, rays)
+        _, owner, _ = closest_hit(arrays, 0, origin, rays)
     return shape_arrays.shapes[int(owners[packing.shape_arrays.owner[int(lane(owner, 0))]])]
 
 

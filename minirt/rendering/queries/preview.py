@@ -6,7 +6,6 @@ for each shape, which takes longer the more rays there are.
 
 from __future__ import annotations
 
-from functools import partial
 from math import atan2, ceil, cos, dist, floor, log10, pi, radians, sin, tan
 from typing import Any
 
@@ -16,11 +15,10 @@ from minirt.fields import FARTHEST, Triple, spelled
 from minirt.kernel import interpreted
 from minirt.kernel.frame import ray_direction
 from minirt.kernel.pixels import to_byte_range
-from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame import thread_memory
-from minirt.rendering.packing.camera import Crop
+from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
@@ -49,7 +47,7 @@ def render_interpreted(
     """Return the picture of a scene in that size, or a rectangle of that size of a larger picture, and its light,
     (h, w, 3)."""
     with np.errstate(all="ignore"):
-        arrays = without_culling(Packing(interpreted, depth=0).pack(scene, width, height, crop))
+        arrays = Packing(interpreted, depth=0, culls=False).pack(scene, width, height, crop)
         arrays = arrays._replace(soft=None, lens=None)
         y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
         direction = unit(ray_direction(arrays.camera, x + arrays.camera[12], y + arrays.camera[13]))
@@ -62,32 +60,15 @@ def render_interpreted(
     return pixels, light
 
 
-def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray, crop: Crop | None = None) -> None:
+def draw_background(request: Request, linear: np.ndarray) -> None:
     """Draw a scene without shapes: its background, or black. `linear` may have no rows."""
-    if scene.background and pixels.size:
-        pixels[...], light = render_interpreted(scene, pixels.shape[1], pixels.shape[0], crop)
+    pixels = request.pixels
+    if request.scene.background and pixels.size:
+        pixels[...], light = render_interpreted(request.scene, pixels.shape[1], pixels.shape[0], request.crop)
         linear[...] = light if len(linear) else linear
     else:
         pixels[...] = (0, 0, 0, 255)
         linear[...] = 0.0
-
-
-def without_culling(arrays: SceneArrays) -> SceneArrays:
-    """Put all shapes into a single tile and a single light-buffer cell, and leave out the BVH: no reflections."""
-    kinds = arrays.slots[:, 0]
-    starts = np.searchsorted(np.sort(kinds), np.arange(len(arrays.groups) + 1))
-    offsets = np.arange(len(arrays.lights))[:, None] * len(kinds)
-    by_light = [np.lexsort((distances, kinds)) for distances in arrays.light_cones[..., 4]]
-    return arrays._replace(
-        tile_shapes=np.lexsort((arrays.cones[:, 4], kinds)),
-        light_buffer_cells=1,
-        bvh=None,
-        light_shapes=np.array(by_light, np.int64).ravel(),
-        groups=tuple(
-            group._replace(tile_starts=starts[kind : kind + 2], light_starts=offsets + starts[kind : kind + 2])
-            for kind, group in enumerate(arrays.groups)
-        ),
-    )
 
 
 # A notice about a picture in which nothing is in view, with a camera that would show the scene.
@@ -96,7 +77,6 @@ def without_culling(arrays: SceneArrays) -> SceneArrays:
 COLUMNS, ROWS = 32, 18  # rays that look for shapes
 MOST_PRIMITIVES = 20_000  # that are looked for: in a second
 TESTS = 4_000_000  # of rays against primitives, which choose a camera
-FEW_SHAPES, FEW_CAMERAS = 64, 4  # of a scene whose brightness chooses, too, and how many are compared
 AZIMUTHS, ELEVATIONS = 8, (25.0, -25.0, 70.0)  # degrees: places around the scene from which a camera may look
 NARROWEST, WIDEST, USUAL = 20.0, 100.0, 60.0  # degrees of the field of view: others are replaced by the usual one
 MARGIN = 1.15  # of the distance at which the bounding ball of the scene fills the picture
@@ -133,22 +113,12 @@ def visible_shapes(arrays: ShapeArrays, camera: Camera, width: int, height: int)
 
 
 def showing_camera(scene: Scene, arrays: ShapeArrays, width: int, height: int) -> str:
-    """Return the line of the camera that shows most shapes, and of those the one with most light; or an empty text."""
+    """Return the line of the first camera that shows most shapes, or an empty text."""
     centre, radius = bounding_ball(scene)
     count = max(1, TESTS // (COLUMNS * ROWS * len(arrays.slots)))
     cameras = candidates(scene.camera, centre, radius, height / width)[:count]
     shown = [len(visible_shapes(arrays, camera, width, height)) for camera in cameras]
-    best = [camera for camera, shapes in zip(cameras, shown, strict=True) if shapes == max(shown) > 0]
-    if len(best) > 1 and len(scene.shapes) <= FEW_SHAPES:
-        return line_of(max(best[:FEW_CAMERAS], key=partial(brightness, scene)))
-    return line_of(best[0]) if best else ""
-
-
-def brightness(scene: Scene, camera: Camera) -> float:
-    """Return the mean light of a picture, clamped to [0, 1]."""
-
-    _, light = render_interpreted(scene.replace(scene.camera, camera), COLUMNS, ROWS)
-    return float(np.minimum(light, 1.0).mean())
+    return line_of(cameras[np.argmax(shown)]) if max(shown, default=0) else ""
 
 
 def bounding_ball(scene: Scene) -> tuple[Triple, float]:

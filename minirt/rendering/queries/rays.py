@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from importlib import import_module
-from threading import Lock
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from minirt.errors import check_whole
-from minirt.helpers.system import renew_after_fork
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import ray_direction
 from minirt.kernel.machine_code import functions
@@ -20,7 +18,7 @@ from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.generic_kernels import generalised_tree
-from minirt.rendering.threads import ThreadPool, usable_cores
+from minirt.rendering.renderer import renderer
 from minirt.scene import Camera, Scene
 from minirt.scene.scene import check_scene
 from minirt.shapes import Shape
@@ -53,8 +51,8 @@ class Traced(NamedTuple):
     """Rays and shapes from which certificates are computed."""
 
     shapes: tuple[Shape, ...]
-    first_primitive: NDArray[np.int64]  # of each shape
-    primitives: NDArray[np.int64]  # that were hit, of the rays that hit something
+    primitives: NDArray[np.int64]  # (n,) that were hit, among those of all shapes; 0 where nothing was
+    parts: NDArray[np.int64]  # (n,) the same, among those of the shape
     origins: NDArray[np.float64]
     directions: NDArray[np.float64]
 
@@ -82,13 +80,9 @@ class Hits(ClosestHits):
         if self.traced is None:
             raise ValueError("only hits that minirt.trace returned have a certificate, not parts of them or copies")
         certificate = import_module("minirt.rendering.queries.certificates")
-        shapes, first_primitive, primitives, *rays = self.traced
-        parts = np.zeros_like(self.owner)
-        is_hit = self.owner >= 0
-        parts[is_hit] = primitives - first_primitive[self.owner[is_hit]]
-        found: Certificate = certificate.certify(
-            shapes, self.owner, parts, certificate.Rays(*rays, self.distance, self.normal)
-        )
+        shapes, _, parts, *rays = self.traced
+        rays = certificate.Rays(*rays, self.distance, self.normal)
+        found: Certificate = certificate.certify(shapes, self.owner, parts, rays)
         return found
 
     @property
@@ -97,9 +91,7 @@ class Hits(ClosestHits):
         each triangle; 0 where nothing is hit. ValueError for hits that are not those of a call of `trace`."""
         if self.traced is None:
             raise ValueError("only hits that minirt.trace returned know their primitives, not parts of them or copies")
-        primitive = np.zeros(len(self.owner), np.int64)
-        primitive[self.owner >= 0] = self.traced.primitives
-        return primitive
+        return self.traced.primitives
 
     def columns(self) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
         """Return the hits as columns of a table: `pandas.DataFrame(hits.columns())`.
@@ -150,7 +142,22 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
         raise ValueError(f"directions must be as many as origins, {len(starts)}, got {len(vectors)}")
     if not vectors.any(axis=1).all():
         raise ValueError(f"directions must not be 0,0,0, got it at {int(np.argmin(vectors.any(axis=1)))}")
-    return tracer(threads).trace(scene, starts, vectors)
+    count = len(starts)
+    hits = Hits(np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan))
+    primitives = parts = np.zeros(count, np.int64)
+    chosen = renderer(threads)
+    if count and scene.shapes:
+        with chosen.busy:
+            # The caller's thread only waits, so that Ctrl+C reaches it.
+            counter = np.zeros(1, np.int64)
+            job = query(counter, chosen.packing.bvh_of(scene.shapes), starts, vectors, hits)
+            chosen.runner.pool.run([job] * chosen.threads, partial(counter.fill, count))
+            is_hit, arrays = hits.owner >= 0, chosen.packing.shape_arrays
+            primitives = np.where(is_hit, hits.owner, 0)
+            hits.owner[is_hit] = arrays.owner[primitives[is_hit]]
+            parts = np.where(is_hit, primitives - arrays.first_primitive[hits.owner], 0)
+    hits.traced = Traced(scene.shapes, primitives, parts, starts, vectors)
+    return hits
 
 
 def checked_vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
@@ -170,66 +177,6 @@ def checked_vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return array
 
 
-class Tracer:
-    """Keeps threads and the BVH of the last scene. Any thread may call it; it serves one call at a time."""
-
-    shapes: tuple[Shape, ...] | None = None  # in the BVH
-
-    def __init__(self, threads: int | None) -> None:
-        self.threads = threads or usable_cores()
-        self.busy = Lock()
-        renew_after_fork(self)
-
-    def after_fork(self) -> None:
-        """In a child process: replace the lock and drop the threads, which are the parent's.
-
-        The BVH goes too, since a thread may have been building it.
-        """
-        self.busy = Lock()
-        self.shapes = None
-        for name in ("pool", "shape_arrays"):
-            self.__dict__.pop(name, None)
-
-    @cached_property
-    def pool(self) -> ThreadPool:
-        """The threads that trace."""
-        return ThreadPool(self.threads)
-
-    @cached_property
-    def shape_arrays(self) -> Any:
-        """The packed shapes of the last scene."""
-        return import_module("minirt.rendering.packing.shape_arrays").ShapeArrays()
-
-    def trace(self, scene: Scene, origins: NDArray[np.float64], directions: NDArray[np.float64]) -> Hits:
-        """Find the closest hits, as the function `trace` does, for arguments that were checked."""
-        count = len(origins)
-        hits = Hits(
-            np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan)
-        )
-        primitives = first_primitive = np.zeros(0, np.int64)
-        if count and scene.shapes:
-            with self.busy:
-                if self.shapes is not scene.shapes:
-                    self.build_bvh(scene.shapes)
-                # The caller's thread only waits, so that Ctrl+C reaches it.
-                counter = np.zeros(1, np.int64)
-                job = query(counter, self.bvh, origins, directions, hits)
-                self.pool.run([job] * self.threads, partial(counter.fill, count))
-                is_hit = hits.owner >= 0
-                primitives = hits.owner[is_hit]
-                hits.owner[is_hit] = self.shape_arrays.owner[primitives]
-                first_primitive = self.shape_arrays.first_primitive
-        hits.traced = Traced(scene.shapes, first_primitive, primitives, origins, directions)
-        return hits
-
-    def build_bvh(self, shapes: tuple[Shape, ...]) -> None:
-        """Build the BVH over the shapes of a scene."""
-        self.shapes = None
-        self.shape_arrays.update(shapes)
-        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.shape_arrays, functions)
-        self.shapes = shapes
-
-
 def query(
     counter: NDArray[np.int64], tree: Tree, origins: NDArray[np.float64], directions: NDArray[np.float64], hits: Hits
 ) -> Callable[[], None]:
@@ -240,9 +187,3 @@ def query(
         if entry := LIBRARY.find(LIBRARY.identity(call)):
             return partial(entry.run, words_of(call[1]))
     return partial(LIBRARY.get(specialised).run, words_of(specialised[1]))
-
-
-@cache
-def tracer(threads: int | None) -> Tracer:
-    """Return the tracer with that many threads, which is kept for later calls."""
-    return Tracer(threads)

@@ -18,7 +18,7 @@ from minirt.lanes import Vec, dot, unit
 from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.ray_casting import packed_columns
-from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes
+from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes, extents_from
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from minirt.shapes import Shape
@@ -124,18 +124,18 @@ def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
             on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
         nearest[selected] = np.stack([np.broadcast_to(part, len(selected)) for part in (on.x, on.y, on.z)], axis=-1)
         if not tables.is_plane[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
-            middle, half = tables.boxes[selected, :3], tables.boxes[selected, 3:]
-            nearest[selected] = np.clip(nearest[selected], middle - half, middle + half)
+            nearest[selected] = np.clip(nearest[selected], *tables.boxes[selected].swapaxes(0, 1))
         owners, part_of = np.unique(tables.owner[selected], return_inverse=True)
         size[selected] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
-    nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # at the exact centre no point is nearest
+    nearest = np.where(
+        np.isfinite(nearest), nearest, tables.boxes.mean(axis=1)
+    )  # at the exact centre no point is nearest
     way = nearest - eye
-    reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye
     return ShapeViews(
         np.linalg.norm(way, axis=1),
         size,
         ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3]),
-        ROUNDING * SINGLE * (np.abs(way).max(axis=1) + reach),
+        ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, tables.boxes)),
         way @ forward > 0,
     )
 
@@ -163,7 +163,7 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
         near, far = np.take_along_axis(t, pair, axis=0)
         gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
         points = near * np.stack([ways.x, ways.y, ways.z])
-        reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]
+        reach = extents_from(eye, tables.boxes)
         world = np.abs(points + eye[:, None]).max(axis=0) + np.abs(eye).max()
         double = gap / (TIE * DOUBLE * (world + tables.colours_and_extents[pair, 3].max(axis=0)))
         single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))

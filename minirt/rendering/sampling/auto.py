@@ -15,7 +15,6 @@ pixel may be missing in the picture and in the estimate.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from math import inf, sqrt
 from time import perf_counter
 from typing import NamedTuple
@@ -26,7 +25,7 @@ from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.rendering.frame import plan_of
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.sampling.packets import EXPECTED, UNSEEN_ERROR, Packets, allocate, places_of, squared_error
-from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
+from minirt.rendering.sampling.sample_table import COUNTS, SampleTable
 
 FIRST_PROBES, PROBES = 384, 300  # packets to probe, in the first sweep and in the others
 # The mean of the probes of the first sweep is in doubt by its standard error, and by one more probe that might have met
@@ -186,7 +185,7 @@ class AutoSampler:
         share = min(max(PROBES - packets.known, 0) / max(len(some), 1), most)
         probed: np.ndarray = packets.dither(some, 2**20) < share
         if packets.known:
-            probed |= (packets.levels[some] > 0) & packets.is_probe(some)
+            probed |= (packets.levels[some] > 0) & np.isin(some, packets.probes)
         return probed
 
     def draw_with(self, some: np.ndarray, samples: np.ndarray, probed: np.ndarray, is_urged: bool = True) -> bool:
@@ -205,7 +204,10 @@ class AutoSampler:
     def draw_first(self) -> bool:
         """Draw all packets with one sample, and probe some of them. False when cancelled."""
         packets = self.packets
-        probes, table, plan = first_sweep(packets.count, packets.columns, self.packet_pixels, self.with_places)
+        probes = np.flatnonzero(packets.random < FIRST_PROBES / packets.count)
+        levels = np.zeros(len(probes), np.uint8)
+        table = SampleTable(levels[:1], self.packet_pixels, self.with_places)
+        plan = plan_of(probes, packets.columns, table.plan(levels, levels == 0))
         return self.carry_out(Sweep(table.positions, plan, np.zeros(len(plan)), is_first=True), probes, packets.count)
 
     def sweep(self, some: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> bool:
@@ -225,14 +227,3 @@ class AutoSampler:
         self.speed = float(samples) / max(perf_counter() - start, 1e-9)
         self.packets.probed(some[probed], sweep.errors[probed])
         return is_done
-
-
-@lru_cache(2)
-def first_sweep(
-    count: int, columns: int, packet_pixels: int, with_places: bool
-) -> tuple[np.ndarray, SampleTable, np.ndarray]:
-    """The packets to probe in the first sweep, its table of samples and its plan."""
-    probes = np.flatnonzero(random_numbers(count) < FIRST_PROBES / count)
-    levels = np.zeros(len(probes), np.uint8)
-    table = SampleTable(np.zeros(1, np.intp), packet_pixels, with_places)
-    return probes, table, plan_of(probes, columns, table.plan(levels, levels == 0))

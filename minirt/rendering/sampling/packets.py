@@ -99,22 +99,15 @@ class Packets:
         self.histogram[0, 0] = self.count
         self.probes = np.zeros(0, np.intp)  # packets whose error with the samples that they have is known
         self.errors = np.zeros(0)  # squared errors of the probes
-        self.marks = np.zeros(self.count, bool)  # all False between calls
-        self.members_of: dict[int, np.ndarray] = {}
-        self.estimated: tuple[int, np.ndarray] | None = None  # the turn, and the coefficients then
 
     def classify(self, classes: np.ndarray, sizes: np.ndarray) -> None:
         """Sort all packets, of which none has more than one sample, into classes of these sizes."""
         self.classes = classes.ravel()
         self.histogram[:, 0] = sizes
-        self.estimated = None
-        self.members_of.clear()
 
     def members(self, wanted: int) -> np.ndarray:
         """The packets of a class."""
-        if wanted not in self.members_of:
-            self.members_of[wanted] = np.flatnonzero(self.classes == wanted)
-        return self.members_of[wanted]
+        return np.flatnonzero(self.classes == wanted)
 
     def some_of_each_class(self, numbers: np.ndarray) -> np.ndarray:
         """Choose packets evenly from each class, about so many, at random places."""
@@ -138,9 +131,7 @@ class Packets:
         self.histogram -= self.count_some(packets)
         self.levels[packets] = levels
         self.histogram += self.count_some(packets)
-        self.marks[packets] = True
-        kept = ~self.marks[self.probes]
-        self.marks[packets] = False
+        kept = ~np.isin(self.probes, packets)
         self.probes, self.errors = self.probes[kept], self.errors[kept]
 
     def probed(self, packets: np.ndarray, errors: np.ndarray) -> None:
@@ -148,13 +139,6 @@ class Packets:
         self.probes = np.concatenate([self.probes, packets])
         self.errors = np.concatenate([self.errors, errors])
         self.turn += 1
-
-    def is_probe(self, packets: np.ndarray) -> np.ndarray:
-        """Whether each of some packets is probed."""
-        self.marks[self.probes] = True
-        found: np.ndarray = self.marks[packets]
-        self.marks[self.probes] = False
-        return found
 
     @property
     def known(self) -> int:
@@ -169,11 +153,10 @@ class Packets:
 
     def coefficients(self) -> np.ndarray:
         """Estimate c of every class from all probes."""
-        if not self.estimated or self.estimated[0] != self.turn:
-            probes = self.probes
-            found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors)
-            self.estimated = self.turn, found + unseen(self.histogram)
-        return self.estimated[1]
+        probes = self.probes
+        known = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors)
+        found: np.ndarray = known + unseen(self.histogram)
+        return found
 
     def total(self) -> float:
         """Estimate the sum of the squared errors of all packets."""

@@ -53,7 +53,8 @@ class SampleTable:
         plan[:, 0] = self.first[levels]
         plan[:, 1] = COUNTS[levels]
         if self.drawn_variants.max() > 1:
-            plan[:, 0] += COUNTS[levels] * scattered(len(levels), self.drawn_variants[levels])
+            chosen = (random_numbers(len(levels)) * self.drawn_variants[levels]).astype(np.int32)
+            plan[:, 0] += COUNTS[levels] * chosen
         chosen = levels[probed]
         pairs = 2 * REFERENCE_SAMPLES * COUNTS[chosen] * (np.arange(len(chosen)) % self.variants[chosen])
         plan[probed, 2] = self.reference[chosen] + pairs
@@ -68,12 +69,6 @@ def positions_of(count: int, variants: int, pixels: int) -> np.ndarray:
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
     return np.concatenate([drawn, references.reshape(-1, pixels, 2)])
-
-
-def scattered(count: int, variants: np.ndarray) -> np.ndarray:
-    """Choose one of its variants for each of `count` packets, at random but the same at each call."""
-    chosen: np.ndarray = (random_numbers(count) * variants).astype(np.int32)
-    return chosen
 
 
 @lru_cache(32)

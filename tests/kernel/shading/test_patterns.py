@@ -16,7 +16,7 @@ from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply
 from minirt.lanes import Vec, load, save, width
 from minirt.materials import Clouds, Marble, Wood
 from minirt.rendering.packing.lights import Colours
-from minirt.rendering.packing.textures import pack_patterns
+from minirt.rendering.packing.materials import pack_patterns
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane

@@ -1,17 +1,19 @@
-"""Primary rays, compared with four other derivations of a pinhole camera."""
+"""Primary rays, compared with two other derivations of a pinhole camera and with frames derived by hand."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import atan, degrees, radians, tan
+from math import atan, degrees, hypot, radians, sqrt, tan
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import minirt
 from minirt.kernel.frame import ray_direction
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import camera_frame, camera_numbers, pixel_rays
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes.sphere import Sphere
 
@@ -67,23 +69,6 @@ def vertical_angle(camera: Camera, width: int, height: int) -> float:
     return degrees(2 * atan(tan(radians(camera.fov) / 2) * height / width))
 
 
-def by_normalized_coordinates(camera: Camera, width: int, height: int) -> Array:
-    """Pixel to normalized device coordinates in [0, 1], to the screen in [-1, 1], to the camera's plane z = -1, whose
-    half height is the tangent of half of the vertical angle; then the matrix from camera to world, for row vectors."""
-    column, row = pixels(width, height)
-    device_x, device_y = (column + 0.5) / width, (row + 0.5) / height
-    screen_x, screen_y = 2 * device_x - 1, 1 - 2 * device_y
-    aspect, half = width / height, tan(radians(vertical_angle(camera, width, height)) / 2)
-    forward = np.array(camera.direction)
-    right = normalized(np.cross(UP, -forward))
-    camera_to_world = np.eye(4)
-    camera_to_world[:3, :3] = right, np.cross(-forward, right), -forward
-    camera_to_world[3, :3] = camera.position
-    points = np.stack([screen_x * aspect * half, screen_y * half, -np.ones_like(row), np.ones_like(row)], axis=-1)
-    moved = points @ camera_to_world
-    return normalized(moved[..., :3] - camera_to_world[3, :3])
-
-
 def by_look_at_matrix(camera: Camera, width: int, height: int) -> Array:
     """Points of the plane z = -1, taken to world space by the inverse of the look-at matrix."""
     column, row = pixels(width, height)
@@ -107,20 +92,7 @@ def by_viewport_vectors(camera: Camera, width: int, height: int) -> Array:
     return normalized(lower_left_corner + u[..., None] * horizontal + v[..., None] * vertical - eye)
 
 
-def by_screen_to_camera(camera: Camera, width: int, height: int) -> Array:
-    """A matrix from screen space, (column, row, 0, 1) in pixels, to camera space; another one from there to the
-    world."""
-    column, row = pixels(width, height)
-    half = tan(radians(camera.fov) / 2)
-    pixel = 2 * half / width
-    screen_to_camera = np.array(
-        [[pixel, 0, 0, -half], [0, -pixel, 0, half * height / width], [0, 0, 1, -1], [0, 0, 0, 1]]
-    )
-    centres = np.stack([column + 0.5, row + 0.5, np.zeros_like(row), np.ones_like(row)], axis=-1)
-    return from_points(np.linalg.inv(look_at(camera)), centres @ screen_to_camera.T)
-
-
-MODELS = [by_normalized_coordinates, by_look_at_matrix, by_viewport_vectors, by_screen_to_camera]
+MODELS = [by_look_at_matrix, by_viewport_vectors]
 Model = Callable[[Camera, int, int], Array]
 
 
@@ -171,11 +143,48 @@ def test_look_at_works_far_and_near() -> None:
     assert_allclose(Camera.look_at((0, 0, 0), (1e-300, 0, 1e-300)).direction, [0.5**0.5, 0, 0.5**0.5])
 
 
-def test_a_left_handed_picture_is_mirrored() -> None:
-    path = "scenes/figure-v4-everything.rt"
-    right, left = minirt.load(path), minirt.load(path, left_handed=True)
-    assert left.camera.left_handed
-    assert not right.camera.left_handed
-    shown = minirt.render(left, 64, 36).array[:, ::-1].astype(int)
-    assert (np.abs(shown - minirt.render(right, 64, 36).array).max(axis=-1) > 1).mean() < 0.01
-    assert left.replace(left.camera, left_handed=False) == right
+# The camera frame: right, up and forward, compared with values derived by hand from the format's definition.
+
+
+ROOT = sqrt(0.5)
+
+
+@pytest.mark.parametrize(
+    ("direction", "right", "up"),
+    [
+        ((0, 0, -1), (1, 0, 0), (0, 1, 0)),
+        ((0, 0, 1), (-1, 0, 0), (0, 1, 0)),
+        ((1, 0, 0), (0, 0, 1), (0, 1, 0)),
+        ((0, 1, 0), (1, 0, 0), (0, 0, 1)),
+        ((0, -1, 0), (1, 0, 0), (0, 0, -1)),
+        ((1e-300, 1, 0), (0, 0, 1), (-1, 0, 0)),
+        ((0, -1, 5e-324), (-1, 0, 0), (0, 0, 1)),
+        ((5e-324, 1, 5e-324), (-ROOT, 0, ROOT), (-ROOT, 0, -ROOT)),
+        ((0, ROOT, -ROOT), (1, 0, 0), (0, ROOT, ROOT)),
+    ],
+)
+def test_the_axes_of_the_camera_frame(direction, right, up):
+    got_right, got_up, got_forward = camera_frame(Camera((0, 0, 0), direction, 60))
+    assert got_right == pytest.approx(right, abs=1e-15)
+    assert got_up == pytest.approx(up, abs=1e-15)
+    assert got_forward == pytest.approx(direction, abs=1e-15)
+
+
+def test_a_roll_is_clockwise_from_the_camera():
+    right, up, _ = camera_frame(Camera((0, 0, 0), (0, 0, -1), 60, roll=90))
+    assert up == pytest.approx((1, 0, 0), abs=1e-15)
+    assert right == pytest.approx((0, -1, 0), abs=1e-15)
+
+
+component = st.floats(-1, 1)
+
+
+@given(st.tuples(component, component, component).filter(any), st.floats(-360, 360))
+def test_the_camera_frame_is_orthonormal_and_right_handed(direction, roll):
+    right, up, forward = camera_frame(Camera((0, 0, 0), direction, 60, roll=roll))
+    for one in (right, up, forward):
+        assert hypot(*one) == pytest.approx(1, abs=1e-14)
+    for one, other in ((right, up), (up, forward), (forward, right)):
+        assert sum(a * b for a, b in zip(one, other, strict=True)) == pytest.approx(0, abs=1e-14)
+    (a, b, c), (d, e, f) = right, forward
+    assert up == pytest.approx((b * f - c * e, c * d - a * f, a * e - b * d), abs=1e-14)

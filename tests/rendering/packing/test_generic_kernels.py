@@ -10,7 +10,6 @@ import pytest
 from numba import typeof
 
 import minirt
-from minirt.kernel import frame, interpreted
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
@@ -95,18 +94,6 @@ def test_special_scenes_have_the_same_bits(name: str) -> None:
     arrays = packed(SPECIAL[name])
     for generic in fitting(arrays):
         assert same_bits(arrays, generalised(arrays, generic)), generic
-
-
-def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
-    for scene in (ALL, SPECIAL["parallel light, a BVH and mirrors"]):
-        arrays = Packing(interpreted).pack(scene, 24, 16)
-        pictures = []
-        for each in (arrays, generalised(arrays, fitting(arrays)[-1])):
-            light = np.full((16, 24, 3), np.nan)
-            with np.errstate(all="ignore"):
-                frame.frame(*frame_arguments(each, np.zeros((16, 24, 4), np.uint8), 1, light))
-            pictures.append(light)
-        assert np.array_equal(*pictures)
 
 
 @pytest.mark.parametrize("scenes", ["files", "random", "special"])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +18,7 @@ from minirt.materials.glass import BLACK
 from minirt.rendering import Renderer
 from minirt.rendering.packing import materials
 from minirt.rendering.packing.features import FEATURES, features
-from minirt.rendering.packing.materials import Materials, pack_environment, pack_materials
+from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Scene
 from minirt.shapes import Shape
@@ -40,6 +42,11 @@ def scene_of(folder: Path, *shapes: Shape) -> Scene:
     return Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shapes), folder / "scene.rt")
 
 
+def materials_of(scene: Scene, owner: np.ndarray) -> Any:
+    """The packed materials of primitives, by the names of their fields."""
+    return SimpleNamespace(**pack_materials(scene, owner, features(scene)))
+
+
 def test_every_material_names_a_feature() -> None:
     for field in fields_of(Attributes):
         feature = field.record.feature if isinstance(field, Compound) else field.feature
@@ -48,14 +55,14 @@ def test_every_material_names_a_feature() -> None:
 
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
     plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert pack_materials(plain, np.arange(2), features(plain)) == Materials()
+    assert pack_materials(plain, np.arange(2), features(plain)) == {}
 
 
 def test_shapes_are_not_inspected_if_all_are_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     inspected: list[Shape] = []
     monkeypatch.setattr(materials, "ATTRIBUTES", lambda shape: inspected.append(shape) or materials.PLAIN)
     scene = scene_of(tmp_path, *[BALL] * 3)
-    pack_materials(scene, np.arange(3), features(scene))
+    materials_of(scene, np.arange(3))
     assert inspected == []
     pack_materials(scene, np.arange(3), {"specular"})
     assert inspected == [BALL] * 3
@@ -69,7 +76,7 @@ def test_each_shape_has_its_row(tmp_path: Path) -> None:
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
     scene = scene_of(tmp_path, *shapes)
-    packed = pack_materials(scene, np.arange(4), features(scene))
+    packed = materials_of(scene, np.arange(4))
     reflective, maps = packed.reflective, packed.surface_maps
     assert np.array_equal(packed.specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
     assert np.allclose(reflective, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
@@ -86,7 +93,7 @@ def test_mirrors_and_glass_have_their_rows(tmp_path: Path) -> None:
         BALL.replace(glow=0.75, tint=Tint((9, 9, 9)), fresnel=1.0),
     )
     scene = scene_of(tmp_path, *shapes)
-    packed = pack_materials(scene, np.arange(4), features(scene))
+    packed = materials_of(scene, np.arange(4))
     assert np.allclose(packed.reflective, [[0.25, 0, 3], [0, 0.9, 1.5], [0.5, 0.5, 1.5], [0, 0, 1]])
     assert np.allclose(packed.transparent, [[0, 0, 1, 0], [0, 0.9, 1.5, 0], [0.5, 0.5, 1.5, 0], [0, 0, 1, 0]])
     assert np.allclose(packed.media[1], [np.log2(5) / 2, 0, BLACK, 1, 1, 1])
@@ -98,7 +105,7 @@ def test_mirrors_and_glass_have_their_rows(tmp_path: Path) -> None:
 
 def test_the_primitives_of_a_shape_have_its_row(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    packed = pack_materials(scene, np.array([0, 1, 1, 1]), features(scene))
+    packed = materials_of(scene, np.array([0, 1, 1, 1]))
     maps = packed.surface_maps
     assert np.array_equal(packed.reflective[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
@@ -112,7 +119,7 @@ def test_each_image_is_packed_once(folder: Path) -> None:
         BALL,
         BALL.replace(texture="a.png", normal_map="a.png", bump=Bump("b.png", 0.0)),
     )
-    maps = pack_materials(scene, np.arange(3), features(scene)).surface_maps
+    maps = materials_of(scene, np.arange(3)).surface_maps
     assert np.array_equal(maps.textures, [1, 0, 1])
     assert np.array_equal(maps.bumps, [[2, 0.5], [0, 0], [0, 0]])
     assert np.array_equal(maps.normals, [0, 0, 1])
@@ -130,7 +137,7 @@ def test_an_image_may_be_the_background(folder: Path) -> None:
 def test_a_missing_image_is_named(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, BALL.replace(texture="gone.png"))
     with pytest.raises(FileError, match=r"gone\.png"):
-        pack_materials(scene, np.arange(1), features(scene))
+        materials_of(scene, np.arange(1))
 
 
 # Materials that no pixel can show are left out, and change no bit of the picture.
@@ -175,7 +182,7 @@ def test_no_bit_of_the_picture_changes(renderer: Renderer, scene: Scene, monkeyp
     turned = scene.replace(EYE, direction=(0.9, 0, -0.4))
     found = [linear(each, *SIZE, 2, renderer) for each in (scene, turned, scene)]
     with monkeypatch.context() as patch:
-        patch.setattr("minirt.rendering.scene_packing.without_unseen", lambda materials, changed, seen: materials)
+        patch.setattr("minirt.rendering.scene_packing.without_unseen", lambda materials, seen: materials)
         right = [linear(Scene(each.elements), *SIZE, 2, renderer) for each in (scene, turned, scene)]
     for some, others in zip(found, right, strict=True):
         assert np.array_equal(some, others)

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from minirt.rendering.packing import shape_arrays
-from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_indices
+from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_indices, extents_from
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import SHAPES
-from tests.meshes.examples import named
 
 MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(3 * shape_arrays.CHUNK))
 
@@ -87,19 +86,10 @@ def test_adding_or_removing_a_kind_allocates_all_arrays_anew() -> None:
         assert (len(arrays.first_ball), arrays.first_ball[-1]) == (len(shapes) + 1, len(arrays.balls))
 
 
-def test_a_mesh_takes_the_place_of_one_with_other_triangles() -> None:
-    arrays, fresh = ShapeArrays(), ShapeArrays()
-    arrays.update((named("icosphere"), *SHAPES))
-    arrays.update((named("knot"), *SHAPES))
-    fresh.update((named("knot"), *SHAPES))
-    for kept_rows, fresh_rows in zip(arrays.rows, fresh.rows, strict=True):
-        assert np.array_equal(kept_rows, fresh_rows)
-    assert np.array_equal(arrays.first_primitive, fresh.first_primitive)
-
-
 def test_extents_and_boxes_of_several_shapes() -> None:
     shapes = [Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0))]
     arrays = ShapeArrays()
     arrays.update(tuple(shapes))
     assert arrays.colours_and_extents[:, 3].tolist() == [10, 21]
-    assert arrays.boxes.tolist() == [[1, -7, 3, 3], [1, -7, 3, 20]]
+    assert arrays.boxes.tolist() == [[[-1, -10, 1], [3, -4, 5]], [[-19, -9, 1], [21, -5, 5]]]
+    assert extents_from(np.array([1.0, -7.0, 0.0]), arrays.boxes).tolist() == [6, 23]

@@ -10,7 +10,7 @@ import pytest
 import minirt
 from minirt.errors import RenderError
 from minirt.helpers import system
-from minirt.kernel import binning, interpreted
+from minirt.kernel import binning
 from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.machine_code import functions
 from minirt.kernel.pixels import TILE
@@ -23,12 +23,10 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Light, Scene, parse
-from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.random_scenes import random_scene
-from tests.shapes.examples import hits
 from tests.shapes.regimes import random_directions
 
 WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
@@ -207,28 +205,11 @@ def test_an_infinite_ball_is_in_all_cells_at_distance_zero(kernel: Any) -> None:
     rectangles, cones, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
     place = np.zeros((1, 2), np.int64)
     for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
+        arguments = origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, cones, counts
         counts[:] = 0
-        assert kernel.project_all(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, cones, counts) == 6
+        assert kernel.project_all(*arguments) == 6
         assert cones[0, 3:].tolist() == [-2, 0]
         assert counts.tolist() == [1] * 24 + [0]
-
-
-def test_bins_leave_out_most_shapes() -> None:
-    arrays = Packing().pack(random_scene(3), WIDTH, HEIGHT)
-    assert len(arrays.tile_shapes) > 0
-    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Light((0, 9, 0), 1), *scattered()))
-    arrays = Packing().pack(scene, WIDTH, HEIGHT)
-    assert arrays.light_buffer_cells > 1
-    in_tile = members(arrays, "tile_starts", arrays.tile_shapes)
-    assert in_tile.mean() < 0.3
-    behind = np.array([shape.centre[2] < -2 for shape in scene.shapes])
-    assert behind.any()
-    assert not in_tile[:, behind].any()
-
-
-def scattered() -> list[Any]:
-    sphere = next(kind for kind in KINDS if kind.element.code == "sp")
-    return hits(sphere, 1, 0.3, 8.0, shapes=60, rays=8).shapes
 
 
 @pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
@@ -301,16 +282,5 @@ def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) ->
 def test_lists_that_no_cells_make_small_enough_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(system, "SMALL", 0)
     monkeypatch.setattr(system, "room", lambda: 64 * 48 * 4)  # enough for the picture
-    with pytest.raises(RenderError, match=r"the lists of shapes in view need about .* of memory, allowed 0 MiB"):
+    with pytest.raises(RenderError, match=r"the lists of shapes in view need more than 0 MiB of memory"):
         minirt.render(scene(), 64, 48, linear=False)
-
-
-def test_the_estimate_is_near_the_lists_that_are_built(monkeypatch: pytest.MonkeyPatch) -> None:
-    needs: list[int] = []
-    monkeypatch.setattr(system, "SMALL", 0)
-    monkeypatch.setattr(system, "check_memory", lambda needed, *_: needs.append(needed))
-    arrays = Packing(interpreted).pack(scene(), 64, 48)
-    starts = sum(group.light_starts.nbytes for group in arrays.groups)
-    _, tiles, estimate, members = needs
-    assert (tiles, members) == (arrays.tile_shapes.nbytes, arrays.light_shapes.nbytes)
-    assert (members + starts) / 2 < estimate < 2 * (members + starts)

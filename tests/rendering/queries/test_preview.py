@@ -14,7 +14,6 @@ from minirt.kernel.scene_arrays import intersect
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import features
-from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries import preview as module
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.queries.preview import (
@@ -26,14 +25,12 @@ from minirt.rendering.queries.preview import (
     notice_about,
     preview,
     render_interpreted,
-    visible_shapes,
 )
 from minirt.scene import Ambient, Camera, Light, Scene, load, parse
 from minirt.shapes.sphere import Sphere
 from tests.kernel import pictures
 from tests.kernel.pictures import EVERY, TWO
 from tests.paths import SCENES, scene_files
-from tests.random_scenes import random_scene
 
 MIRRORS = ("material-mirror",)
 PLAIN = Renderer(2, depth=0)
@@ -49,12 +46,6 @@ def test_every_interpreted_picture_equals_the_compiled_one(path: Path) -> None:
     made, seen = render_interpreted(scene, 64, 36)
     np.testing.assert_allclose(seen, light, rtol=0, atol=1e-12)
     assert (made == pixels).all()
-
-
-def test_a_preview_without_shapes_is_black() -> None:
-    made = preview(Scene((Camera((0, 0, 0), (0, 0, 1), 70),)), 64, 48)
-    assert made is not None
-    assert (made == (0, 0, 0, 255)).all()
 
 
 def balls(count: int) -> Scene:
@@ -154,18 +145,6 @@ def test_the_camera_that_is_named_shows_the_scene(name: str) -> None:
     assert len(seen) >= len(wanted)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_random_scenes_are_shown(seed: int) -> None:
-    scene = random_scene(seed)
-    x, y, z = scene.camera.position
-    away = scene.replace(scene.camera, Camera((x + 1e7, y + 3e7, z), (0.3, 0.9, 0), 1))
-    picture = render(away)
-    if notice := notice_about(away, picture):
-        assert not is_blank(render(shown_by(away, notice)))
-    else:  # a plane is everywhere
-        assert not is_blank(picture) or scene.planes
-
-
 def test_pictures_that_show_something_have_no_notice() -> None:
     black = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\nsp 0,0,0 2 255,0,0\n").scene
     empty = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\n").scene
@@ -185,12 +164,3 @@ def test_dithering_of_an_even_picture_is_still_blank() -> None:
     assert is_blank(picture)
     picture[65, 3, 1] = 103
     assert not is_blank(picture)
-
-
-def test_the_shapes_that_rays_meet_are_those_of_a_click(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "COLUMNS", 6)
-    monkeypatch.setattr(module, "ROWS", 4)
-    arrays = ShapeArrays()
-    arrays.update(EVERY.shapes)
-    clicked = {pick(EVERY, 30, 20, x, y) for x in range(2, 30, 5) for y in range(2, 20, 5)} - {None}
-    assert clicked == {EVERY.shapes[i] for i in visible_shapes(arrays, EVERY.camera, 30, 20)}

@@ -23,7 +23,7 @@ from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.paths import SCENES
 from tests.random_scenes import random_scene
-from tests.rendering.cancelling import cancelled
+from tests.rendering.test_frame_runner import cancelled
 from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Finding the pixels at edges, and the packets that contain them."""
+"""Contrast of packets, and the estimated error of refined pictures."""
 
 from __future__ import annotations
 
@@ -13,58 +13,15 @@ from numpy.typing import NDArray
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering.sampling.contrast import (
     CLASSES,
-    CONTRAST,
+    LINES,
     SQUARED_ROUNDING,
-    STRIP,
     contrast_classes,
-    edge_packets,
-    edge_pixels,
     estimated_error,
-    packets_with_any,
 )
 from tests.kernel.pictures import TWO
 from tests.rendering.sampling.test_auto import FACTOR, HEIGHT, KNOWN, WIDTH, reference, rms
 
 Pixels = NDArray[np.uint8]
-
-
-def flat(height: int, width: int, level: int = 100) -> Pixels:
-    pixels = np.full((height, width, 4), level, np.uint8)
-    pixels[..., 3] = 255
-    return pixels
-
-
-@pytest.mark.parametrize("channel", [0, 1, 2])
-def test_a_pixel_that_differs_is_at_an_edge_and_so_are_its_four_neighbours(channel: int) -> None:
-    for least, found in ((CONTRAST, 0), (CONTRAST + 1, 5), (155, 5)):
-        for sign in (1, -1):
-            pixels = flat(6, 8)
-            pixels[2, 3, channel] = 100 + sign * min(least, 100 if sign < 0 else 155)
-            edge = edge_pixels(pixels)
-            assert edge.sum() == found
-            if found:
-                assert edge[2, 2:5].all()
-                assert edge[1:4, 3].all()
-
-
-@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])
-def test_pictures_of_one_line_or_column_have_edges(shape: tuple[int, int]) -> None:
-    pixels = flat(*shape)
-    assert edge_pixels(pixels).shape == shape
-    pixels[-1, -1, :3] = 0
-    assert edge_pixels(pixels).sum() == min(2, pixels.shape[0] * pixels.shape[1]) * (shape != (1, 1))
-
-
-def test_the_strips_make_up_the_whole_picture() -> None:
-    generator = np.random.default_rng(3)
-    for height in (1, STRIP - 1, STRIP, STRIP + 1, 2 * STRIP + PACKET_HEIGHT + 1):
-        pixels = flat(height, 21)
-        pixels[..., :3] = 100 + 50 * (generator.random((height, 21, 1)) < 0.004)
-        if height > STRIP:  # the last line of a strip is a neighbour of the first one of the next
-            pixels[STRIP - 1, 5, :3] = pixels[STRIP, 15, :3] = 200
-        strips = list(edge_packets(pixels, 2))
-        assert len(strips) == -(-height // STRIP)
-        assert np.array_equal(np.concatenate(strips), packets_with_any(edge_pixels(pixels), 2))
 
 
 # Contrast classes of packets, compared with a loop over the pixels.
@@ -131,7 +88,7 @@ def test_large_differences_do_not_overflow() -> None:
     assert estimated_error(white, black, 4, 4) == pytest.approx(sqrt(1 / 2), rel=1e-4)
 
 
-TALL = np.random.default_rng(1).integers(0, 256, (2, 3 * STRIP + 5, 7, 4), np.uint8)
+TALL = np.random.default_rng(1).integers(0, 256, (2, 3 * LINES + 5, 7, 4), np.uint8)
 TALL[..., 3] = 255
 
 

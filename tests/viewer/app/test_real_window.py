@@ -16,9 +16,9 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.rendering.sampling.contrast import edge_pixels
 from minirt.scene import Scene
 from tests.processes import until_stopped
+from tests.rendering.test_frame_runner import edge_pixels
 from tests.viewer.fake import WITH_CYLINDER
 from tests.viewer.idle_waits import until_at_rest
 from tests.waiting import HANG_LIMIT, until
@@ -100,7 +100,7 @@ def check_refined(refined: NDArray[np.uint8], path: Path) -> None:
     """Check that a refined picture has the edges of one with 16 samples in each pixel, and is plain elsewhere."""
     plain = minirt.render(minirt.load(path), *SIZE).array
     many = minirt.render(minirt.load(path), *SIZE, samples=16).array.astype(int)
-    edge = edge_pixels(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
+    edge = edge_pixels(plain)
     assert np.abs(many - refined)[edge].mean() < 0.05 * np.abs(many - plain)[edge].mean()
     assert (plain == refined).all(axis=2).mean() > 0.75
 
