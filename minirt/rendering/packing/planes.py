@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from minirt.kernel.binning import MARGIN, Grid
 from minirt.rendering.packing.lights import light_position, radius_of, tangent_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp
-
-
-class CellRuns(NamedTuple):
-    """Runs of cells in which planes may be hit, each within a row of cells."""
-
-    planes: np.ndarray  # (r,) index of the plane
-    first: np.ndarray  # (r,) the first cell
-    lengths: np.ndarray  # (r,) number of cells
 
 
 def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
@@ -27,54 +17,33 @@ def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -
     They are negative below a plane, and 0 where the ball meets it or rounding may decide.
     """
     above = planes[:, :3] @ point - planes[:, 3]
-    slack = rounding(planes, point) + radius
+    slack = planes[:, 4] + MARGIN * np.abs(point).max() + radius  # rounding errors, upper bounds of them
     bounds: np.ndarray = np.sign(above) * np.maximum(np.abs(above) - slack, 0.0)
     return bounds
 
 
-def rounding(planes: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Upper bounds of the rounding errors of heights of a point above planes."""
-    errors: np.ndarray = planes[:, 4] + MARGIN * np.abs(point).max()
-    return errors
-
-
-def same_side(
-    planes: np.ndarray, a: np.ndarray, b: np.ndarray, radius_a: float = 0.0, radius_b: float = 0.0
-) -> np.ndarray:
-    """Whether the balls about both points lie on the same side of each plane, whatever the rounding.
-
-    Such a plane occludes nothing that one point sees from the other: whatever an eye sees lies on its side of every
-    plane, because the plane hides the rest.
-    """
-    same: np.ndarray = signed_heights(planes, a, radius_a) * signed_heights(planes, b, radius_b) > 0
-    return same
-
-
-def never_hit(
-    planes: np.ndarray, point: np.ndarray, direction: np.ndarray, radius: float = 0.0, spread: float = 0.0
-) -> np.ndarray:
-    """Whether rays in a direction, or up to `spread` radians away, that start on the same side of a plane as a ball
-    about a point never hit it, for each plane and whatever the rounding."""
-    slopes = planes[:, :3] @ direction
-    never: np.ndarray = (signed_heights(planes, point, radius) * slopes > 0) & (np.abs(slopes) > MARGIN + spread)
-    return never
-
-
 def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radius: float = 0.0) -> np.ndarray:
     """Whether each plane hides nothing that an eye in a lens of some radius sees from a light; False for transparent
-    planes."""
-    if not light.place:
-        harmless = never_hit(shape_arrays.planes, eye, -np.array(light.cone()[:3]), radius, tangent_of(light))
+    planes.
+
+    Whatever an eye sees lies on its side of every plane, because the plane hides the rest. So a plane occludes nothing
+    if the light is on that side, too, or if parallel light comes from there, whatever the rounding.
+    """
+    planes = shape_arrays.planes
+    heights = signed_heights(planes, eye, radius)
+    if light.place:
+        harmless = heights * signed_heights(planes, light_position(light), radius_of(light)) > 0
     else:
-        harmless = same_side(shape_arrays.planes, eye, light_position(light), radius, radius_of(light))
+        slopes = planes[:, :3] @ -np.array(light.cone()[:3])
+        harmless = (heights * slopes > 0) & (np.abs(slopes) > MARGIN + tangent_of(light))
     owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
     glass = [shape_arrays.shapes[owner].glass for owner in owners]
     skipped: np.ndarray = harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
     return skipped
 
 
-def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> CellRuns:
-    """The runs of cells in which planes may be hit.
+def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The runs of cells, each within a row of them, in which planes may be hit: plane, first cell and number of cells.
 
     `normals` (p, 3) point towards the planes; 0, 0, 0 stands for everywhere. A direction forward + x across + y down
     hits a plane if its product with the normal, a linear function of the slopes x and y, is positive: a row is tested
@@ -96,4 +65,4 @@ def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> CellRuns:
     end = np.clip(end, 0, grid.across).astype(np.int64)
     nonempty = np.flatnonzero(end > begin)
     plane, row = np.divmod(nonempty, len(grid.frames) * grid.down)
-    return CellRuns(plane, row * grid.across + begin.ravel()[nonempty], (end - begin).ravel()[nonempty])
+    return plane, row * grid.across + begin.ravel()[nonempty], (end - begin).ravel()[nonempty]
