@@ -17,12 +17,11 @@ from weakref import WeakSet
 import numpy as np
 import pytest
 
-from minirt import meshes
 from minirt.helpers import system
 from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code.library import Library
-from minirt.materials import pictures
 from minirt.rendering import Renderer
+from minirt.rendering import renderer as renderers
 from tests.cli.program import SCENE, environment
 from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library
 from tests.kernel.pictures import ALL
@@ -127,8 +126,7 @@ def is_free(lock: Any) -> bool:
 RENDERER = Renderer(1)
 LOCKS: dict[str, Callable[[], Any]] = {
     "renderer": lambda: RENDERER.busy,
-    "pictures": lambda: pictures.lock.lock,
-    "meshes": lambda: meshes.lock.lock,
+    "renderers": lambda: renderers.lock.lock,
 }
 
 
