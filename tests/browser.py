@@ -8,7 +8,6 @@ from __future__ import annotations
 import base64
 import json
 import os
-import re
 import select
 import shutil
 import subprocess
@@ -19,8 +18,8 @@ from typing import Any
 
 import pytest
 
-from tests.paths import ROOT
 from tests.processes import started
+from tests.skipping import install_command, skip_incomplete
 from tests.waiting import HANG_LIMIT
 
 NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
@@ -131,20 +130,11 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
 
 
 def require_browser() -> str:
-    """Return the browser's command. Without one skip the test, or fail it if MINIRT_REQUIRE_WINDOW is 1."""
+    """Return the browser's command. Without one skip the test, or fail it in continuous integration."""
     found = [name for name in NAMES if shutil.which(name)]
     if not found:
-        reason = f"needs Chromium or Chrome; install it: {install_command()}"
-        if os.environ.get("MINIRT_REQUIRE_WINDOW") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
+        skip_incomplete(f"needs Chromium or Chrome; install it: {install_command('chromium')}")
     return found[0]
-
-
-def install_command() -> str:
-    """Return the command of CONTRIBUTING.md that installs a browser."""
-    (line,) = re.findall(r"^apt-get install .*\bchromium.*$", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE)
-    return str(line)
 
 
 @contextmanager

@@ -32,6 +32,7 @@ import pytest
 from tests import processes
 from tests.idle import until_idle
 from tests.paths import ROOT
+from tests.skipping import install_command, skip_incomplete
 from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:
@@ -261,21 +262,10 @@ def desktop() -> Iterator[Desktop]:
 
 
 def require_tools() -> None:
-    """Skip the test if tools are missing, or fail it if MINIRT_REQUIRE_WINDOW is 1."""
+    """Skip the test if tools are missing, or fail it in continuous integration."""
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
     if missing:
-        reason = f"tests of real windows need {', '.join(missing)}; install them: {install_command()}"
-        if os.environ.get("MINIRT_REQUIRE_WINDOW") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-
-
-def install_command() -> str:
-    """Return the command of CONTRIBUTING.md that installs the tools."""
-    lines: list[str] = re.findall(
-        r"^apt-get install .*\bxvfb\b.*$", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE
-    )
-    return lines[0]
+        skip_incomplete(f"tests of real windows need {', '.join(missing)}; install them: {install_command('xvfb')}")
 
 
 @contextmanager
