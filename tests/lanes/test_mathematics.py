@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, exponent, load, save, two_to, width
 from minirt.lanes import mathematics as noise_module

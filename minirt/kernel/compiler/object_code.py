@@ -7,6 +7,7 @@ importing this module registers all of them, and numba finds the compiled form o
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from importlib import import_module
 from operator import attrgetter
@@ -14,8 +15,9 @@ from pkgutil import iter_modules
 from types import FunctionType
 from typing import Any
 
-from llvmlite import ir
-from numba import cfunc, from_dtype, types
+import numba
+from llvmlite import binding, ir
+from numba import cfunc, config, from_dtype, types
 from numba.core import cgutils
 from numba.core.typing import signature
 from numba.extending import intrinsic, overload
@@ -24,7 +26,7 @@ from minirt import kernel, lanes, shapes
 from minirt.kernel import scene_arrays, shading, trace
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import item_of, item_type
-from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED, InlinedCompiler, inline, inline_functions_of
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.kernel.shadow_rays import unoccluded_batched, unoccluded_by_kind, unoccluded_one_by_one
@@ -77,10 +79,26 @@ def type_of(signature: Signature) -> Any:
 
 
 def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
-    """Return the object code of a function, "module:name", for arguments of these signatures."""
+    """Return the object code of a function, "module:name", for arguments of these signatures.
+
+    Where a private interface of numba has changed, numba's own pipeline and llvmlite compile the same functions."""
     module, name = function.split(":")
-    compiled, results = compiled_entry(getattr(import_module(module), name), signatures)
-    return ObjectCode(compiled.native_name, results, compiled._library._get_compiled_object())
+    called = getattr(import_module(module), name)
+    try:
+        compiled, results = compiled_entry(called, signatures)
+        return ObjectCode(compiled.native_name, results, compiled._library._get_compiled_object())
+    except (AttributeError, ImportError, TypeError) as error:
+        if InlinedCompiler.lean:
+            print(
+                f"kernels take twice as long to compile, as numba {numba.__version__} differs: {error}", file=sys.stderr
+            )
+        InlinedCompiler.lean = False
+    compiled, results = compiled_entry(called, signatures)
+    cpu, features = config.CPU_NAME or binding.get_host_cpu_name(), config.CPU_FEATURES
+    features = binding.get_host_cpu_features().flatten() if features is None else features
+    machine = binding.Target.from_default_triple().create_target_machine(cpu, features, opt=3)
+    code = machine.emit_object(binding.parse_assembly(compiled.inspect_llvm()))
+    return ObjectCode(compiled.native_name, results, code)
 
 
 def compiled_entry(called: FunctionType, signatures: list[Signature]) -> tuple[Any, int]:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from threading import Thread
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code.cache import ObjectCode, unpack
+from minirt.kernel.machine_code.cache import ObjectCode, notice, unpack
 from minirt.kernel.machine_code.fingerprint import NATIVE, V3, V4, processor
 
 # With -P nothing is imported from the current folder.
@@ -39,6 +39,8 @@ class CompileProcess:
         if status:
             reason = messages[-1] if messages else f"the compiler ended with status {status}"
             raise RenderError(f"the kernel cannot be compiled: {reason}")
+        for message in messages:
+            notice(message)
         try:
             lines = map(bytes.fromhex, output.decode().split())
             return [unpack(request, line) for request, line in zip(requests, lines, strict=True)]
