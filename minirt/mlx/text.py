@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from minirt.mlx.canvas import blend
+from minirt.mlx.canvas import OPAQUE, blend
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +42,7 @@ def draw_text(
     """
     width, height = measure(text, size, pitch)
     if background is not None:
-        opacity = np.full((height + 2 * padding, width + 2 * padding), background >> 24 & 0xFF, np.uint8)
+        opacity = np.full((height + 2 * padding, width + 2 * padding), background & OPAQUE, np.uint32)
         _blend(pixels, x - padding, y - padding, opacity, background)
     for number, line in enumerate(text.split("\n")):
         _blend(pixels, x, y + number * _line_height(size), _coverage(line, size, pitch), color)
@@ -55,32 +55,32 @@ def measure(text: str, size: int = SIZE, pitch: int = 0) -> tuple[int, int]:
     return max(_width(line, size, pitch) for line in lines), len(lines) * _line_height(size)
 
 
-def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8], color: int) -> None:
-    """Blend a colour into the pixels at x, y by its coverage, 0 to 255, clipped at the borders."""
+def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint32], color: int) -> None:
+    """Blend a colour into the pixels at x, y by its coverage, 0 to 255 in the bits of alpha, clipped at the borders."""
     height, width = pixels.shape[:2]
     left, top = max(0, -x), max(0, -y)
-    ink = coverage[top : max(0, height - y), left : max(0, width - x)].astype(np.uint32)
+    ink = coverage[top : max(0, height - y), left : max(0, width - x)] | np.uint32(color & 0xFFFFFF)
     below = pixels.view("<u4")[y + top : y + top + ink.shape[0], x + left : x + left + ink.shape[1], 0]
     if ink.size:
-        blend(below, ink << np.uint32(24) | np.uint32(color & 0xFFFFFF))
+        blend(below, ink)
 
 
 @lru_cache(maxsize=1024)
-def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint8]:
-    """Coverage of each pixel by one line of text, 0 to 255; cached, since lines seldom change."""
+def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint32]:
+    """Coverage of each pixel by one line of text, in the bits of alpha; cached, since lines seldom change."""
     from PIL import Image, ImageDraw
 
     if pitch and len(line) > 1:
         return np.hstack([_coverage(character, size, pitch) for character in line])
     width, height, natural = _width(line, size, pitch), _line_height(size), _font(size).getlength(line)
     if width == 0:
-        return np.zeros((height, 0), np.uint8)
+        return np.zeros((height, 0), np.uint32)
     image = Image.new("L", (max(width, int(np.ceil(natural))), height))
     place = (image.width - natural) / 2 if pitch else 0
     ImageDraw.Draw(image).text((place, 0), line, fill=255, font=_font(size))
     if image.width > width:  # narrow a wide character to the pitch
         image = image.resize((width, height), Image.Resampling.BILINEAR)
-    coverage = np.asarray(image).copy()
+    coverage = np.asarray(image).astype(np.uint32) << np.uint32(24)
     coverage.flags.writeable = False
     return coverage
 

@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal, Unpack, overload
 
 from minirt.errors import MlxError
 from minirt.helpers.progress import in_notebook
+from minirt.mlx import Mlx
+from minirt.rendering.settings import takes_settings
+from minirt.scene.scene import check_scene
+from minirt.viewer.app import desktop
 
 if TYPE_CHECKING:
-    from minirt.mlx import Mlx
     from minirt.notebook.widget import Viewer
     from minirt.scene import Scene
     from minirt.viewer.app.desktop import ViewSettings
@@ -52,10 +55,6 @@ def view(
     qwerty, azerty or qwertz; `threads`, `precision` and `dither` as of `minirt.render`. MlxError where neither can be
     opened.
     """
-    from minirt.mlx import Mlx
-    from minirt.scene.scene import check_scene
-    from minirt.viewer.app import desktop
-
     check_scene(scene, "view")
     if not notebook:
         try:
@@ -68,3 +67,6 @@ def view(
     except ImportError as error:
         raise MlxError(f"{INSTALL} ({error})") from None
     return Viewer(scene, size, **settings)
+
+
+takes_settings(view, desktop.open_view)

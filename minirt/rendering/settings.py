@@ -78,13 +78,15 @@ class RenderSettings(Immutable):
         return renderer(self.threads, self.precision, self.depth, self.dither)
 
 
-def takes_settings(function: Function) -> Function:
-    """Decorate a function whose last parameter, `**settings`, are keywords of `render`: its signature names them."""
+def takes_settings(function: Function, source: Callable[..., Any] | None = None) -> Function:
+    """Decorate a function whose last parameter, `**settings`, are keywords of `source`: its signature names them.
+
+    By default they are the keywords of `render`, of which `linear` is no setting."""
     own = signature(function)
     *first, _ = own.parameters.values()
-    names = {each.name for each in first}
-    others = [each for each in signature(RenderSettings).parameters.values() if each.name not in names]
-    further = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in others if each.name in Keywords.__annotations__]
+    names = {"linear", *(each.name for each in first)}
+    others = [each for each in signature(source or RenderSettings).parameters.values() if each.name not in names]
+    further = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in others]
     setattr(function, "__signature__", own.replace(parameters=[*first, *further]))  # noqa: B010  # help() reads it
     return function
 
