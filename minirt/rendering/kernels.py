@@ -4,7 +4,7 @@ a generic one draws meanwhile."""
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, cached_property
 from threading import Lock, Thread
@@ -30,7 +30,6 @@ class BackgroundCompiler:
         self.wanted: list[str] = []
         self.asked: set[str] = set()  # identities, once and for all
         self.thread: Thread | None = None
-        self.notify: Callable[[], object] = lambda: None  # called when nothing is being compiled any more
 
     @property
     def busy(self) -> bool:
@@ -53,7 +52,6 @@ class BackgroundCompiler:
                 LIBRARY.compile([identity], self.process)
             except RenderError as error:
                 logging.getLogger(__name__).info("a generic kernel stays in use: %s", error)
-        self.notify()
 
     def next(self) -> str | None:
         """Return the identity of the next kernel; None, which ends the thread, where there is none."""

@@ -97,12 +97,9 @@ class Renderer:
         self.kernels.compile(scene)
         self.prepare(scene)
 
-    def specialise_early(self, notify: Callable[[], object] = lambda: None) -> None:
-        """Have specialised kernels compiled as soon as a generic one has drawn a picture: for windows, which stay open.
-
-        `notify` is called when one has been compiled, by the thread that waited for it."""
+    def specialise_early(self) -> None:
+        """Have specialised kernels compiled as soon as a generic one has drawn a picture: for windows."""
         self.kernels.specialised_after = 0.0
-        self.kernels.background.notify = notify
 
     def stop(self) -> None:
         """Stop compiling; callable from any thread."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from threading import Event, Lock
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -32,7 +32,7 @@ from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL, EYE, SHAPES
 from tests.meshes.examples import GREY, named
 from tests.skipping import skip_incomplete
-from tests.waiting import HANG_LIMIT, until
+from tests.waiting import until
 
 VIEW = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\n"
 BALL = parse(f"{VIEW}sp 0,0,0 2 255,60,60\n").scene
@@ -178,10 +178,8 @@ def test_the_specialised_kernel_is_swapped_in_and_draws_the_same_bits(
     assert renderer.runner.choice
     assert renderer.runner.choice.generic
     assert renderer.notes[0].startswith("generic kernel for all kinds of shapes")
-    compiled = Event()
-    renderer.specialise_early(compiled.set)
+    renderer.specialise_early()
     picture(renderer)
-    assert compiled.wait(HANG_LIMIT)
     until(lambda: library.find(specialised_identity(BALL)) is not None, "the specialised kernel")
     assert picture(renderer) == before
     assert renderer.runner.choice.generic is None

@@ -61,7 +61,6 @@ class FakeRenderer:
         self.prepare_error: Exception | None = None
         self.gate = threading.Event()  # while it is closed, pictures are not finished
         self.gate.set()
-        self.pass_gate = self.gate  # while this one is closed, refinements are not finished
         self.started = threading.Event()
         self.cancel_requested = threading.Event()
 
@@ -105,20 +104,19 @@ class FakeRenderer:
         assert (pixels[1:] == colour_of(scene)).all()
         self.refined.append(samples)
         pixels[0, : samples // 2] = MARK
-        if not self.may_finish(is_wanted, self.pass_gate):
+        if not self.may_finish(is_wanted):
             return False
         pixels[0, :samples] = MARK
         return True
 
-    def may_finish(self, is_wanted: IsWanted, gate: threading.Event | None = None) -> bool:
-        """Wait for a gate to open, by default `self.gate`; return False if the picture was cancelled."""
-        gate = gate or self.gate
+    def may_finish(self, is_wanted: IsWanted) -> bool:
+        """Wait for the gate to open; return False if the picture was cancelled."""
         self.cancel_requested.clear()
         self.started.set()
         if not is_wanted():
             self.cancelled += 1
             return False
-        until(lambda: gate.is_set() or self.cancel_requested.is_set(), "the gate's opening")
+        until(lambda: self.gate.is_set() or self.cancel_requested.is_set(), "the gate's opening")
         if self.cancel_requested.is_set():
             self.cancelled += 1
             return False

@@ -13,6 +13,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import groupby, islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,12 +26,11 @@ from tests.viewer.fake import WITH_CYLINDER, write
 from tests.viewer.idle_waits import until_at_rest, until_compiled, until_events_are_done
 from tests.viewer.xdotool import do
 from tests.waiting import HANG_LIMIT
-from tests.windows import SCREEN, Desktop, open_desktop
+from tests.windows import Desktop, open_desktop
 
 SIZE = (320, 240)
-EXCLUDED = {"quit"}
-RARE = {"save", "save copy", "screenshot", "reload", "toggle help", "toggle full screen", "delete"}
-FULL_SCREEN = [f"press {key}" for each in BINDINGS if each.action == "toggle full screen" for key in each.keys]
+EXCLUDED = {"quit", "toggle full screen"}
+RARE = {"save", "save copy", "screenshot", "reload", "toggle help", "delete"}
 FILE_VERSIONS = (
     WITH_CYLINDER,
     WITH_CYLINDER.replace("A 0.2", "A 0.6"),
@@ -42,6 +42,7 @@ FILE_VERSIONS = (
     WITH_CYLINDER.replace("-0.995 60", "-0.995 60 tone:filmic lens:0.1")
     + "bg picture.png\nob mesh.obj 0,1,0 1 9,9,9\n",
 )
+APART = ("resize", "wait")  # commands for which the program or the window manager needs time
 BATCH = 15  # lines between two checks of the program
 FILE_CHANGES = 0.15  # probability that another program writes the file after a batch
 
@@ -54,7 +55,6 @@ class Report(NamedTuple):
     errors: str
     record: Record
     lines: int  # that were performed
-    full_screens: int  # how often full screen was entered or left
 
 
 def lines(chance: random.Random) -> Iterator[str]:
@@ -105,25 +105,13 @@ class Monkey:
         self.chance = random.Random(seed)
         self.lines = lines(random.Random(seed))
         self.done = 0
-        self.size = SIZE  # of the window, while it is not full screen
-        self.requested_size = SIZE
-        self.full_screen = False
-        self.full_screens = 0
-        self.find()
-
-    def find(self) -> None:
-        """Find the program's window, which may be a new one after full screen was entered or left."""
-        self.window = self.desktop.find(f"miniRT - {self.path.name}", SCREEN if self.full_screen else self.size)
+        self.window = desktop.find(f"miniRT - {path.name}", SIZE)
 
     def batch(self) -> None:
         """Perform some lines, and now and then write the file as another program would."""
-        batch: list[str] = []
-        while len(batch) < BATCH and not (batch and batch[-1] in FULL_SCREEN):
-            batch.append(next(self.lines))
+        batch = list(islice(self.lines, BATCH))
         try:
             self.do(*batch, "up Shift")
-            if batch[-1] in FULL_SCREEN:
-                self.await_full_screen()
             until_events_are_done(self.process.pid)
         except (subprocess.CalledProcessError, OSError, AssertionError):
             assert self.process.poll() is None, f"{self.process.communicate()[1]}\nafter {batch}"
@@ -136,52 +124,23 @@ class Monkey:
 
     def do(self, *batch: str) -> None:
         """Perform lines; wait after a resize for the window manager, and where a line says so."""
-        ready: list[str] = []
-        for line in batch:
-            word, _, size = line.partition(" ")
-            if word not in ("resize", "wait"):
-                ready.append(line)
-                continue
-            do(self.desktop, self.window, *ready)
-            ready.clear()
+        for word, group in groupby(batch, lambda line: next(filter(line.startswith, APART), "")):
             if word == "resize":
-                width, height = size.split("x")
-                self.resize((int(width), int(height)))
-            else:
+                for line in group:
+                    self.desktop.resize(self.window, *map(int, line.split()[1].split("x")))
+            elif word == "wait":
                 until_events_are_done(self.process.pid)
-        do(self.desktop, self.window, *ready)
-
-    def resize(self, size: tuple[int, int]) -> None:
-        """Resize the window; in full screen the request has no effect and is repeated when full screen is left."""
-        self.requested_size = size
-        if self.full_screen:
-            do(self.desktop, self.window, f"resize {size[0]}x{size[1]}")
-        else:
-            self.desktop.resize(self.window, *size)
-            self.size = size
-
-    def await_full_screen(self) -> None:
-        """Wait until full screen is entered or left, after its key was pressed."""
-        self.full_screen = not self.full_screen
-        self.full_screens += 1
-        self.find()
-        self.resize(self.requested_size)
-        self.do("move 0,0")
+            else:
+                do(self.desktop, self.window, *group)
 
     def idle_usage(self) -> Usage:
-        """Return what the program uses with the first scene at the first size; then restore the window's size."""
-        size = self.requested_size
+        """Return what the program uses with the first scene at the first size."""
         self.desktop.restore(self.window)
-        if self.full_screen:
-            self.do(FULL_SCREEN[0])
-            self.await_full_screen()
         write(self.path, WITH_CYLINDER)
-        self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
+        self.do("press Ctrl+R", "resize {}x{}".format(*SIZE), "move 0,0")
         until_compiled(self.process.pid)
         until_at_rest(self.process.pid)
-        used = Usage.of(self.process.pid)
-        self.do("resize {}x{}".format(*size), "move 0,0")
-        return used
+        return Usage.of(self.process.pid)
 
 
 def run_monkey(
@@ -212,7 +171,7 @@ def run_monkey(
         desktop.key(monkey.window, "Escape")
         output, errors = process.communicate(timeout=HANG_LIMIT)
         load(path)  # the saved file is a valid scene
-        return Report(process.returncode, output, errors, record, monkey.done, monkey.full_screens)
+        return Report(process.returncode, output, errors, record, monkey.done)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from minirt.mlx import Key, Mlx
+from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
+from minirt.mlx.recording import add_recording
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import HudLevel
@@ -82,7 +83,7 @@ class SessionHarness:
         self.session.draw()
         self.memory.play()
 
-    def tap(self, *keys: Key) -> None:
-        """Press and release keys."""
-        self.memory.tap(*keys)
+    def play(self, *lines: str) -> None:
+        """Perform lines of a recording."""
+        add_recording(lines, "test", self.memory)
         self.memory.play()

@@ -7,7 +7,6 @@ import threading
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from minirt.scene import load
 from minirt.viewer.files import WatchedFile, contents_differ, save_recovery, signature
@@ -16,16 +15,6 @@ from tests.waiting import until
 
 SELECT_SPHERE = ("press Tab", "press Tab")
 OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
-
-
-def test_save_changes_one_line(path):
-    session = played(*SELECT_SPHERE, "press V", "press -", "press Ctrl+S", path=path)
-    before, after = TEXT.splitlines(), path.read_text().splitlines()
-    assert [(old, new) for old, new in zip(before, after, strict=True) if old != new] == [
-        ("sp 0,0,0 2 255,0,0", "sp 0,0,0 2 247,0,0")
-    ]
-    assert not contents_differ(session.state.scene, session.saved)
-    assert str(path) in session.state.message
 
 
 def test_a_scene_or_picture_that_cannot_be_written_gives_a_message(tmp_path):
@@ -40,15 +29,6 @@ def test_copies_are_numbered(path):
     assert path.read_text() == TEXT
     for name in ("scene-1.rt", "scene-2.rt"):
         assert load(path.with_name(name)).scene.spheres == ()
-
-
-def test_the_picture_is_saved_without_the_hud(path):
-    session = played("press P", "resize 30x20", "press d", "press F12", path=path)
-    first, second = (np.asarray(Image.open(path.with_name(f"scene-{n}.png"))) for n in (1, 2))
-    assert first.shape == (48, 64, 3)
-    assert (first == colour_of(scene())[2::-1]).all()
-    assert second.shape == (20, 30, 3)
-    assert (second == colour_of(session.state.scene)[2::-1]).all()
 
 
 def test_reading_again_shows_the_scene_of_the_file(path):
@@ -79,11 +59,6 @@ def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the
     assert load(copy).scene.items == scene().items
     copy.unlink()
     copy.parent.rmdir()
-
-
-def test_a_moved_camera_is_no_unsaved_change():
-    assert not contents_differ(played("press d", "press Left").state.scene, scene())
-    assert contents_differ(played("press Tab", "press d").state.scene, scene())
 
 
 # File watching: changes by other programs are reported once, as soon as the file is stable.

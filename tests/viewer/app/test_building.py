@@ -200,16 +200,6 @@ def test_the_line_of_information_says_what_keys_do() -> None:
     assert re.search(r"\+ - height 0\.25\b", hints(brim, every=True))
 
 
-def test_the_wheel_moves_the_camera_nearer_and_never_past_the_scene() -> None:
-    near = played("wheel up").state.scene.camera
-    assert near.fov == 90
-    assert near.position[:2] == (0, 0)
-    assert 0 < near.position[2] < 10
-    back = played("wheel up", "wheel down").state.scene.camera
-    assert back.position[2] == pytest.approx(10, rel=0.02)
-    assert played("text +").state.scene.camera.fov > 90
-
-
 def test_a_new_element_is_exactly_under_the_pointer() -> None:
     """Within the two digits of its place on the ground, where a pixel is 1 / 8 wide."""
     added = played("move 40,20", "press N", text="A 0.2 255,255,255\nC 0,4,0 0,-1,0 90\n").state.element

@@ -179,12 +179,6 @@ def test_clicks_select_elements_and_comments_are_skipped():
     assert (nothing.element.title, nothing.message) == ("light", "there is nothing")
 
 
-def test_a_resize_renders_anew():
-    session = played("resize 40x30")
-    assert session.screen.frame.shape == (30, 40, 4)
-    assert session.refinement.painter.renderer.rendered == [(64, 48), (40, 30)]
-
-
 def test_quitting_the_session_ends_the_replay():
     for end in ("press Escape", "press Ctrl+q", "close", "press Ctrl+Shift+Escape"):
         session = played("press d", end, "press d", "resize 10x10")

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import pytest
 
 from minirt.errors import FileError, RenderError
 from minirt.mlx import Button, Cursor, Key
-from minirt.viewer.display.painter import BackgroundPainter, Job, Outcome
+from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME
 from minirt.viewer.editing.state import initial_state
-from tests.viewer.fake import FakeRenderer, colour_of, scene
+from tests.viewer.fake import colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
-from tests.waiting import HANG_LIMIT, until
 
 AWAY = "A 0.2 255,255,255\nC 0,0,0 0,0,-1 60\nsp 0,0,9 1 255,0,0\n"
 
@@ -23,16 +20,13 @@ def test_the_loop_sleeps_unless_a_key_is_held_or_words_wait():
     assert harness.display.busy
     harness.finish(0.001)
     assert not harness.display.busy
-    harness.tap(Key.D)
+    harness.play("press d")
     assert harness.display.busy
-    harness.memory.wait(0.05)
-    harness.memory.play()
+    harness.play("wait 0.05")
     assert not harness.display.busy
-    harness.memory.press(Key.D)
-    harness.memory.play()
+    harness.play("down d")
     assert harness.display.busy
-    harness.memory.release(Key.D)
-    harness.memory.play()
+    harness.play("up d")
     harness.finish(0.001)
     assert not harness.display.busy
     harness.memory.press(Key.D)
@@ -62,7 +56,7 @@ def test_an_unchanged_frame_is_not_drawn_again():
     harness.painter.notify()
     harness.memory.play()
     assert harness.session.screen.frame is frame
-    harness.tap(Key.I)
+    harness.play("press i")
     assert harness.session.screen.frame is not frame
 
 
@@ -70,46 +64,25 @@ def test_a_coarse_picture_is_stretched_over_the_window():
     harness = SessionHarness()
     harness.finish(FRAME_TIME * 64)
     harness.hide_overlay()
-    harness.tap(Key.D)
+    harness.play("press d")
     harness.finish(FRAME_TIME)
     assert harness.session.refinement.latest.pixels.shape == (6, 8, 4)
     assert harness.memory.screenshot().shape == (48, 64, 4)
     assert (harness.memory.screenshot() == colour_of(harness.session.state.scene)).all()
 
 
-def test_of_many_window_sizes_only_the_last_is_rendered():
-    harness = SessionHarness(partial(BackgroundPainter, renderer := FakeRenderer()))
-    until(lambda: renderer.rendered == [SIZE], "the first picture")
-    renderer.gate.clear()
-    for width in range(10, 40):
-        harness.memory.resize(width, 20)
-    harness.memory.play()
-    renderer.gate.set()
-
-    def shown() -> bool:
-        harness.memory.play()
-        latest = harness.session.refinement.latest
-        return latest is not None and latest.job.shows(harness.session.state.scene, 39, 20)
-
-    until(shown, "the picture of the last size")
-    assert {width for width, _ in renderer.rendered} <= {64, 39, 5}
-    assert harness.painter.close(HANG_LIMIT)
-
-
 def test_a_render_error_is_a_message_over_the_picture():
     harness = SessionHarness()
     harness.finish(0.001)
-    harness.tap(Key.D)
+    harness.play("press d")
     before = harness.memory.screenshot()
     harness.painter.renderer.error = RenderError("too many shapes")
     harness.finish(0.001)
-    harness.memory.wait(0.05)
-    harness.memory.play()
+    harness.play("wait 0.05")
     assert harness.session.state.message == "too many shapes"
     assert (harness.session.picture == colour_of(scene())).all()
     assert (harness.memory.screenshot() != before).any()
-    harness.memory.wait(1)
-    harness.memory.play()
+    harness.play("wait 1")
     assert len(harness.painter.requests) == 3  # two with the tap; and it is not requested again
 
 
@@ -121,8 +94,7 @@ def test_an_error_of_picking_is_a_message_over_the_picture() -> None:
         raise FileError("brick.png", "cannot be read")
 
     harness.session.pick = fail
-    harness.memory.click(30, 20)
-    harness.memory.play()
+    harness.play("click 30,20")
     assert "brick.png" in harness.session.state.message
 
 
@@ -130,8 +102,7 @@ def test_a_screenshot_waits_for_the_final_picture(tmp_path):
     harness = SessionHarness(samples=4)
     harness.session.path = tmp_path / "scene.rt"
     harness.finish(FRAME_TIME * 100)
-    harness.tap(Key.D)
-    harness.tap(Key.P)
+    harness.play("press d", "press p")
     for _ in range(2):  # the coarse one, the whole one
         harness.finish(FRAME_TIME)
         assert list(tmp_path.iterdir()) == []
@@ -150,7 +121,7 @@ def test_a_first_picture_with_nothing_in_view_is_remarked_on_once():
     while harness.painter.busy:
         harness.finish(0.001)
     assert session.state.message.startswith("nothing is in view; this line would show the scene: C ")
-    harness.tap(Key.D)
+    harness.play("press d")
     assert session.state.message == ""
     harness.finish(0.001)
     assert session.state.message == ""

@@ -45,13 +45,9 @@ def harness() -> SessionHarness:
     harness.session.pick = lambda scene, *_: scene.spheres[0]
     harness.finish(0.001)
     harness.memory.resize(WIDTH, HEIGHT)
-    harness.memory.click(320, 240)
-    harness.memory.text("+")
-    harness.memory.play()
+    harness.play("click 320,240", "text +")
     harness.finish(0.001)
-    harness.memory.tap(Key.I)
-    harness.memory.wait(1)
-    harness.memory.play()
+    harness.play("press i", "wait 1")
     assert harness.session.screen.level == HudLevel.ALL
     return harness
 

@@ -29,13 +29,11 @@ from minirt.viewer.display.marks import (
     draw_outline,
     outline_pixels,
 )
-from minirt.viewer.display.painter import paint
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
 from tests.meshes.examples import named
 from tests.random_scenes import random_scene
 from tests.viewer.fake import TEXT, colour_of, played, scene
-from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 160, 90
 GOLDEN = np.array(bgra(GOLD), np.uint8)
@@ -109,26 +107,6 @@ def test_an_outline_has_black_beside_it_and_none_beyond_a_corner_of_the_picture(
     black[[corner, corner + inward, corner + 2 * inward], [corner + inward, corner + inward, corner]] = True
     assert ((pixels == np.array(bgra(BLACK), np.uint8)).all(axis=2) == black).all()
     assert (pixels[[corner, corner + inward], corner] == GOLDEN).all()
-
-
-def test_the_outline_matches_an_older_picture_that_arrives_late() -> None:
-    harness = SessionHarness()
-    harness.session.pick = lambda scene, *_: scene.spheres[0]
-    harness.finish(0.001)
-    harness.memory.resize(WIDTH, HEIGHT)
-    harness.memory.click(80, 45)
-    harness.memory.text("+")
-    harness.memory.play()
-    (older,) = harness.painter.open
-    harness.memory.text("+" * 9)
-    harness.memory.play()
-    harness.painter.outcomes.append(paint(harness.painter.renderer, older))
-    harness.painter.notify()
-    harness.memory.play()
-    assert harness.session.refinement.latest.job is older
-    assert harness.session.state.scene is not older.scene
-    outside, _ = edges(older.scene.spheres[0], older.scene.camera)
-    assert golden(harness.session)[outside][40:].all()
 
 
 @pytest.mark.parametrize(("presses", "frame"), [(1, Frame.X), (2, Frame.Y), (3, Frame.Z)])

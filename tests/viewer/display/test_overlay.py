@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.mlx import Key
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
 from minirt.viewer.display import screen
@@ -224,10 +223,9 @@ def test_tiny_windows_have_some_help(width: int, height: int) -> None:
 def test_the_key_turns_the_pages_and_ends_with_the_picture() -> None:
     harness = SessionHarness()
     session = harness.session
-    harness.memory.resize(320, 240)
-    harness.memory.play()
+    harness.play("resize 320x240")
     last = len(table(320, 240)[1])
     assert last > 1
     for page in [*range(1, last + 1), 0, 1]:
-        harness.tap(Key.H)
+        harness.play("press h")
         assert session.screen.help == page

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import itertools
-import threading
-from functools import partial
 
-import numpy as np
 import pytest
 
-from minirt.errors import RenderError
 from minirt.mlx import Key
 from minirt.mlx.memory import Memory, MemoryWindow
-from minirt.viewer.display.painter import BackgroundPainter, Job, Outcome
+from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
-from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
+from tests.viewer.fake import MARK, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
-from tests.waiting import HANG_LIMIT, until
 
 SCENE = scene()
 
@@ -27,12 +22,7 @@ def test_the_first_picture_has_full_resolution_and_is_rendered_once():
     harness.finish(10.0)
     harness.memory.wait(2)
     harness.memory.do(harness.memory.window.on_expose)
-    harness.memory.motion(5, 5)
-    harness.memory.minimise(True)
-    harness.memory.minimise(False)
-    harness.tap(Key.I)
-    harness.tap(Key.H)
-    harness.tap(Key.TAB)
+    harness.play("move 5,5", "hide", "show", "press i", "press h", "press Tab")
     assert len(harness.painter.requests) == 1
 
 
@@ -41,18 +31,15 @@ def test_slow_pictures_are_coarse_only_while_a_key_is_held():
     harness.finish(FRAME_TIME * 3)
     harness.memory.press(Key.D)
     for _ in range(2):
-        harness.memory.wait(0.5)
-        harness.memory.play()
+        harness.play("wait 0.5")
         harness.finish(FRAME_TIME * 3 / 4)
         assert not harness.painter.busy
     assert set(harness.painter.divisors[1:]) == {2}
     assert all(job.urgent for job in harness.painter.requests[1:])
-    harness.memory.release(Key.D)
-    harness.memory.play()
+    harness.play("up d")
     assert harness.painter.requests[-1] == Job(harness.session.state.scene, *SIZE)
     harness.finish(FRAME_TIME * 3)
-    harness.memory.wait(1)
-    harness.memory.play()
+    harness.play("wait 1")
     assert not harness.painter.busy
     assert harness.session.refinement.latest.job == Job(harness.session.state.scene, *SIZE)
 
@@ -68,8 +55,7 @@ def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final():
         assert (shown[1:] == colour_of(scene())).all()
     harness.memory.wait(2)
     harness.memory.do(harness.memory.window.on_expose)
-    harness.tap(Key.H)
-    harness.tap(Key.TAB)
+    harness.play("press h", "press Tab")
     assert harness.painter.samples == [1, 4, 16]
     assert harness.painter.divisors == [1, 1, 1]
     assert not harness.painter.busy
@@ -80,56 +66,19 @@ def test_a_new_movement_returns_to_one_sample_at_once():
     harness = SessionHarness(samples=16)
     harness.finish(0.001)
     harness.finish(0.001)
-    harness.memory.press(Key.D)
-    harness.memory.play()
+    harness.play("down d")
     job = harness.painter.requests[-1]
     assert (job.samples, job.base, job.urgent, job.divisor) == (1, None, True, 1)
     harness.finish(0.001)
     assert (harness.session.picture == colour_of(harness.session.state.scene)).all()
     for _ in range(3):
-        harness.memory.wait(0.5)
-        harness.memory.play()
+        harness.play("wait 0.5")
         harness.finish(0.001)
     assert set(harness.painter.samples[3:]) == {1}
-    harness.memory.release(Key.D)
-    harness.memory.play()
+    harness.play("up d")
     while harness.painter.busy:
         harness.finish(0.001)
     assert harness.painter.samples[-3:] == [1, 4, 16]
-
-
-def test_nothing_is_rendered_after_an_error_in_a_pass():
-    harness = SessionHarness(samples=16)
-    harness.finish(0.001)
-    harness.painter.renderer.error = RenderError("no more")
-    harness.finish(0.001)
-    assert harness.session.state.message == "no more"
-    assert not harness.painter.busy
-    assert (harness.session.picture == colour_of(scene())).all()
-
-
-def test_a_cancelled_pass_is_never_shown():
-    renderer = FakeRenderer()
-    renderer.pass_gate = threading.Event()  # stays closed: no pass is finished before it is cancelled
-    renderer.gate.clear()  # nor is any begun before the overlay is hidden
-    harness = SessionHarness(partial(BackgroundPainter, renderer), samples=16)
-    harness.hide_overlay()
-    renderer.gate.set()
-    for _ in range(5):
-        passes, cancelled = len(renderer.refined), renderer.cancelled
-
-        def half_refined(passes: int = passes) -> bool:
-            harness.memory.play()
-            return len(renderer.refined) > passes
-
-        until(half_refined, "a pass")
-        whole = harness.memory.screenshot()
-        assert (whole == colour_of(harness.session.state.scene)).all()
-        harness.memory.text(".")
-        harness.memory.play()
-        until(lambda cancelled=cancelled: renderer.cancelled > cancelled, "the end of the pass")
-        assert np.array_equal(harness.memory.screenshot(), whole)
-    assert harness.painter.close(HANG_LIMIT)
 
 
 class SlowWindow(MemoryWindow):
@@ -148,7 +97,7 @@ def test_a_slow_screen_leaves_less_time_for_rendering():
     for memory, divisor in ((Memory(), 1), (SlowScreen(), 2)):
         harness = SessionHarness(memory=memory)
         harness.finish(FRAME_TIME * 0.7)
-        harness.tap(Key.D)
+        harness.play("press d")
         assert harness.painter.divisors == [1, divisor, divisor]
 
 

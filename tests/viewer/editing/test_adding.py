@@ -16,7 +16,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.editing.adding import addable_kinds, default_element, dropped
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import SHARE, Aim, aim, looked_at_distance, projection_of
+from minirt.viewer.editing.projection import SHARE, aim, looked_at_distance, projection_of
 from minirt.viewer.editing.state import State, initial_state
 from tests.viewer.fake import scene
 
@@ -182,11 +182,6 @@ def test_drop_is_one_undo_step_and_says_where_nothing_can_fall() -> None:
 def test_the_camera_alone_tells_a_scale(position: Triple, direction: Triple, distance: float) -> None:
     camera = scene().camera.replace(position=position, direction=direction)
     assert looked_at_distance(camera) == pytest.approx(distance)
-
-
-def test_an_aim_has_all_that_a_place_needs() -> None:
-    found = aim(projection_of(scene().camera, *SIZE), 10.0, 320, 180, None, None)
-    assert found == Aim((0, 0, 10), pytest.approx((0, 0, 0), abs=1e-9), None, pytest.approx(SHARE * 11.25))
 
 
 # Adding again makes the next kind.

@@ -34,14 +34,6 @@ def test_projecting_to_pixels_and_back_is_the_identity(x, y, z, fov, roll, at):
     assert projection.pixel(projection.point_at_depth(*pixel, -7.0)) is None
 
 
-def test_a_ray_leads_through_its_pixel():
-    ray = PROJECTION.ray(10, 40)
-    assert dot(ray, ray) == pytest.approx(1)
-    assert PROJECTION.pixel(tuple(a + 3 * b for a, b in zip(PROJECTION.eye, ray, strict=True))) == pytest.approx(
-        (10, 40)
-    )
-
-
 def point_under_pixel(shape, x, y):
     """The point on a shape under a pixel."""
     return surface_point(shape, scene().camera, WIDTH, HEIGHT, x, y)
@@ -154,8 +146,7 @@ def dragging() -> SessionHarness:
     harness = SessionHarness()
     harness.session.pick = lambda scene, *_: scene.spheres[0]
     harness.memory.button_press(1, *FROM)
-    harness.memory.motion(40, 20)
-    harness.memory.play()
+    harness.play("move 40,20")
     assert len(harness.session.state.undo_stack) == 1
     return harness
 

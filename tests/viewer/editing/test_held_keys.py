@@ -59,11 +59,7 @@ def test_a_held_key_never_stands_still() -> None:
 
 def test_keys_are_independent() -> None:
     harness = SessionHarness()
-    harness.memory.press(Key.D)
-    harness.memory.press(Key.E)
-    harness.memory.release(Key.D)
-    harness.memory.release(Key.F3)
-    harness.memory.play()
+    harness.play("down d", "down e", "up d", "up F3")
     x, y, _ = harness.session.state.scene.camera.position
     assert (x, y) == pytest.approx((harness.session.state.stride, FIRST_PART * harness.session.state.stride))
     assert list(harness.session.held_keys) == [Key.E]
@@ -118,8 +114,7 @@ def test_a_held_key_moves_with_the_press_and_with_every_tick() -> None:
     harness.memory.after_tick = lambda: states.append(harness.session.state)
     harness.memory.press(Key.D)
     harness.memory.do(lambda: states.append(harness.session.state))
-    harness.memory.wait(0.5)
-    harness.memory.play()
+    harness.play("wait 0.5")
     positions = [state.scene.camera.position[0] for state in states]
     assert len(positions) > 30
     assert positions == sorted(set(positions))
