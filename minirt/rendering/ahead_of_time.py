@@ -17,7 +17,7 @@ from minirt.kernel.machine_code.cache import SHIPPED, CodeCache
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
 from minirt.kernel.machine_code.library import Call, identity_of
-from minirt.rendering.needed_kernels import generic_call, packing_calls, ray_query
+from minirt.rendering.kernels import generic_call, packing_calls, ray_query
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
 from minirt.rendering.threads import usable_cores
 

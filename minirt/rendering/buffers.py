@@ -20,7 +20,6 @@ from minirt.scene.scene import check_scene
 from minirt.shapes import Shape
 
 WHITE = (255, 255, 255)
-BLOCK = 2**14  # hits whose coordinates are computed at once: their numbers fit a processor's cache
 UNLIT = ("specular", "mirror", "glass", "tint", "fresnel", "glow", "bump", "normal_map")  # no part of the albedo
 
 
@@ -91,13 +90,11 @@ def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
     for i, numbers in placements.items():
         normal[owner == i] = normal[owner == i] @ np.reshape(numbers[6:], (3, 3)).T
     for group, rows in enumerate(arrays.rows):
-        of_group = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
-        for start in range(0, len(of_group), BLOCK):
-            here = of_group[start : start + BLOCK]
-            packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
-            with np.errstate(all="ignore"):
-                u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*hits.point[here].T), Vec(*normal[here].T))
-            uv[here, 0], uv[here, 1] = u, v
+        here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
+        packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
+        with np.errstate(all="ignore"):
+            u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*hits.point[here].T), Vec(*normal[here].T))
+        uv[here, 0], uv[here, 1] = u, v
     for i, (scale_u, scale_v, shift_u, shift_v, c, s, *_) in placements.items():
         u, v = uv[owner == i].T - np.array([[shift_u], [shift_v]])
         uv[owner == i] = np.stack([scale_u * (c * u + s * v), scale_v * (c * v - s * u)], axis=-1)

@@ -78,12 +78,10 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
         -(-size // step)
         for size, step in ((shape[0], PACKET_HEIGHT), (shape[1], packet_width), (crop.width, packet_width))
     )
-    random, left = np.random.Generator(np.random.PCG64(variants)), crop.left // packet_width
-    for _ in range(crop.top // PACKET_HEIGHT):
-        random.integers(variants, size=all_columns)
+    random = np.random.Generator(np.random.PCG64(variants))
+    left, top = crop.left // packet_width, crop.top // PACKET_HEIGHT
     drawn = np.full((rows, columns, 3), (0, samples, 0), np.int32)
-    for row in drawn:
-        row[:, 0] = samples * random.integers(variants, size=all_columns)[left : left + columns]
+    drawn[..., 0] = samples * random.integers(variants, size=(top + rows, all_columns))[top:, left : left + columns]
     return plan_of(np.arange(rows * columns), columns, drawn.reshape(-1, 3))
 
 

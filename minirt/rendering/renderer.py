@@ -192,7 +192,7 @@ class Renderer:
             if not is_done:
                 least = None
                 if linear is None and is_mapped:
-                    least = self.tone_mapper.floor(request, error, partial(self._draw, request, 1))
+                    least = self.tone_mapper.floor(request, partial(self._draw, request, 1))
                 left = seconds - (perf_counter() - start)
                 outcome = render_to_error(self.runner, self.packing, request, light, error, left, least)
             if outcome and is_mapped:
@@ -220,10 +220,6 @@ class Renderer:
     def rows_done(self, height: int) -> float:
         """Return the share of the rows of the picture being rendered, of `height` pixels, that threads have taken."""
         return min(1.0, int(self.runner.next_row[0]) / height)
-
-    def give_way(self) -> None:
-        """Let the other threads of this process, such as an event loop, go before those that render, from now on."""
-        self.runner.pool.give_way()
 
     def cancel(self) -> None:
         """End the picture that is being rendered, soon and incomplete; callable from any thread."""

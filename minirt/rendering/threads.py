@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -14,9 +13,6 @@ from weakref import finalize
 
 Job: TypeAlias = Callable[[], object]
 
-# Of threads that give way. The event loop composes frames sooner: the longest pause of a drag falls from 34 ms to 30.
-# With 10 it falls to 28, but that of a held key grows from 26 ms to 34.
-NICENESS = 4
 LONGEST_WAIT = 0.2  # seconds: Python does not see a signal that comes just before it waits until the wait ends
 
 
@@ -37,14 +33,6 @@ class ThreadPool:
             self.threads.append(Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True))
             self.threads[-1].start()
         finalize(self, stop_threads, self.tasks, number)
-
-    def give_way(self) -> None:
-        """Let the other threads of the process go first from now on. Only Linux has priorities of threads."""
-        if sys.platform == "linux":
-            niceness = os.getpriority(os.PRIO_PROCESS, os.getpid()) + NICENESS
-            for thread in self.threads:
-                with suppress(OSError):  # where a sandbox forbids it
-                    os.setpriority(os.PRIO_PROCESS, thread.native_id or 0, niceness)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
         """Run jobs on the threads, and wait for all of them; an error of one is raised.

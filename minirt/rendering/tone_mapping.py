@@ -101,17 +101,10 @@ def blue_noise() -> np.ndarray:
 
 NO_LINEAR = np.zeros((0, 0, 3))
 DITHERING = sqrt(2)  # ratio of the RMSE of dithering to that of rounding, where all fractions of a level are as likely
-LARGEST_FLOOR = 0.02  # above any error at which rounding decides: of the widest levels of all tones
 STRIP = 64  # lines at once: their data fits a processor's cache
 CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
 
 Job = Callable[[], object]
-
-
-def run_in_turn(jobs: list[Job]) -> None:
-    """Run jobs one after the other."""
-    for job in jobs:
-        job()
 
 
 def map_tones(
@@ -119,35 +112,28 @@ def map_tones(
     pixels: np.ndarray,
     tone: str,
     dither: bool = False,
-    run: Callable[[list[Job]], object] = run_in_turn,
-    threads: int = 1,
     crop: Crop | None = None,
+    part: int = 0,
+    parts: int = 1,
 ) -> None:
     """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
 
-    Pixels whose light is NaN stay as they are. `run` runs jobs side by side. The pattern that dithers begins with the
-    whole picture, of which `crop` may be a part.
+    Pixels whose light is NaN stay as they are. The pattern that dithers begins with the whole picture, of which `crop`
+    may be a part. Of several `parts`, which may be mapped side by side, this maps one.
     """
-    pattern = None
-    if dither:
-        pattern = np.roll(blue_noise(), (-crop.top, -crop.left), axis=(0, 1)) if crop else blue_noise()
-    tops = range(0, len(light), STRIP)
-    run([partial(map_strips, light, pixels, tone, pattern, tops[i::threads]) for i in range(threads)])
-
-
-def map_strips(light: np.ndarray, pixels: np.ndarray, tone: str, pattern: np.ndarray | None, tops: range) -> None:
-    """Map the strips of a picture whose first lines are `tops`; thresholds, if given, dither."""
     curve = tone_named(tone)
-    for top in tops:
+    left, above = (crop.left, crop.top) if crop else (0, 0)
+    for top in range(part * STRIP, len(light), parts * STRIP):
         strip = np.ascontiguousarray(light[top : top + STRIP])
-        if pattern is None:
-            levels = np.searchsorted(curve.halfway, strip, "right").astype(np.uint8)
-        else:
+        if dither:
             exact = np.interp(strip, curve.light, np.arange(LEVELS))
             with np.errstate(invalid="ignore"):  # NaN, whose level is not used
                 levels = exact.astype(np.uint8)
-            rows, columns = np.arange(top, top + len(strip)) % NOISE, np.arange(strip.shape[1]) % NOISE
-            levels += exact - levels > pattern[np.ix_(rows, columns)][..., None]
+            rows = np.arange(above + top, above + top + len(strip)) % NOISE
+            columns = np.arange(left, left + strip.shape[1]) % NOISE
+            levels += exact - levels > blue_noise()[np.ix_(rows, columns)][..., None]
+        else:
+            levels = np.searchsorted(curve.halfway, strip, "right").astype(np.uint8)
         into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
         if known.all():
             into[..., 2::-1], into[..., 3] = levels, 255
@@ -209,7 +195,8 @@ class ToneMapper:
         """Write the levels of a picture, if the kernel has not."""
         scene, pixels, _, crop = request
         if self.needed(scene):
-            map_tones(light, pixels, scene.camera.tone, self.dither, self.run, self.threads, crop)
+            arguments = light, pixels, scene.camera.tone, self.dither, crop
+            self.run([partial(map_tones, *arguments, part, self.threads) for part in range(self.threads)])
 
     def rounding(self, request: Request) -> float:
         """Return the RMSE of rounding or dithering a picture, in light clamped to [0, 1]."""
@@ -217,10 +204,8 @@ class ToneMapper:
             return DITHERING * ROUNDING if self.dither else ROUNDING
         return rounding_error(request.pixels, request.scene.camera.tone, self.dither)
 
-    def floor(self, request: Request, error: float, draw: Callable[[], object]) -> float:
+    def floor(self, request: Request, draw: Callable[[], object]) -> float:
         """Return the error below which rounding decides; `draw` draws a first picture, which tells it for a curve."""
         if request.scene.camera.tone != PLAIN:
-            if error >= LARGEST_FLOOR:
-                return 0.0
             draw()
         return self.rounding(request) / 2

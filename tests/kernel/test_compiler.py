@@ -26,7 +26,7 @@ from minirt.lanes.mathematics import ATAN_HALF, PERIOD
 from minirt.materials import Checker, Clouds
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
-from minirt.rendering.needed_kernels import calls_for, ray_query
+from minirt.rendering.kernels import calls_for, ray_query
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder

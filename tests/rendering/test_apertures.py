@@ -15,7 +15,6 @@ from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, parse
-from minirt.shapes.disc import Disc
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
@@ -66,22 +65,6 @@ def test_the_penumbra_of_a_straight_edge_has_the_share_of_the_disc_that_is_seen(
     if kind != "parallel":  # the penumbra is as wide as the lamp times the ratio of the distances
         width = 0.8 * SCREEN / (TOP - SCREEN)
         assert abs((share * (1 - share) > 1e-9).sum() * 4 / ACROSS - width) <= 2 * 4 / ACROSS
-
-
-def test_umbra_and_penumbra_of_a_ball_end_where_its_tangents_do() -> None:
-    # A lamp of radius 1, 12 above the floor; a disc of radius 1.5, 8 above the lamp's shadow: similar triangles.
-    eye = Camera((0, 6, 0), (0, -1, 0), 2 * np.degrees(np.arctan(8 / 6)))
-    scene = Scene((eye, Light((0, 12, 0), 1.0, size=2.0), Disc((0, 7, 0), (0, 1, 0), 3.0, WHITE), FLOOR))
-    size = 64
-    row = linear(scene, size, size, 256, RENDERER)[size // 2, :, 0]
-    x = np.abs(16 * (np.arange(size) + 0.5) / size - 8)
-    umbra, penumbra = 1.5 + (1.5 - 1.0) * 7 / 5, 1.5 + (1.5 + 1.0) * 7 / 5
-    lit = np.hypot(12, x) ** -1 * 12
-    assert (row[x < umbra - 0.25] == 0).all()
-    assert (
-        row[(x > umbra + 0.35) & (x < penumbra - 0.5)] < 0.98 * lit[(x > umbra + 0.35) & (x < penumbra - 0.5)]
-    ).all()
-    assert_allclose(row[x > penumbra + 0.25], lit[x > penumbra + 0.25], rtol=0.01)
 
 
 @pytest.mark.parametrize(("distance", "focus"), [(5.0, 10.0), (20.0, 10.0), (30.0, 6.0)])

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import minirt
-from minirt.rendering import buffers as module
 from minirt.rendering.buffers import Buffers
 from tests import reference
 from tests.reference.hits import first_hits
@@ -49,13 +48,6 @@ def test_a_triangle_of_a_mesh_has_the_buffers_of_a_triangle(tmp_path: Path) -> N
     assert (one.shape == 0).sum() > 100
     assert np.array_equal(one.shape, other.shape)
     assert np.allclose(one.uv, other.uv, rtol=0, atol=1e-9, equal_nan=True)
-
-
-def test_blocks_of_hits_make_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = SCENES[next(iter(SCENES))]
-    whole = seen(scene)
-    monkeypatch.setattr(module, "BLOCK", 7)
-    assert np.array_equal(seen(scene).uv, whole.uv, equal_nan=True)
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -31,35 +31,19 @@ def crops(scene: Scene, region: tuple[int, int, int, int], **settings: Any) -> l
     return [(alone.array, alone.linear), (whole.array[inside], whole.linear[inside])]
 
 
-def assert_same(scene: Scene, regions: tuple[tuple[int, int, int, int], ...] = REGIONS, **settings: Any) -> None:
-    for region in regions:
-        for alone, cut in zip(*crops(scene, region, **settings), strict=True):
-            assert np.array_equal(alone, cut), f"{settings}: {region}"
-
-
 @pytest.mark.parametrize(
-    "settings",
-    [{}, {"samples": 5}, {"dither": True, "samples": 2}, {"precision": "single"}, {"depth": 0}],
-    ids=str,
+    ("scene", "settings"),
+    [
+        *((EVERY, each) for each in ({}, {"samples": 5}, {"dither": True}, {"precision": "single"}, {"depth": 0})),
+        *((EVERY.replace(EVERY.camera, tone=tone), {"dither": True}) for tone in ("srgb", "filmic")),
+        *((soft_scene(0.5), {"samples": samples}) for samples in (1, 4, 100)),
+        *((scene, {}) for scene in (SKY, Scene((SKY.camera,)))),
+    ],
 )
-def test_a_region_is_a_crop_of_the_picture(settings: dict[str, Any]) -> None:
-    assert_same(EVERY, **settings)
-
-
-@pytest.mark.parametrize("tone", ["srgb", "filmic"])
-def test_tones_and_dithering_of_a_region_are_those_of_the_picture(tone: str) -> None:
-    assert_same(EVERY.replace(EVERY.camera, tone=tone), REGIONS[1:3], dither=True)
-
-
-@pytest.mark.parametrize("samples", [1, 4, 100])
-def test_samples_of_lenses_and_soft_lights_are_those_of_the_picture(samples: int) -> None:
-    scene = soft_scene()
-    assert_same(scene.replace(scene.camera, lens=0.3), REGIONS[1:4], samples=samples)
-
-
-def test_a_region_of_a_scene_without_shapes() -> None:
-    assert_same(SKY)
-    assert_same(Scene((SKY.camera,)))
+def test_a_region_is_a_crop_of_the_picture(scene: Scene, settings: dict[str, Any]) -> None:
+    for region in REGIONS:
+        for alone, cut in zip(*crops(scene, region, **settings), strict=True):
+            assert np.array_equal(alone, cut), region
 
 
 def test_a_region_takes_the_tiles_that_it_touches_and_no_others() -> None:

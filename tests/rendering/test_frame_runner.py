@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import _thread
+import gc
+import os
 from collections.abc import Callable
 from itertools import count
-from threading import Thread
+from pathlib import Path
+from threading import Event, Thread
 from typing import TypeVar
 
 import numpy as np
@@ -13,8 +17,9 @@ from numpy.typing import NDArray
 
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.pixels import PACKET_HEIGHT
-from minirt.rendering import Renderer, frame_runner
+from minirt.rendering import Renderer, frame_runner, threads
 from minirt.rendering.frame import sample_positions
+from minirt.rendering.threads import ThreadPool, usable_cores
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture
 from tests.waiting import HANG_LIMIT, until
@@ -208,5 +213,86 @@ def test_samples_lie_evenly_in_the_pixel(samples: int) -> None:
     assert np.ptp(quarters) <= max(1, samples / 8)
 
 
-def test_one_sample_is_in_the_centre() -> None:
-    assert sample_positions(1).tolist() == [[0.5, 0.5]]
+# The threads that run jobs, and their number.
+
+
+def test_an_error_of_a_job_is_raised_and_cancels_the_others() -> None:
+    cancelled = Event()
+    with pytest.raises(ZeroDivisionError):
+        ThreadPool(3).run([lambda: 1 / 0, lambda: cancelled.wait(HANG_LIMIT)], cancelled.set)
+    assert cancelled.is_set()
+
+
+def test_ctrl_c_just_before_the_wait_is_seen() -> None:
+    """`interrupt_main` does what the handler of a signal does, but ends no wait of the main thread."""
+    cancelled, seen = Event(), list[bool]()
+
+    def job() -> None:
+        _thread.interrupt_main()
+        seen.append(cancelled.wait(HANG_LIMIT))
+
+    with pytest.raises(KeyboardInterrupt):
+        ThreadPool(1).run([job], cancelled.set)
+    assert seen == [True]
+
+
+def test_the_threads_of_a_dropped_pool_end() -> None:
+    pool = ThreadPool(2)
+    threads = pool.threads
+    del pool
+    gc.collect()
+    for thread in threads:
+        thread.join(HANG_LIMIT)
+        assert not thread.is_alive()
+
+
+# The number of usable processors: affinity of the process, limit of its container.
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A machine with eight processors, and the file that limits its container."""
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: set(range(8)), raising=False)
+    monkeypatch.setattr(threads, "QUOTA", tmp_path / "cpu.max")
+    return tmp_path / "cpu.max"
+
+
+@pytest.mark.parametrize(
+    ("quota", "expected"),
+    [
+        ("max 100000", 8),
+        ("200000 100000", 2),
+        ("350000 100000", 4),
+        ("50000 100000", 1),
+        ("1000 100000", 1),
+        ("1600000 100000", 8),
+        ("150000 50000\n", 3),
+        ("", 8),
+        ("what is this", 8),
+    ],
+)
+def test_a_container_limits_the_number(machine: Path, quota: str, expected: int) -> None:
+    machine.write_text(quota)
+    assert usable_cores() == expected
+
+
+@pytest.mark.usefixtures("machine")
+def test_without_a_container_all_processors_count() -> None:
+    assert usable_cores() == 8
+
+
+@pytest.mark.usefixtures("machine")
+def test_the_affinity_of_the_process_limits_the_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = {0: {3, 5}}  # 0 stands for the calling process
+    monkeypatch.setattr(os, "sched_getaffinity", own.__getitem__)
+    assert usable_cores() == 2
+
+
+@pytest.mark.usefixtures("machine")
+@pytest.mark.parametrize(("count", "expected"), [(6, 6), (None, 1)])
+def test_without_affinities_all_processors_count(
+    monkeypatch: pytest.MonkeyPatch, count: int | None, expected: int
+) -> None:
+    monkeypatch.delattr(os, "sched_getaffinity")
+    monkeypatch.setattr(os, "cpu_count", lambda: count)
+    assert usable_cores() == expected

@@ -15,12 +15,19 @@ from minirt.kernel.machine_code import cache, functions
 from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
-from minirt.kernel.machine_code.library import LIBRARY, Library, identity_of
+from minirt.kernel.machine_code.library import Library, identity_of
 from minirt.materials import Checker
 from minirt.rendering import Renderer, ahead_of_time, kernels
 from minirt.rendering.frame import Frame, frame_arguments
-from minirt.rendering.kernels import Choice, Kernels, generic_identity
-from minirt.rendering.needed_kernels import generic_call, kernel_features, minimal_scene, packing_calls
+from minirt.rendering.kernels import (
+    Choice,
+    Kernels,
+    generic_call,
+    generic_identity,
+    kernel_features,
+    minimal_scene,
+    packing_calls,
+)
 from minirt.rendering.notes import NO_GENERIC_KERNEL
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
 from minirt.rendering.packing.visibility import SMALL
@@ -29,7 +36,7 @@ from minirt.scene import Ambient, Light, ParallelLight, Scene, parse
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.sphere import Sphere
-from tests.kernel.pictures import ALL, EYE, SHAPES
+from tests.kernel.pictures import EYE
 from tests.meshes.examples import GREY, named
 from tests.skipping import skip_incomplete
 from tests.waiting import until
@@ -186,10 +193,6 @@ def test_the_specialised_kernel_is_swapped_in_and_draws_the_same_bits(
     assert renderer.notes[0] == "kernel for spheres"
 
 
-def test_the_background_compiler_has_the_lowest_priority() -> None:
-    assert kernels.BackgroundCompiler().process.patient
-
-
 def test_a_generic_kernel_stays_where_the_specialised_one_cannot_be_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -226,20 +229,6 @@ SPHERE = Sphere((0, 0, 0), 1, GREY)
 SUN = ParallelLight((0, -1, 0), 0.5)
 
 
-def test_a_kernel_is_ready_for_all_scenes_of_its_kinds(monkeypatch: pytest.MonkeyPatch) -> None:
-    renderer, there = Renderer(1), set[str]()
-    monkeypatch.setattr(LIBRARY, "has", there.__contains__)
-    assert renderer.is_ready(Scene((EYE,)))
-    assert not renderer.is_ready(ALL)
-    there.update(renderer.kernels.specialised(ALL))
-    assert renderer.is_ready(ALL)
-    assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
-    assert not renderer.is_ready(Scene((EYE, SHAPES[0])))
-    there.update(renderer.kernels.for_all_scenes)
-    assert renderer.is_ready(Scene((EYE, SHAPES[0])))
-    assert kernel_features(ALL) == {type(shape) for shape in SHAPES}
-
-
 def test_the_minimal_scene_needs_the_same_kernel() -> None:
     balls = [Sphere((i, 0, 0), 1, GREY, mirror=0.5 if i == 70 else None) for i in range(100)]
     tube = Cylinder((0, 0, 0), (0, 1, 0), 1, 2, GREY, checker=Checker(0.1))
@@ -262,7 +251,6 @@ def test_the_minimal_scene_of_a_large_mesh_is_small() -> None:
 
 
 PROCESSOR = "x86-64-v3"
-FUNCTIONS = 5  # that pack scenes
 
 
 @pytest.fixture
@@ -282,7 +270,7 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_every_generic_kernel_is_compiled_once(compiled: list[str], tmp_path: Path) -> None:
-    number = len(GENERIC_KERNELS) + FUNCTIONS + 2  # with the query for single rays, and contrast
+    number = len(GENERIC_KERNELS) + len(packing_calls()) + 1  # with the query for single rays
     assert ahead_of_time.build(tmp_path, PROCESSOR) == number
     assert len(set(compiled)) == len(compiled) == number == len(list(tmp_path.iterdir()))
     for generic in GENERIC_KERNELS:

@@ -12,7 +12,6 @@ from PIL import Image
 from minirt.kernel.scene_arrays import read
 from minirt.materials import Checker
 from minirt.rendering.packing import shape_arrays
-from minirt.rendering.packing.shape_arrays import extent
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -62,19 +61,6 @@ def test_a_scene_may_have_no_ambient_light_and_no_lights() -> None:
     assert arrays.light_cones.shape == (0, len(SHAPES), 5)
     assert len(arrays.light_shapes) == 0
     assert all(group.light_starts.shape == (0, 1) for group in arrays.groups)
-
-
-@pytest.mark.parametrize(
-    ("shape", "expected"),
-    [
-        (Sphere((1, -7, 3), 4, (0, 0, 0)), 9),
-        (Plane((1, -7, 3), (0, 1, 0), (0, 0, 0)), 7),
-        (Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), 10),
-        (Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0)), 21),
-    ],
-)
-def test_the_extent_is_the_largest_coordinate(shape: Any, expected: float) -> None:
-    assert extent(shape) == expected
 
 
 def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:

@@ -14,7 +14,7 @@ from minirt.kernel.bvh_nodes import NODE, REFERENCES
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Specular
 from minirt.rendering import Renderer
-from minirt.rendering.needed_kernels import packing_calls
+from minirt.rendering.kernels import packing_calls
 from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.scene_packing import Packing
 from minirt.report import ablation, pictures

@@ -55,7 +55,6 @@ class FakeRenderer:
         self.cancelled = 0
         self.ready = True
         self.previews = True
-        self.gives_way = False
         self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
         self.prepare_error: Exception | None = None
@@ -123,9 +122,6 @@ class FakeRenderer:
         if self.error:
             raise self.error
         return True
-
-    def give_way(self) -> None:
-        self.gives_way = True
 
     def cancel(self) -> None:
         self.cancel_requested.set()

@@ -71,11 +71,6 @@ def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
     return np.array([shape.bounds() or defining_points(shape) for shape in shapes])
 
 
-def extent(shape: Shape) -> float:
-    """The largest absolute coordinate of a shape; of an infinite shape, of its defining points."""
-    return float(np.abs(bounding_boxes([shape])).max())
-
-
 def defining_points(shape: Shape) -> list[Any]:
     """The points among the fields that define a shape."""
     return [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)]

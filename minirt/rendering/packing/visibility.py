@@ -34,7 +34,6 @@ CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), 
 MEMBER, START = 4, 8  # bytes of a member and of a start of a list
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**29  # bytes of lists that are built within seconds
-SAMPLE = 128  # shapes whose members are counted for an estimate
 RUN = 120  # bytes of a plane in a row of cells, while its runs are computed
 
 # Positive floating-point numbers sort like their bits, the exponent first. Depths sort by their upper 25 bits, from
@@ -166,8 +165,6 @@ def bin_shapes(
     towards = -np.sign(heights[:, None]) * planes[:, :3]
     kinds, stride = len(shape_arrays.rows), grid.cells + 1
     most = most_members(len(shape_arrays.slots), kinds, len(planes), grid, copies, largest)
-    if most < system.UNLIMITED:
-        check_members(estimated_members(kernel, shape_arrays, balls, origin, grid), most, copies)
     cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
     plane_rectangles = np.zeros((0, 4), np.int64)
     if len(planes):
@@ -200,18 +197,6 @@ def most_members(shapes: int, kinds: int, planes: int, grid: Grid, copies: int, 
     if system.is_small_need(fixed + copies * shapes * grid.cells * MEMBER):
         return system.UNLIMITED
     return max(0, min(system.room(), largest) - fixed) // (copies * MEMBER)
-
-
-def estimated_members(kernel: Any, shape_arrays: ShapeArrays, balls: np.ndarray, origin: np.ndarray, grid: Grid) -> int:
-    """Estimate the members of the lists of all cells, infinite planes left out, from those of some shapes."""
-    shapes, first = len(shape_arrays.slots), shape_arrays.first_ball
-    chosen = np.linspace(0, shapes - 1, SAMPLE).astype(np.int64)
-    counts, cones = np.zeros(len(shape_arrays.rows) * (grid.cells + 1), np.int64), np.zeros((1, 5))
-    rectangles = np.empty((len(grid.frames), 4), np.int32)
-    for each in chosen:
-        ends, slots = first[each : each + 2], shape_arrays.slots[each : each + 1]
-        kernel.project_all(origin, grid, balls, 0.0, ends, slots, rectangles, 0, cones, counts)
-    return int(counts.sum()) * shapes // SAMPLE
 
 
 def check_members(count: int, most: int, copies: int) -> None:

@@ -15,6 +15,7 @@ pixel may be missing in the picture and in the estimate.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import inf, sqrt
 from time import perf_counter
 from typing import NamedTuple
@@ -52,31 +53,21 @@ class Sweep(NamedTuple):
     is_first: bool = False  # whether all packets are to be drawn, too, with the first position
 
 
-Draw = Callable[[Sweep], bool]  # False when cancelled
-Classify = Callable[[], tuple[np.ndarray, np.ndarray]]
+Draw = Callable[[Sweep], bool]  # draws packets; False when cancelled
+Classify = Callable[[], tuple[np.ndarray, np.ndarray]]  # the contrast class of each packet, and the size of each class
 
 
+@dataclass(eq=False, repr=False)
 class AutoSampler:
-    """A picture in the making. `draw` draws its packets, `classify` tells their contrast classes (rows,
-    columns), and the number of packets of each."""
+    """A picture in the making."""
 
-    def __init__(
-        self,
-        draw: Draw,
-        classify: Classify,
-        packets: Packets,
-        numbers: int,
-        packet_pixels: int,
-        with_places: bool = False,
-    ) -> None:
-        """`numbers` of the picture: three for each pixel. `with_places`: as for `SampleTable`."""
-        self.draw = draw
-        self.classify = classify
-        self.packets = packets
-        self.numbers = numbers
-        self.packet_pixels = packet_pixels
-        self.with_places = with_places
-        self.speed = inf  # samples of packets a second, in the last sweep
+    draw: Draw
+    classify: Classify
+    packets: Packets
+    numbers: int  # of the picture: three for each pixel
+    packet_pixels: int
+    with_places: bool = False  # as for `SampleTable`
+    speed: float = inf  # samples of packets a second, in the last sweep
 
     def reach(self, error: float, seconds: float) -> Outcome | None:
         """Render until the estimated error is at most `error` or `seconds` have passed, but at least the first sweep.

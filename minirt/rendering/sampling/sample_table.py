@@ -41,9 +41,7 @@ class SampleTable:
             self.drawn_variants[level] = variants_of(count) if with_places else 1
             drawn, pairs = int(self.drawn_variants[level]), int(self.variants[level])
             self.first[level], self.reference[level] = rows, rows + count * drawn
-            parts.append(
-                positions_and_places(count, drawn, pairs, pixels) if with_places else positions_of(count, pairs, pixels)
-            )
+            parts.append(positions_of(count, drawn, pairs, pixels, with_places))
             rows += count * (drawn + 2 * REFERENCE_SAMPLES * pairs)
         self.positions = np.concatenate(parts)
 
@@ -62,25 +60,16 @@ class SampleTable:
 
 
 @lru_cache(32)
-def positions_of(count: int, variants: int, pixels: int) -> np.ndarray:
-    """The positions of a number of drawn samples, and of its references."""
-    drawn = np.broadcast_to(sample_positions(count)[:, None], (count, pixels, 2))
-    lattice, shifts = sample_positions(REFERENCE_SAMPLES * count), random_shifts(variants, pixels)
+def positions_of(count: int, drawn: int, pairs: int, pixels: int, with_places: bool) -> np.ndarray:
+    """The positions of variants of drawn samples and of their references, or also the places in lens and lights."""
+    lattice, shifts = sample_positions(REFERENCE_SAMPLES * count), random_shifts(pairs, pixels)
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
-    return np.concatenate([drawn, references.reshape(-1, pixels, 2)])
-
-
-@lru_cache(32)
-def positions_and_places(count: int, drawn: int, pairs: int, pixels: int) -> np.ndarray:
-    """The positions of variants of drawn samples, and of their references, with their places in lens and lights."""
-    positions = positions_of(count, pairs, pixels)
-    positions = np.concatenate([np.tile(positions[:count], (drawn, 1, 1)), positions[count:]])
-    places = [
-        aperture_places(count, drawn, pixels, 1),
-        aperture_places(REFERENCE_SAMPLES * count, 2 * pairs, pixels, 2),
-    ]
-    return np.concatenate([positions, np.concatenate(places)], axis=-1)
+    positions = np.tile(sample_positions(count)[:, None], (drawn, pixels, 1)), references.reshape(-1, pixels, 2)
+    if not with_places:
+        return np.concatenate(positions)
+    places = aperture_places(count, drawn, pixels, 1), aperture_places(REFERENCE_SAMPLES * count, 2 * pairs, pixels, 2)
+    return np.concatenate([np.concatenate(positions), np.concatenate(places)], axis=-1)
 
 
 @cache

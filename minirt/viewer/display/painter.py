@@ -142,7 +142,6 @@ class BackgroundPainter(Painter):
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, lambda: self._closed or notify())
-        renderer.give_way()
         renderer.specialise_early()
         self._changed = threading.Condition()
         self._waiting: Job | None = None

@@ -49,11 +49,6 @@ def same_bits(one: SceneArrays, other: SceneArrays, samples: int = 1) -> bool:
     return all(a.tobytes() == b.tobytes() for a, b in results)
 
 
-def types_of(arrays: SceneArrays) -> Any:
-    """Return the types for which the compiler compiles the kernel of some arrays."""
-    return typeof(arrays)
-
-
 def every_form(scene: Scene) -> list[tuple[SceneArrays, GenericKernel]]:
     """Return a packed scene in each precision, with each generic kernel that fits it."""
     forms = {packed(scene, precision).camera.dtype: packed(scene, precision) for precision in PRECISIONS}
@@ -105,7 +100,7 @@ def test_all_scenes_have_the_types_of_the_empty_one(scenes: str) -> None:
     }[scenes]()
     for scene in several:
         for arrays, generic in every_form(scene):
-            assert types_of(generalised(arrays, generic)) == types_of(empty_arrays(generic))
+            assert typeof(generalised(arrays, generic)) == typeof(empty_arrays(generic))
 
 
 def test_the_most_specialised_kernel_comes_first() -> None:

@@ -13,15 +13,15 @@ from PIL import Image as pillow  # noqa: N813
 from minirt.element import fields_of
 from minirt.errors import FileError
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.materials import Attributes, Bump, Checker, Compound, Glass, Mirror, Specular, Tint
+from minirt.materials import Attributes, Bump, Checker, Clouds, Compound, Glass, Marble, Mirror, Specular, Tint, Wood
 from minirt.materials.glass import BLACK
 from minirt.rendering import Renderer
-from minirt.rendering.packing import materials
 from minirt.rendering.packing.features import FEATURES, features
-from minirt.rendering.packing.materials import pack_environment, pack_materials
+from minirt.rendering.packing.materials import pack_materials
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Camera, FurtherLight, Scene
+from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
+from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from tests.kernel.pictures import ALL, EYE, ONE, TWO, interpreted, linear
@@ -56,16 +56,6 @@ def test_every_material_names_a_feature() -> None:
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
     plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
     assert pack_materials(plain, np.arange(2), features(plain)) == {}
-
-
-def test_shapes_are_not_inspected_if_all_are_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    inspected: list[Shape] = []
-    monkeypatch.setattr(materials, "ATTRIBUTES", lambda shape: inspected.append(shape) or materials.PLAIN)
-    scene = scene_of(tmp_path, *[BALL] * 3)
-    materials_of(scene, np.arange(3))
-    assert inspected == []
-    pack_materials(scene, np.arange(3), {"specular"})
-    assert inspected == [BALL] * 3
 
 
 def test_each_shape_has_its_row(tmp_path: Path) -> None:
@@ -126,12 +116,6 @@ def test_each_image_is_packed_once(folder: Path) -> None:
     assert np.array_equal(maps.used, [1, 0, 1])
     assert np.array_equal(maps.pictures, [[0, 3, 2, 3], [18, 2, 1, 1]])
     assert np.allclose(maps.texels, [*(np.arange(18) / 255), 0, 1], atol=1e-7)
-
-
-def test_an_image_may_be_the_background(folder: Path) -> None:
-    environment = pack_environment(scene_of(folder), "a.png")
-    assert np.array_equal(environment.pictures, [[0, 3, 2, 3]])
-    assert len(environment.texels) == 18
 
 
 def test_a_missing_image_is_named(tmp_path: Path) -> None:
@@ -205,3 +189,44 @@ def test_the_notes_tell() -> None:
     packing = Packing()
     packing.pack(HIDDEN, *SIZE)
     assert {"no pixel can show highlights: skipped", "no pixel can show mirrors and glass: skipped"} <= {*packing.notes}
+
+
+# The features that a scene uses.
+
+
+LIGHT = Ambient(0.2, GREY)
+SUN = ParallelLight((0, -1, 0), 0.5)
+
+
+def features_of(*elements: object) -> set[object]:
+    return set(features(Scene((LIGHT, EYE, *elements))))  # type: ignore[arg-type]
+
+
+def test_a_plain_scene_uses_only_its_kinds() -> None:
+    assert features_of(BALL, Plane((0, 0, 0), (0, 1, 0), GREY), Light((0, 9, 0), 1)) == {Sphere, Plane}
+
+
+def test_each_feature_is_found_where_it_is_used() -> None:
+    assert features_of(BALL.replace(specular=Specular(0.5, 20))) == {Sphere, "specular"}
+    assert features_of(BALL.replace(mirror=0.5)) == {Sphere, "reflective"}
+    assert features_of(BALL.replace(mirror=Mirror(0.5, 9.0))) == {Sphere, "reflective", "fades"}
+    assert features_of(BALL.replace(mirror=0.5, fresnel=1.0)) == {Sphere, "reflective", "fresnel"}
+    glass = BALL.replace(glass=Glass(1.5))
+    assert features_of(glass) == {Sphere, "reflective", "transparent"}
+    assert features_of(glass.replace(glass=Glass(1.5, fade=9.0))) == {Sphere, "reflective", "transparent", "fades"}
+    assert features_of(glass.replace(tint=Tint((9, 9, 9)))) == {Sphere, "reflective", "transparent", "media"}
+    assert features_of(BALL.replace(glow=0.5)) == {Sphere, "glow"}
+    assert features_of(BALL.replace(checker=Checker(0.5)), BALL) == {Sphere, "checks"}
+    assert features_of(BALL.replace(marble=Marble(1.0), wood=Wood(1.0))) == {Sphere, "patterns"}
+    assert features_of(BALL.replace(clouds=Clouds(1.0, height=0.1))) == {Sphere, "raised_patterns"}
+    assert features_of(Background((0, 0, 9))) == {"background"}
+    assert features_of(SUN) == {"spots", "parallel"}
+    assert features_of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
+    assert features_of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
+
+
+def test_elements_without_effect_use_no_feature() -> None:
+    no_effect = BALL.replace(specular=Specular(0, 20), mirror=Mirror(0.0, 9.0), glass=Glass(1.5, 0), glow=0.0)
+    needs_more = BALL.replace(tint=Tint((9, 9, 9)), fresnel=1.0)
+    black = SpotLight((0, 9, 0), (0, -1, 0), 40, 0), ParallelLight((0, -1, 0), 1, (0, 0, 0))
+    assert features_of(no_effect, Background((0, 0, 0)), *black, needs_more) == {Sphere}

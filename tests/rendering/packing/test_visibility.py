@@ -19,7 +19,6 @@ from minirt.kernel.shadow_rays import light_buffer_cell
 from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing import visibility
-from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Light, Scene, parse
@@ -197,32 +196,6 @@ def test_a_huge_ball_is_not_listed_above_its_horizon() -> None:
     listed = np.diff(arrays.groups[0].tile_starts).reshape(20, 20) > 0
     assert listed[13:].all()
     assert not listed[:9].any()
-
-
-@KERNELS
-def test_an_infinite_ball_is_in_all_cells_at_distance_zero(kernel: Any) -> None:
-    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube_grid(2)
-    rectangles, cones, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
-    place = np.zeros((1, 2), np.int64)
-    for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
-        arguments = origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, cones, counts
-        counts[:] = 0
-        assert kernel.project_all(*arguments) == 6
-        assert cones[0, 3:].tolist() == [-2, 0]
-        assert counts.tolist() == [1] * 24 + [0]
-
-
-@pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
-def test_more_shapes_have_more_cells(shapes: int) -> None:
-    grid, half = (visibility.light_buffer_cells(shape_arrays_of(count)) for count in (shapes, max(1, shapes // 2)))
-    assert grid >= half
-    assert (grid == 1) == (shapes <= 8)
-
-
-def shape_arrays_of(count: int) -> ShapeArrays:
-    tables = ShapeArrays()
-    tables.update((Sphere((0, 0, 0), 1, (1, 2, 3)),) * count)
-    return tables
 
 
 @KERNELS

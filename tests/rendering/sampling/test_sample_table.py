@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import count
+from math import sqrt
 
 import numpy as np
 import pytest
@@ -12,24 +14,32 @@ from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
 from minirt.rendering.frame import sample_positions
 from minirt.rendering.packing.camera import packet_pixels, packet_rays
-from minirt.rendering.sampling.contrast import CLASSES
+from minirt.rendering.sampling.contrast import (
+    CLASSES,
+    LINES,
+    SQUARED_ROUNDING,
+    contrast_classes,
+    estimated_error,
+)
 from minirt.rendering.sampling.packets import PRIOR, Packets, allocate, coefficients, places_of
 from minirt.rendering.sampling.packets import squared_error as sum_of_errors
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_shifts, table_rays
+from tests.kernel.pictures import TWO
+from tests.rendering.sampling.test_auto import FACTOR, HEIGHT, KNOWN, WIDTH, reference, rms
 
-WIDTH = 4 * PACKET_HEIGHT
+RAYS = 4 * PACKET_HEIGHT
 
 
 def test_drawn_samples_are_those_of_a_uniform_picture() -> None:
     levels = np.array([0, 3, 7])
-    table = SampleTable(levels, WIDTH)
+    table = SampleTable(levels, RAYS)
     for level in levels:
         drawn = table.positions[table.first[level] :][: COUNTS[level]]
         assert np.array_equal(drawn, np.broadcast_to(sample_positions(COUNTS[level])[:, None], drawn.shape))
 
 
 def test_plans_name_rows_of_the_table_and_references_differ() -> None:
-    table = SampleTable(np.arange(12), WIDTH)
+    table = SampleTable(np.arange(12), RAYS)
     levels = np.arange(600) % 12
     plan = table.plan(levels.astype(np.uint8), levels % 2 > 0)
     assert np.array_equal(plan[:, 1], COUNTS[levels])
@@ -38,14 +48,14 @@ def test_plans_name_rows_of_the_table_and_references_differ() -> None:
     assert ends.max() <= len(table.positions)
     assert (table.positions >= 0).all()
     assert (table.positions < 1).all()
-    for _, count, reference in plan[plan[:, 2] > 0][:20]:
-        one, other = table.positions[reference:][: 2 * REFERENCE_SAMPLES * count].reshape(2, -1, WIDTH, 2)
+    for _, number, first in plan[plan[:, 2] > 0][:20]:
+        one, other = table.positions[first:][: 2 * REFERENCE_SAMPLES * number].reshape(2, -1, RAYS, 2)
         assert not np.isclose(one, other).all(axis=(0, 2)).any()
 
 
 def test_references_have_no_bias() -> None:
     """The mean of a function with an edge over many shifts is its mean over the pixel."""
-    shifts = random_shifts(2000, WIDTH).reshape(-1, 2)
+    shifts = random_shifts(2000, RAYS).reshape(-1, 2)
     positions = (sample_positions(REFERENCE_SAMPLES)[:, None] + shifts) % 1.0
     assert (positions @ (0.3, 0.8) < 0.4).mean() == pytest.approx(0.5 - 0.3 / 2 / 0.8, abs=0.003)
 
@@ -65,7 +75,6 @@ def test_rays_are_those_of_packets(precision: type[np.floating]) -> None:
 
 Array = NDArray[np.float64]
 
-RAYS = 4 * PACKET_HEIGHT
 TRIALS, SPREAD = 500, 0.1  # of the references around the light
 SIZES, C = (20_000, 900, 100), (1e-6, 0.01, 0.3)  # of classes 0, 4 and 7, and their squared errors with one sample
 CLASSES_USED = (0, 4, 7)
@@ -196,3 +205,89 @@ def test_places_keep_the_mean_number_of_samples() -> None:
     levels = (places_of(samples)[:, None] + dither).astype(int)
     assert COUNTS[levels].mean(axis=1) == pytest.approx(samples, rel=0.07)
     assert (COUNTS[levels[0]] == 1).all()
+
+
+# Contrast of packets, and the estimated error of refined pictures.
+
+
+Pixels = NDArray[np.uint8]
+
+
+# Contrast classes of packets, compared with a loop over the pixels.
+
+
+def run(jobs: list[Callable[[], object]]) -> None:
+    for job in reversed(jobs):
+        job()
+
+
+def by_loop(pixels: Pixels, packet_width: int) -> NDArray[np.int64]:
+    height, width, _ = pixels.shape
+    greatest = np.zeros((-(-height // PACKET_HEIGHT), -(-width // packet_width)), np.int64)
+    for y in range(height):
+        for x in range(width):
+            for b, a in ((y, x + 1), (y + 1, x), (y, x - 1), (y - 1, x)):
+                if 0 <= b < height and 0 <= a < width:
+                    difference = np.abs(pixels[y, x].astype(int) - pixels[b, a]).max()
+                    packet = y // PACKET_HEIGHT, x // packet_width
+                    greatest[packet] = max(greatest[packet], difference)
+    return np.ceil(np.log2(greatest + 1)).astype(int)
+
+
+@pytest.mark.parametrize("packet_width", [4, 8])
+@pytest.mark.parametrize("size", [(1, 1), (3, 50), (8, 16), (29, 31), (5 * PACKET_HEIGHT + 1, 9)])
+@pytest.mark.parametrize("spread", [0, 1, 7, 255])
+def test_classes_are_those_of_the_greatest_difference(size: tuple[int, int], packet_width: int, spread: int) -> None:
+    random = np.random.default_rng(spread)
+    pixels = np.full((*size, 4), 255, np.uint8)
+    few = random.random(size) < 0.1  # so that some packets have one pixel that differs
+    pixels[..., :3] = 90
+    pixels[few, :3] = random.integers(90 - spread // 3, 91 + spread // 2, (np.count_nonzero(few), 3))
+    classes, counts = contrast_classes(pixels, packet_width, run, threads=3)
+    assert np.array_equal(classes, by_loop(pixels, packet_width))
+    assert np.array_equal(counts, np.bincount(classes.ravel(), minlength=CLASSES))
+
+
+# The estimated error of refined pictures, compared with pictures of many samples.
+
+
+@pytest.mark.parametrize("name", ["all", "demo", "subject", "everything", "random"])
+def test_the_estimate_is_near_the_true_error(name: str) -> None:
+    pixels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
+    assert TWO.render(KNOWN[name], pixels)
+    fewer = 1
+    for samples in (4, 16):
+        before = pixels.copy()
+        assert TWO.refine(KNOWN[name], pixels, samples)
+        estimate = estimated_error(before, pixels, fewer, samples)
+        assert estimate is not None
+        assert 1 / FACTOR < estimate / rms(pixels[..., 2::-1] / 255 - reference(name)) < FACTOR
+        fewer = samples
+
+
+def test_a_picture_that_does_not_change_has_the_error_of_rounding() -> None:
+    pixels = np.full((9, 7, 4), 200, np.uint8)
+    assert estimated_error(pixels, pixels, 1, 4) == pytest.approx(sqrt(1 / 12) / 255)
+
+
+def test_large_differences_do_not_overflow() -> None:
+    black, white = np.zeros((9, 7, 4), np.uint8), np.full((9, 7, 4), 255, np.uint8)
+    black[..., 3] = 255
+    assert estimated_error(black, white, 1, 4) == pytest.approx(1 / 3, rel=1e-4)
+    assert estimated_error(white, black, 4, 4) == pytest.approx(sqrt(1 / 2), rel=1e-4)
+
+
+TALL = np.random.default_rng(1).integers(0, 256, (2, 3 * LINES + 5, 7, 4), np.uint8)
+TALL[..., 3] = 255
+
+
+def test_the_estimate_covers_all_strips() -> None:
+    squared = ((TALL[0].astype(float) - TALL[1])[..., :3] ** 2).mean()
+    assert estimated_error(*TALL, 1, 4) == pytest.approx(sqrt(squared / 9 + SQUARED_ROUNDING) / 255)
+
+
+def test_an_estimate_that_is_no_longer_wanted_ends_after_a_strip() -> None:
+    for asked in range(4):
+        questions = count()
+        assert estimated_error(*TALL, 1, 4, lambda: next(questions) < asked) is None  # noqa: B023
+        assert next(questions) == asked + 1

@@ -54,7 +54,6 @@ def harness():
 
 
 def test_a_finished_picture_is_notified(harness):
-    assert harness.renderer.gives_way  # to the event loop
     harness.painter.request(JOB)
     (outcome,) = harness.outcomes(1)
     assert (outcome.pixels == colour_of(JOB.scene)).all()
