@@ -8,9 +8,11 @@ minirt.render(scene, 640, 480, samples=4).save("demo.png")
 from __future__ import annotations
 
 import os
+import re
 import sys
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
@@ -56,44 +58,18 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.scene import loads as loads
     from minirt.scene import size_of as size_of
     from minirt.shapes import *  # noqa: F403
+    from minirt.shapes import Shape as Shape
 
 __version__ = "0.1.0"
 
-# Names that are imported on first use, so that `miniRT --help` need not wait for them.
-MODULES = {
-    "minirt.cluster.pictures": ("render_all", "render_to"),
-    "minirt.element": ("Element",),
-    "minirt.errors": ("FileError", "MiniRTError", "MlxError", "RenderError", "ReplayError", "SceneError"),
-    "minirt.example_scenes": ("example", "examples"),
-    "minirt.fields": ("MeshFile",),
-    "minirt.rendering.image": ("Image", "LinearImage"),
-    "minirt.helpers.system": ("limit_memory",),
-    "minirt.notebook": ("view",),
-    "minirt.rendering": ("Renderer",),
-    "minirt.rendering.buffers": ("Buffers", "buffers"),
-    "minirt.rendering.renderer": ("renderer",),
-    "minirt.rendering.settings": ("DEFAULT_ERROR", "render"),
-    "minirt.rendering.queries.rays": ("Hits", "camera_rays", "trace"),
-    "minirt.movie": ("save_movie",),
-    "minirt.scene": (
-        *("Ambient", "Background", "Camera", "Lamp", "Resolution", "Scene", "dumps", "loads"),
-        *("DEFAULT_SIZE", "size_of"),
-    ),
-    "minirt.shapes": ("Shape",),
-}
-HOMES = {name: module for module, names in MODULES.items() for name in names}
-REGISTRIES = (
-    "minirt.shapes",
-    "minirt.materials",
-    "minirt.scene.lights",
-)  # the names in their `PUBLIC` are public here, too
+REGISTRIES = "minirt.shapes", "minirt.materials", "minirt.scene.lights"  # whose `PUBLIC` names are public here, too
 OWN = ("load",)
 
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        if name in HOMES:
-            return getattr(import_module(HOMES[name]), name)
+        if name in homes():
+            return getattr(import_module(homes()[name]), name)
         if name == "__all__":  # asked for by `from minirt import *`, and by pdoc, which then reads the names' values
             globals().update({each: getattr(sys.modules[__name__], each) for each in public_names()})
             return public_names()
@@ -108,7 +84,17 @@ def __dir__() -> list[str]:
 
 def public_names() -> list[str]:
     """All public names, in alphabetical order."""
-    return sorted((*OWN, *HOMES, *registered()))
+    return sorted({*OWN, *homes(), *registered()})
+
+
+@cache
+def homes() -> dict[str, str]:
+    """The modules of the names that the head of this file imports for type checkers.
+
+    At run time they are imported on first use, so that `miniRT --help` need not wait for them.
+    """
+    source = Path(__file__).read_text(encoding="utf-8")
+    return {name: module for module, name in re.findall(r"^    from (\S+) import (\w+) as", source, re.MULTILINE)}
 
 
 @cache

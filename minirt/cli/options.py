@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from contextlib import suppress
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
 
 from minirt.cli.arguments import MAX_SIDE, suggestion
 from minirt.errors import FileError
@@ -39,7 +38,6 @@ shopt -s extglob 2>/dev/null
 complete -o filenames -F _miniRT miniRT
 """
 ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
-ANY_VALUE = "return"  # leaves a value to the user
 FILES = {"output", "fallback", "replay", "report", "config"}  # options whose value is a path
 FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
 
@@ -133,12 +131,18 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
     scene = options.scene[0]
     if not files.is_picture(scene):
         return options
-    usable = CARRIED if options.output else IN_WINDOWS_TOO
+    usable = actions_of(parser, CARRIED if options.output else IN_WINDOWS_TOO).values()
+    actions = {option: action for action in usable for option in action.option_strings}
     changed = argparse.Namespace(**vars(options))
-    for name, value in carried(parser, files.picture_settings(scene)).items():
-        if name in usable and getattr(options, name) == parser.get_default(name):
-            setattr(changed, name, value)
-    if not options.output or changed.samples != "auto":
+    words = files.picture_settings(scene).split()
+    for word, value in zip_longest(words, words[1:], fillvalue=""):
+        action = actions.get(word)
+        if action and getattr(options, action.dest) == action.default:
+            with suppress(ValueError):
+                setattr(changed, action.dest, value_of(action, True if action.nargs == 0 else value))
+    if max(changed.size or (0,)) > MAX_SIDE:
+        changed.size = options.size
+    if changed.samples != "auto":
         changed.error, changed.time = options.error, options.time
     (x, y, across, down), (width, height) = changed.region or (0, 0, 1, 1), changed.size or (0, 0)
     if not options.region and (x + across > width or y + down > height):
@@ -146,24 +150,11 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
     return changed
 
 
-def carried(parser: argparse.ArgumentParser, text: str) -> dict[str, object]:
-    """Return the settings in a text by their names, without those that the parser would refuse."""
-    actions = {option: action for action in actions_of(parser, CARRIED).values() for option in action.option_strings}
-    found: dict[str, object] = {}
-    words = text.split()
-    for word, value in zip_longest(words, words[1:], fillvalue=""):
-        if action := actions.get(word):
-            with suppress(ValueError):
-                found[action.dest] = value_of(action, True if action.nargs == 0 else value)
-    size: Any = found.get("size", (1, 1))
-    return found if max(size) <= MAX_SIDE else {name: value for name, value in found.items() if name != "size"}
-
-
 def completion(parser: argparse.ArgumentParser, shell: str) -> str:
     """Return the script for bash, zsh or fish."""
     actions = [action for action in parser._actions if action.option_strings]
     if shell == "fish":
-        return "\n".join(fish_line(action) for action in actions) + "\n" + FISH_SCENES
+        return "\n".join([*map(fish_line, actions), FISH_SCENES])
     script = BASH.format(
         cases="\n".join(bash_case(action) for action in actions if action.nargs != 0),
         options=shlex.quote(" ".join(option for action in actions for option in action.option_strings)),
@@ -172,14 +163,14 @@ def completion(parser: argparse.ArgumentParser, shell: str) -> str:
 
 
 def bash_case(action: argparse.Action) -> str:
-    """Return the case of an option that takes a value."""
-    options = "|".join(action.option_strings)
-    if action.choices:
-        words = shlex.quote(" ".join(map(str, action.choices)))
-        return f'        {options}) COMPREPLY=($(compgen -W {words} -- "$word")); return ;;'
-    if action.dest in FILES:
-        return f'        {options}) COMPREPLY=($(compgen -f -- "$word")); return ;;'
-    return f"        {options}) {ANY_VALUE} ;;"
+    """Return the case of an option that takes a value; one that is neither a choice nor a path is left to the user."""
+    values = "-f" if action.dest in FILES else "-W " + words_of(action)
+    return f'        {"|".join(action.option_strings)}) COMPREPLY=($(compgen {values} -- "$word")); return ;;'
+
+
+def words_of(action: argparse.Action) -> str:
+    """Return the choices of an option, in quotes for a shell."""
+    return shlex.quote(" ".join(map(str, action.choices or ())))
 
 
 def fish_line(action: argparse.Action) -> str:
@@ -187,6 +178,6 @@ def fish_line(action: argparse.Action) -> str:
     names = [f"-s {name[1:]}" if len(name) == 2 else f"-l {name[2:]}" for name in action.option_strings]
     value = "" if action.nargs == 0 else "-r" if action.dest in FILES else "-x"
     if action.choices:
-        value += " -a " + shlex.quote(" ".join(map(str, action.choices)))
+        value += f" -a {words_of(action)}"
     about = (action.help or "").replace("%%", "%").partition(";")[0]
     return " ".join(["complete -c miniRT", *names, value, "-d", "'" + about.replace("'", "\\'") + "'"])

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Callable
 from contextlib import suppress
 from io import TextIOWrapper
 from typing import TextIO
@@ -41,24 +40,13 @@ def hide_warnings() -> None:
 
 
 def say(text: object, end: str = "\n") -> None:
-    """Print to standard output; RenderError when that fails."""
-    written(lambda: print(text, end=end, flush=True))
-
-
-def say_bytes(data: bytes) -> None:
-    """Write data to standard output; RenderError when that fails."""
-
-    def write() -> None:
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
-
-    written(write)
-
-
-def written(write: Callable[[], None]) -> None:
-    """Call a function that writes to standard output; RenderError when that fails."""
+    """Print to standard output, bytes as they are; RenderError when that fails."""
     try:
-        write()
+        if isinstance(text, bytes):
+            sys.stdout.buffer.write(text)
+        else:
+            print(text, end=end)
+        sys.stdout.flush()
     except OSError as error:
         mute(sys.stdout)
         if isinstance(error, BrokenPipeError):  # its reader knows

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.files import check_output, format_name, is_film, needs_light
-from minirt.cli.output import say_bytes, tell
+from minirt.cli.output import say, tell
 from minirt.cluster.job import Job
 from minirt.cluster.journal import Journal, delete, path_for
 from minirt.cluster.pictures import picture_of, results, stream
@@ -195,21 +195,18 @@ def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | No
 
 def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) -> None:
     """Write a picture to a file, or to standard output as PNG when `output` is `-`; PNG carries scene and settings."""
-    texts = texts_for(output, scene, options) if options.metadata else {}
+    texts = {}
+    if options.metadata:
+        from minirt.cli.options import settings_text
+        from minirt.scene import dump, files
+
+        way = files.way_to_scene("" if output == "-" else output, scene.file)
+        texts = files.picture_texts(dump(scene), settings_text(options, *(options.size or size_of(scene))), way)
+    how: dict[str, Any] = {"bits": options.bits, "quality": options.quality, "texts": texts}
     if output == "-":
-        say_bytes(image.encode(bits=options.bits, quality=options.quality, texts=texts))
-        return
-    image.save(output, bits=options.bits, quality=options.quality, texts=texts)
-
-
-def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[str, str]:
-    """Return the texts that a picture of the scene carries."""
-    from minirt.cli.options import settings_text
-    from minirt.scene import dump, files
-
-    width, height = options.size or size_of(scene)
-    way = files.way_to_scene("" if output == "-" else output, scene.file)
-    return files.picture_texts(dump(scene), settings_text(options, width, height), way)
+        say(image.encode(**how))
+    else:
+        image.save(output, **how)
 
 
 def settings_for(options: argparse.Namespace) -> RenderSettings:

@@ -8,6 +8,8 @@ import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from itertools import islice
+from multiprocessing import get_context, parent_process
+from threading import Thread
 from typing import Any, TypeAlias
 
 from minirt.cluster.job import Job, Made
@@ -32,7 +34,6 @@ class Dispatcher:
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)
         self.executor: Executor = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
-        self.running: dict[Future[Made], Job] = {}
         self.last: tuple[object, Any] = None, b""  # the scene that was packed last, and its bytes
 
     @property
@@ -47,28 +48,26 @@ class Dispatcher:
     ) -> Iterator[tuple[Job, Made]]:
         """Yield bands and what was made of them, here or before; RenderError where one fails or its worker dies."""
         rest = iter(bands)
-        waiting: dict[int, Job] = {}
-        made: dict[int, Made] = {}  # that wait for their turn
+        running: dict[Future[Made], Job] = {}
         try:
             while True:
-                for band in islice(rest, max(0, OF_EACH * self.count - len(waiting))):
-                    waiting[band.number] = band
-                    if kept := restore(band):
-                        made[band.number] = kept
-                    else:
-                        self.running[self.submitted(band)] = band
-                if not waiting:
+                for band in islice(rest, max(0, OF_EACH * self.count - len(running))):
+                    running[self.future(band, restore(band))] = band
+                if not running:
                     return
-                turn = next(iter(waiting if in_order else made), None)
-                if turn in made:
-                    yield waiting.pop(turn), made.pop(turn)
-                else:
-                    made.update(self.collected())
+                ready = running if in_order else wait(running, return_when=FIRST_COMPLETED).done
+                future = next(iter(ready))
+                band = running.pop(future)
+                yield band, made_of(band, future)
         finally:
-            self.close()
+            self.close(running)
 
-    def submitted(self, band: Job) -> Future[Made]:
-        """Send a band to a worker. Scenes that differ in the camera alone are packed once."""
+    def future(self, band: Job, kept: Made | None) -> Future[Made]:
+        """Send a band to a worker, unless it is kept. Scenes that differ in the camera alone are packed once."""
+        if kept:
+            done: Future[Made] = Future()
+            done.set_result(kept)
+            return done
         scene, settings = band.scene, band.settings
         others = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
         if self.last[0] != others:
@@ -85,23 +84,9 @@ class Dispatcher:
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
 
-    def collected(self) -> Iterator[tuple[int, Made]]:
-        """Wait for some bands, and yield their numbers and what was made of them."""
-        done, _ = wait(self.running, return_when=FIRST_COMPLETED)
-        for future in done:
-            band = self.running.pop(future)
-            try:
-                yield band.number, future.result()
-            except MiniRTError:
-                raise
-            except Exception as error:
-                if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
-                    raise RenderError(f"{band.what}: its worker died") from error
-                raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
-
-    def close(self) -> None:
+    def close(self, running: Iterable[Future[Made]]) -> None:
         """Cancel what has not been made, and end the executor if it was made here."""
-        unfinished = [each for each in self.running if not each.done()]
+        unfinished = [each for each in running if not each.done()]
         for each in unfinished:
             each.cancel()
         if not self.is_own:
@@ -112,28 +97,32 @@ class Dispatcher:
         self.executor.shutdown(wait=not unfinished, cancel_futures=True)
 
 
+def made_of(band: Job, future: Future[Made]) -> Made:
+    """Wait for what is made of a band; RenderError where that fails."""
+    try:
+        return future.result()
+    except MiniRTError:
+        raise
+    except Exception as error:
+        if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
+            raise RenderError(f"{band.what}: its worker died") from error
+        raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
+
+
 def local_pool() -> Executor:
     """Return a pool of processes of this machine that leave Ctrl+C to this one, and end with it."""
-    from multiprocessing import get_context
-
     return ProcessPoolExecutor(min(usable_cores(), MOST_PROCESSES), get_context("spawn"), prepare_process)
 
 
 def prepare_process() -> None:
-    """Prepare a process of the pool: it ignores Ctrl+C, which a terminal sends to all, and ends when its parent dies.
-
-    Otherwise the processes of a killed program would wait for work for ever.
-    """
-    from threading import Thread
-
+    """Let a process of the pool ignore Ctrl+C, which a terminal sends to all, and not wait for ever for the work of a
+    killed program."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=end_with_parent, daemon=True).start()
 
 
 def end_with_parent() -> None:
     """Wait until the parent of this process has died, and end it at once."""
-    from multiprocessing import parent_process
-
     if parent := parent_process():
         parent.join()
         os._exit(1)

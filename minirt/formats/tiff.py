@@ -89,10 +89,7 @@ def directory(
     for tag, kind, values in entries:
         data = struct.pack(f"<{len(values)}{CODES[kind]}", *values)
         if len(data) > short:
-            data, behind = (
-                struct.pack(f"<{layout.place}", place + len(behind)),
-                behind + data,
-            )
+            data, behind = struct.pack(f"<{layout.place}", place + len(behind)), behind + data
         count = len(values) // 2 if kind == RATIONAL else len(values)
         out += struct.pack(f"<HH{layout.place}", tag, kind, count) + data.ljust(short, b"\0")
     return out + struct.pack(f"<{layout.place}", 0) + behind

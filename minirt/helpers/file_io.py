@@ -77,13 +77,11 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
     """
     target = Path(path)
     with temporary_file(target.parent, data) as temporary:
-        if os.path.lexists(target):
-            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target))
         try:
             os.link(temporary, target)
-        except FileExistsError:
-            raise
         except OSError:
+            if os.path.lexists(target):
+                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target)) from None
             temporary.replace(target)
         temporary.unlink(missing_ok=True)
 
@@ -170,12 +168,9 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
 
     Anything but a regular file is refused before it is opened: a FIFO cannot hang the program.
     """
-    size = status(path, largest).st_size
+    status(path, largest)
     try:
-        with Path(path).open("rb") as file:
-            data = file.read(size + 1)  # Python reserves memory for as many bytes as it is asked for
-            if len(data) > size:  # the file grows
-                data += file.read(largest + 1 - len(data))
+        data = Path(path).read_bytes()
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
     check_size(path, len(data), largest)

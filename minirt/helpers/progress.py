@@ -9,7 +9,7 @@ import shutil
 import signal
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar, copy_context
 from functools import partial
 from threading import Event, Thread
@@ -89,14 +89,13 @@ def in_notebook() -> bool:
     return hasattr(shell, "kernel")
 
 
-def in_notebooks(read: Callable[[], State]) -> AbstractContextManager[None]:
-    """Show the state that `read` returns below the cell while the block runs; elsewhere do nothing."""
-    return shown_below_cell(read) if in_notebook() and not SHOWN.get() else nullcontext()
-
-
 @contextmanager
-def shown_below_cell(read: Callable[[], State]) -> Iterator[None]:
-    """Show progress below the cell, and not that of the parts of this work beside it."""
+def in_notebooks(read: Callable[[], State]) -> Iterator[None]:
+    """Show the state that `read` returns below the cell while the block runs, and not that of the parts of this work
+    beside it; elsewhere do nothing."""
+    if SHOWN.get() or not in_notebook():
+        yield
+        return
     token = SHOWN.set(True)
     try:
         with drawn(read, NotebookLine().draw, perf_counter):

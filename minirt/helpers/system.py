@@ -1,6 +1,6 @@
 """The process and its machine: the limit of memory, forks, garbage collection and clocks.
 
-The limit of memory is the user's, or that of the container, process or machine. Large needs are compared with it before
+The limit of memory is the user's, or that of the container or machine. Large needs are compared with it before
 memory is allocated, since the system would end the program without a word.
 """
 
@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gc
 import os
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -62,28 +61,20 @@ def default_total() -> int:
 
 def room() -> int:
     """Return the bytes that this process may still take."""
-    address_space, resident = sizes()
-    least = total() - resident
+    least = total() - resident()
     with suppress(OSError, ValueError, IndexError, StopIteration):  # not on Linux
         if not chosen:
             lines = MACHINE.read_text().splitlines()
             free = next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
             least = min(least, int(free * SHARE))
-    if sys.platform != "win32":
-        import resource
-
-        limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-        if limit != resource.RLIM_INFINITY:
-            least = min(least, int((limit - address_space) * SHARE))
     return max(0, least)
 
 
-def sizes() -> tuple[int, int]:
-    """Return the bytes of the address space and of the resident memory of this process; 0 where nobody knows."""
+def resident() -> int:
+    """Return the bytes of memory that this process holds; 0 where nobody knows."""
     with suppress(OSError, ValueError):
-        address_space, resident = (int(each) * os.sysconf("SC_PAGE_SIZE") for each in STATUS.read_text().split()[:2])
-        return address_space, resident
-    return 0, 0
+        return int(STATUS.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return 0
 
 
 def is_small_need(needed: int) -> bool:
@@ -129,12 +120,6 @@ def renew_after_fork(owner: Any) -> None:
     renewables.add(owner)
 
 
-def renew_all() -> None:
-    """Renew all objects, in a child process."""
-    for owner in renewables:
-        owner.after_fork()
-
-
 class ForkSafeLock:
     """Lock of a module, for `with`: a new one, not held by anybody, in each child process."""
 
@@ -154,7 +139,7 @@ class ForkSafeLock:
 
 
 if hasattr(os, "register_at_fork"):  # Windows has no fork
-    os.register_at_fork(after_in_child=renew_all)
+    os.register_at_fork(after_in_child=lambda: [each.after_fork() for each in renewables])
 
 
 @contextmanager

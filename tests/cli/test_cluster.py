@@ -118,23 +118,10 @@ def test_an_interrupted_film_goes_on(run: Run, folder: Path) -> None:
     assert not (folder / ".spin.png.journal").exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "status", "message"),
-    [
-        (("--cluster", "local"), 2, "--cluster needs -o, and no --replay or --time"),
-        (("--cluster", "here", "-o", "a.tif"), 2, "must be local, or the address of a scheduler like tcp://host:8786"),
-        (("--cluster", "local", "-o", "no/a.tif"), 1, "no/a.tif: cannot write: No such file"),
-        (("--cluster", "local", "-o", "a.webp", "--size", "17000x5"), 1, "WEBP holds at most 16,383 pixels a side"),
-        (("--cluster", "nothing://127.0.0.1:1", "-o", "a.tif"), 1, "--cluster nothing://127.0.0.1:1: no scheduler"),
-    ],
-)
-def test_what_cannot_be_done_is_told_before_the_work(
-    run: Run, folder: Path, arguments: tuple[str, ...], status: int, message: str
-) -> None:
-    ended = run("ball.rt", *arguments)
-    assert (ended.status, ended.out) == (status, b"")
-    assert message in ended.err
-    assert [each.name for each in folder.iterdir()] == ["ball.rt"]
+def test_a_scheduler_that_cannot_be_reached_is_an_error(run: Run, folder: Path) -> None:
+    ended = run("ball.rt", "-o", "a.tif", "--cluster", "nothing://127.0.0.1:1")
+    assert (ended.status, ended.out) == (1, b"")
+    assert ended.err.startswith("Error\n--cluster nothing://127.0.0.1:1: no scheduler answers: ")
 
 
 def test_without_dask_an_address_is_an_error(folder: Path) -> None:

@@ -45,12 +45,6 @@ def test_an_unknown_example_is_an_error_that_names_what_is_like_it(run: Run) -> 
     assert "the examples are camera-lens, demo, " in run("--example", "?", "--check").err
 
 
-def test_an_example_beside_a_scene_is_refused(run: Run) -> None:
-    ended = run("ball.rt", "--example")
-    assert ended.status == 2
-    assert "got ball.rt, too" in ended.err
-
-
 def test_the_window_saves_an_example_to_a_new_file(folder: Path) -> None:
     parser = argument_parser()
     for name in ("demo.rt", "demo-1.rt", "demo-2.rt"):
@@ -156,12 +150,6 @@ def test_damaged_pictures_are_errors(run: Run, folder: Path, at: int) -> None:
         assert ended.err.startswith(f"Error\n{name}: ")
 
 
-def test_pictures_that_are_no_files_are_errors(run: Run, folder: Path) -> None:
-    (folder / "folder.png").mkdir()
-    for name in ("folder.png", "missing.png"):
-        assert run(name, "--check").err.startswith(f"Error\n{name}: ")
-
-
 def test_keys_do_not_write_a_scene_over_its_picture(run: Run, folder: Path) -> None:
     assert run("ball.rt", "-o", "x.png", "--size", "40x30").status == 0
     before = (folder / "x.png").read_bytes()
@@ -230,15 +218,6 @@ def test_errors_name_standard_input(run: Run, give: Callable[[bytes], None]) -> 
     assert ended.err.startswith("Error\nstandard input:6:1: unknown element 'spp', did you mean 'sp'?\n")
     give(b"")
     assert run("-", "--check").err == "Error\nstandard input: is empty\n"
-
-
-@pytest.mark.parametrize("arguments", [("-",), ("-", "-", "--check"), ("-", "--replay", "x", "-o", "x.png")])
-def test_a_window_and_a_second_reading_are_refused(run: Run, arguments: tuple[str, ...]) -> None:
-    ended = run(*arguments)
-    assert (ended.status, ended.err) == (
-        2,
-        "Error\na scene on standard input needs -o or --check, and is read once\n",
-    )
 
 
 def test_standard_input_that_is_closed_is_an_error(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

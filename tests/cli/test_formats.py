@@ -59,37 +59,37 @@ def test_light_of_auto_sampling_goes_below_the_rounding_of_8_bits(run: Run, fold
     assert run("ball.rt", "-o", "x.png", "--size", "160x90", *goal).status == 1
 
 
+CANNOT = "cannot write"
+NO_QUALITY = "PNG has no quality: it keeps all pixels as they are"
 REFUSED = {
-    ("-o", "x.webp", "--size", "16384x4"): "x.webp: WEBP holds at most 16,383 pixels a side, got 16384x4",
-    ("-o", "nowhere/x.png"): "nowhere/x.png: cannot write: No such file or directory",
-    ("-o", "ball.rt/x.png"): "ball.rt/x.png: cannot write: Not a directory",
-    ("-o", "folder.png"): "folder.png: cannot write: not a regular file",
-    ("-o", "nowhere/x.gif", "--turntable", "3"): "nowhere/x.gif: cannot write: No such file or directory",
-    ("-o", "nowhere/x.png", "--turntable", "3"): "nowhere/x.png: cannot write: No such file or directory",
-    ("-o", "x.pgm"): "x.pgm: cannot write pictures with the extension '.pgm': it cannot hold colours, try .png",
-    ("-o", "x.jpg", "--bits", "16"): "JPEG has 8 bits a channel, got 16: try PNG or TIFF",
-    ("-o", "x.png", "--quality", "50"): "PNG has no quality: it keeps all pixels as they are",
-    ("-o", "-", "--quality", "50"): "PNG has no quality: it keeps all pixels as they are",
-    ("--fallback", "x.nope"): "x.nope: cannot write pictures with the extension '.nope', try .png",
-    ("-o", "x.exr", "--replay", "keys.txt"): "x.exr: the frames of a replay have 8 bits a channel, "
-    "try .png without --bits",
+    "-o x.webp --size 16384x4": "x.webp: WEBP holds at most 16,383 pixels a side, got 16384x4",
+    "-o x.webp --size 17000x5 --cluster local": "x.webp: WEBP holds at most 16,383 pixels a side, got 17000x5",
+    "-o nowhere/x.png": f"nowhere/x.png: {CANNOT}: No such file or directory",
+    "-o ball.rt/x.png": f"ball.rt/x.png: {CANNOT}: Not a directory",
+    "-o folder.png": f"folder.png: {CANNOT}: not a regular file",
+    "-o nowhere/x.gif --turntable 3": f"nowhere/x.gif: {CANNOT}: No such file or directory",
+    "-o nowhere/x.png --turntable 3": f"nowhere/x.png: {CANNOT}: No such file or directory",
+    "-o nowhere/x.tif --cluster local": f"nowhere/x.tif: {CANNOT}: No such file or directory",
+    "-o x.pgm": f"x.pgm: {CANNOT} pictures with the extension '.pgm': it cannot hold colours, try .png",
+    "--fallback x.nope": f"x.nope: {CANNOT} pictures with the extension '.nope', try .png",
+    "-o x.jpg --bits 16": "JPEG has 8 bits a channel, got 16: try PNG or TIFF",
+    "-o x.png --quality 50": NO_QUALITY,
+    "-o - --quality 50": NO_QUALITY,
+    "-o x.exr --replay keys.txt": "x.exr: the frames of a replay have 8 bits a channel, try .png without --bits",
+    "-o x.webm": "x.webm: a film needs --turntable or --replay, a picture is .png or .jpg",
+    "-o x.png --size 64x48 --region 60,0,5,1": "region 60,0,5,1 does not lie in the picture of 64x48 pixels",
 }
 
 
 @pytest.mark.usefixtures("no_work")
-@pytest.mark.parametrize("arguments", REFUSED, ids=" ".join)
-def test_what_cannot_be_written_is_refused_before_the_work(run: Run, folder: Path, arguments: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("arguments", REFUSED)
+def test_what_cannot_be_written_is_refused_before_the_work(run: Run, folder: Path, arguments: str) -> None:
+    if "webm" in arguments:
+        pytest.importorskip("av")
     (folder / "folder.png").mkdir()
     (folder / "keys.txt").write_text("wait 1\n")
-    assert run("ball.rt", *arguments) == (1, b"", f"Error\n{REFUSED[arguments]}\n")
+    assert run("ball.rt", *arguments.split(" ")) == (1, b"", f"Error\n{REFUSED[arguments]}\n")
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "folder.png", "keys.txt"}
-
-
-@pytest.mark.usefixtures("no_work")
-def test_a_film_of_one_picture_is_refused(run: Run) -> None:
-    pytest.importorskip("av")
-    ended = run("ball.rt", "-o", "x.mp4")
-    assert (ended.status, "a film needs --turntable or --replay" in ended.err) == (1, True)
 
 
 def test_a_planted_render_is_found(run: Run, no_work: None) -> None:
@@ -97,17 +97,12 @@ def test_a_planted_render_is_found(run: Run, no_work: None) -> None:
         run("ball.rt", "-o", "x.png")
 
 
-@pytest.mark.parametrize(("name", "frames"), [("x.GIF", 3), ("x.webp", 3), ("x.apng", 3), ("x.mp4", 3)])
-def test_a_turntable_is_a_film(run: Run, folder: Path, name: str, frames: int) -> None:
-    if name.endswith(".mp4"):
-        av = pytest.importorskip("av")
+@pytest.mark.parametrize("name", ["x.GIF", "x.mp4"])
+def test_a_turntable_is_a_film(run: Run, folder: Path, name: str) -> None:
+    av = pytest.importorskip("av")
     assert run("ball.rt", "--turntable", "3", "-o", name, *SIZE) == (0, b"", "")
-    if name.endswith(".mp4"):
-        with av.open(name) as film:
-            assert sum(1 for _ in film.decode(video=0)) == frames
-        return
-    with pillow.open(name) as film:
-        assert (film.n_frames, film.size) == (frames, (40, 30))
+    with av.open(name) as film:
+        assert [(frame.width, frame.height) for frame in film.decode(video=0)] == [(40, 30)] * 3
 
 
 def test_a_replay_can_be_a_film_of_any_format(run: Run, folder: Path) -> None:
@@ -124,13 +119,6 @@ def test_some_frames_of_a_turntable(run: Run, folder: Path) -> None:
     for number in ("0002", "0003"):
         assert (folder / f"some-{number}.png").read_bytes() == (folder / f"all-{number}.png").read_bytes()
     assert run("ball.rt", "--turntable", "5", "-o", "one.gif", "--frames", "5", *SIZE).status == 0
-    for wrong, words in (
-        (("--turntable", "5", "--frames", "4-6"), "there are 5 pictures, got 6"),
-        (("--turntable", "5", "--frames", "3-2"), "must be FIRST-LAST, like 10-20, got '3-2'"),
-        (("--frames", "1-2"), "--frames needs --turntable"),
-    ):
-        ended = run("ball.rt", "-o", "x.png", *wrong)
-        assert (ended.status, words in ended.err) == (2, True)
 
 
 def test_several_scenes_are_rendered_by_one_process(run: Run, folder: Path) -> None:
@@ -161,13 +149,6 @@ def test_a_turntable_begins_with_the_view_of_the_scene(run: Run, folder: Path) -
     first, second, _ = (np.asarray(pillow.open(folder / name)) for name in names)
     assert np.array_equal(first, minirt.render(minirt.load(folder / "ball.rt"), 32, 18).array)
     assert not np.array_equal(first, second)
-
-
-@pytest.mark.parametrize("wrong", [("--turntable", "3"), ("--turntable", "3", "-o", "-"), ("--turntable", "0")])
-def test_a_turntable_needs_a_number_and_a_file(run: Run, wrong: tuple[str, ...]) -> None:
-    ended = run("ball.rt", *wrong)
-    assert (ended.status, ended.out) == (2, b"")
-    assert "--turntable" in ended.err
 
 
 @pytest.mark.parametrize("name", ["spin.gif", "spin.png"])
@@ -224,22 +205,3 @@ def test_a_region_is_what_a_format_must_hold(run: Run, folder: Path) -> None:
     assert run("ball.rt", *huge, "--region", "16000,16000,40,30", "-o", "part.webp").status == 0
     assert pixels(folder / "part.webp").shape == (30, 40, 3)
     assert "16,383 pixels a side" in run("ball.rt", *huge, "--region", "0,0,16384,1", "-o", "part.webp").err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "status", "message"),
-    [
-        (("--region", "60,0,5,1", "-o", "x.png"), 1, "region 60,0,5,1 does not lie in the picture of 64x48 pixels"),
-        (("--region", "1,2,3", "-o", "x.png"), 2, "argument --region: must be X,Y,WIDTH,HEIGHT, like 320,0,640,480"),
-        (("--region", "0,0,0,5", "-o", "x.png"), 2, "argument --region: must be a whole number from 1 to 16384"),
-        (("--region", "0,0,5,5"), 2, "--region needs -o"),
-        (("--region", "0,0,5,5", "--replay", "x", "-o", "x.gif"), 2, "--region needs -o, and no --replay"),
-    ],
-)
-def test_wrong_regions_are_refused(
-    run: Run, folder: Path, arguments: tuple[str, ...], status: int, message: str
-) -> None:
-    ended = run("ball.rt", "--size", "64x48", *arguments)
-    assert (ended.status, ended.out) == (status, b"")
-    assert message in ended.err
-    assert not (folder / "x.png").exists()

@@ -1,4 +1,4 @@
-"""Suggestions for wrong arguments, the configuration file, and completion in shells."""
+"""The configuration file, and completion in shells."""
 
 from __future__ import annotations
 
@@ -13,31 +13,6 @@ from minirt.cli.options import completion
 from tests import processes
 from tests.cli.program import Run
 from tests.cli.test_output import pixels
-
-NAMING = (  # options that name a file, and as they are told
-    ("-o", "-o/--output"),
-    ("--fallback", "--fallback"),
-    ("--replay", "--replay"),
-    ("--report", "--report"),
-    ("", "SCENE.rt"),
-)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--sampels", "4"), "unknown option --sampels, did you mean --samples?"),
-        (("--wdth=4",), "unknown option --wdth, did you mean --watch?"),
-        (("--zzz",), "unknown option --zzz; miniRT --help lists all"),
-        (("--tone", "sgrb"), "argument --tone: must be plain, srgb or filmic, got 'sgrb', did you mean srgb?"),
-        (("--keys", "dvorak"), "argument --keys: must be auto, qwerty, azerty or qwertz, got 'dvorak'"),
-        (("--bits", "12"), "argument --bits: must be 8 or 16, got '12'"),
-        *(((each, ""), f"argument {name}: must be the name of a file, got ''") for each, name in NAMING),
-        (("--quality", "0"), "argument --quality: must be a whole number from 1 to 100, got '0'"),
-    ],
-)
-def test_a_wrong_argument_is_one_line_with_a_suggestion(run: Run, arguments: tuple[str, ...], message: str) -> None:
-    assert run("ball.rt", *arguments) == (2, b"", f"Error\n{message}\n")
 
 
 @pytest.fixture

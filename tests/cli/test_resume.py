@@ -255,12 +255,3 @@ def test_resume_without_a_left_over_says_so(run: Run, folder: Path) -> None:
     ended = run(*STILL, "--resume")
     assert ended.status == 0
     assert ended.err == "notice: there is nothing to go on with, x.png is rendered from the beginning\n"
-
-
-@pytest.mark.parametrize(
-    "more", [(), ("-o", "-"), ("-o", "x.png", "--samples", "auto"), ("--replay", "x", "-o", "x.gif")]
-)
-def test_resume_needs_a_file_and_a_fixed_number_of_samples(run: Run, more: tuple[str, ...]) -> None:
-    ended = run("ball.rt", "--resume", *more)
-    assert (ended.status, ended.out) == (2, b"")
-    assert "--resume needs" in ended.err

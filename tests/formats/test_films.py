@@ -13,6 +13,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import RenderError
+from minirt.formats.table import is_installed
 from minirt.movie import save_movie
 from minirt.rendering.image import Image
 from minirt.viewer.app.replay import FPS as ANIMATION_FPS
@@ -25,6 +26,9 @@ from tests.viewer.fake import FakeRenderer, scene
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")  # what Python 3.12 says of a fork
 
+LOOPS = ("a.gif", "a.webp", "a.apng")
+WITH_AV = pytest.mark.skipif(not is_installed("MP4"), reason="no PyAV")
+VIDEOS = [pytest.param(each, marks=WITH_AV) for each in ("a.mp4", "a.webm")]
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250), (200, 180, 20)]
 
 
@@ -99,10 +103,8 @@ def test_a_green_area_keeps_its_green(tmp_path: Path) -> None:
         assert np.abs(levels - studio_levels(colour, 0.299, 0.114)).max() > 10
 
 
-@pytest.mark.parametrize("name", ["a.webp", "a.mp4", "a.webm"])
+@pytest.mark.parametrize("name", ["a.webp", *VIDEOS])
 def test_quality_changes_the_size(tmp_path: Path, name: str) -> None:
-    if not name.endswith(".webp"):
-        pytest.importorskip("av")
     sizes = []
     for quality in (5, 95):
         save_movie(film(180, 320), tmp_path / name, quality=quality)
@@ -157,49 +159,36 @@ def most_alive(path: Path, save: Callable[[Iterator[Image]], object]) -> int:
     return max(counts)
 
 
-@pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
+@pytest.mark.parametrize("name", VIDEOS)
 def test_two_pictures_of_a_video_are_in_memory_at_once(tmp_path: Path, name: str) -> None:
-    pytest.importorskip("av")
     path = tmp_path / name
     assert most_alive(path, lambda pictures: save_movie(pictures, path)) <= 2
     assert most_alive(path, lambda pictures: save_movie(list(pictures), path)) == 12  # which would be noticed
 
 
-def films_before_and_after_a_fork(folder: Path, name: str) -> list[bytes]:
-    """Write a film, fork, and write it again in the child process; return both, as two films are compared.
-
-    At this size FFmpeg converts colours in several threads, none of which a child has.
-    """
-    pictures, paths = film(360, 640), [folder / f"before-{name}", folder / f"after-{name}"]
-    save_movie(pictures, paths[0])
-    assert in_child(lambda: save_movie(pictures, paths[1])) == 0
-    return [comparable(path) for path in paths]
-
-
 @needs_fork
 @pytest.mark.each_python
-@pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
+@pytest.mark.parametrize("name", VIDEOS)
 def test_a_forked_child_writes_the_film_that_its_parent_has_written(tmp_path: Path, name: str) -> None:
-    pytest.importorskip("av")
-    before, after = films_before_and_after_a_fork(tmp_path, name)
-    assert before == after
+    """At this size FFmpeg converts colours in several threads, none of which a child has."""
+    pictures, paths = film(360, 640), [tmp_path / f"before-{name}", tmp_path / f"after-{name}"]
+    save_movie(pictures, paths[0])
+    assert in_child(lambda: save_movie(pictures, paths[1])) == 0
+    assert comparable(paths[0]) == comparable(paths[1])
 
 
-@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm"])
-def test_pictures_of_two_sizes_make_no_film(tmp_path: Path, name: str) -> None:
-    if name.endswith((".mp4", ".webm")):
-        pytest.importorskip("av")
-    with pytest.raises(RenderError, match="the pictures of a film have one size, got 30x20 and 64x36"):
-        save_movie([*film(), *film(20, 30)], tmp_path / name)
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm", "a.png"])
-def test_a_film_without_pictures_is_refused(tmp_path: Path, name: str) -> None:
-    if name.endswith((".mp4", ".webm")):
-        pytest.importorskip("av")
-    with pytest.raises(RenderError, match="needs a picture"):
-        save_movie([], tmp_path / name)
+@pytest.mark.parametrize(
+    ("pictures", "message"),
+    [
+        ([*film(), *film(20, 30)], "the pictures of a film have one size, got 30x20 and 64x36"),
+        ([], "a movie needs a picture"),
+    ],
+    ids=["two sizes", "none"],
+)
+@pytest.mark.parametrize("name", [*LOOPS, *VIDEOS])
+def test_what_is_no_film_is_refused(tmp_path: Path, name: str, pictures: list[Image], message: str) -> None:
+    with pytest.raises(RenderError, match=message):
+        save_movie(pictures, tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 

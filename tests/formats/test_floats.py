@@ -1,9 +1,9 @@
-"""OpenEXR's own library and OpenCV read back light from files of floating-point numbers, and levels from 16 bits."""
+"""OpenEXR's own library, OpenCV and tifffile read back light from files of numbers, levels of 16 bits and BigTIFF."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +11,15 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import RenderError
-from minirt.formats import floats
+from minirt.formats import floats, tiff
 from minirt.materials.radiance import read_header, read_pixels
 from minirt.rendering.image import Image
 from minirt.rendering.tone_mapping import light_of
 from tests.formats.pictures import SIZES, light, picture
 
 exr = pytest.importorskip("OpenEXR")
-cv2 = pytest.importorskip("cv2")
+cv2 = pytest.importorskip("cv2")  # `make lowest` is without these
+tifffile = pytest.importorskip("tifffile")
 
 
 def read_exr(path: Path) -> np.ndarray:
@@ -131,3 +132,40 @@ def test_16_bits_need_light_and_a_format_that_has_them() -> None:
         picture(2, 2).encode("JPEG", bits=16)
     with pytest.raises(RenderError, match="EXR has 32 bits a channel, got 16"):
         picture(2, 2).encode("EXR", bits=16)
+
+
+# BigTIFF, strip by strip.
+
+
+def write(path: Path, levels: np.ndarray, first: int = 0) -> None:
+    """Write a picture with its strips from a byte on that may be far behind the header."""
+    height, width, _ = levels.shape
+    with path.open("wb") as file:
+
+        def strips() -> Iterator[bytes]:
+            file.seek(max(first, file.tell()))
+            yield from tiff.strips(levels)
+
+        tiff.write(file, width, height, 8 * levels.itemsize, strips())
+
+
+@pytest.mark.parametrize("number", [np.uint8, np.uint16])
+@pytest.mark.parametrize(("width", "height"), [(1, 1), (7, 16), (33, 50), (300, 129)])
+def test_other_libraries_read_the_levels(tmp_path: Path, number: type, width: int, height: int) -> None:
+    levels = np.random.Generator(np.random.PCG64(7)).integers(np.iinfo(number).max, size=(height, width, 3))
+    levels = levels.astype(number)
+    write(tmp_path / "a.tif", levels)
+    with tifffile.TiffFile(tmp_path / "a.tif") as file:
+        assert file.is_bigtiff
+        assert np.array_equal(file.asarray(), levels)
+    read = cv2.imread(str(tmp_path / "a.tif"), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(read[..., ::-1], levels)
+    if number is np.uint8:  # Pillow has no 16 bits of several channels
+        with pillow.open(tmp_path / "a.tif") as picture:
+            assert np.array_equal(np.asarray(picture), levels)
+
+
+def test_places_beyond_4_gib_are_kept(tmp_path: Path) -> None:
+    levels = np.arange(40 * 5 * 3, dtype=np.uint8).reshape(40, 5, 3)
+    write(tmp_path / "a.tif", levels, 5 * 2**30)  # a hole, which takes no room on the disk
+    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), levels)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import stat
 import threading
-import tracemalloc
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -31,15 +29,6 @@ def test_a_new_file_never_replaces_one(tmp_path: Path) -> None:
     assert (tmp_path / "a").read_bytes() == b"old"
     assert (tmp_path / "c").read_bytes() == b"new"
     assert names(tmp_path) == ["a", "b", "c"]
-
-
-def test_a_file_that_appears_just_now_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(file_io.os.path, "lexists", lambda _: False)
-    (tmp_path / "a").write_bytes(b"old")
-    with pytest.raises(FileExistsError):
-        file_io.create(tmp_path / "a", b"new")
-    assert (tmp_path / "a").read_bytes() == b"old"
-    assert names(tmp_path) == ["a"]
 
 
 def test_file_systems_without_hard_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,28 +114,6 @@ def test_old_temporary_files_are_deleted(
     assert left.exists() == is_left
 
 
-LARGEST = 2**26
-
-
-def peak(read: Callable[[], bytes]) -> int:
-    """Return how many bytes a reader reserves at most."""
-    tracemalloc.start()
-    try:
-        read()
-        return tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-
-
-def test_a_small_file_needs_little_memory(tmp_path: Path) -> None:
-    path = tmp_path / "a"
-    path.write_bytes(bytes(1000))
-    assert file_io.read(path, LARGEST) == bytes(1000)
-    assert peak(lambda: file_io.read(path, LARGEST)) < 2**20
-    with path.open("rb") as file:
-        assert peak(lambda: file.read(LARGEST)) > LARGEST  # so the check notices
-
-
 @pytest.mark.parametrize("size", [0, 1, 999, 1000, 1001])
 def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None:
     path = tmp_path / "a"
@@ -156,19 +123,3 @@ def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None
     else:
         with pytest.raises(FileError, match="larger than"):
             file_io.read(path, 1000)
-
-
-@pytest.mark.parametrize(("told", "largest", "fits"), [(0, 5000, True), (10, 5000, True), (10, 1999, False)])
-def test_a_file_that_grows_while_it_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: int, largest: int, fits: bool
-) -> None:
-    path = tmp_path / "a"
-    path.write_bytes(bytes(2000))
-    values = [*path.stat()]
-    values[6] = told  # st_size
-    monkeypatch.setattr(file_io, "status", lambda *_: os.stat_result(values))
-    if fits:
-        assert file_io.read(path, largest) == bytes(2000)
-    else:
-        with pytest.raises(FileError, match="larger than"):
-            file_io.read(path, largest)

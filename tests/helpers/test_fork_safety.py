@@ -14,7 +14,6 @@ from threading import Event, Lock, Thread
 from typing import Any
 from weakref import WeakSet
 
-import numpy as np
 import pytest
 
 from minirt.helpers import system
@@ -24,7 +23,6 @@ from minirt.rendering import Renderer
 from minirt.rendering import renderer as renderers
 from tests.cli.program import SCENE, environment
 from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library
-from tests.kernel.pictures import ALL
 from tests.processes import in_child, run
 from tests.waiting import HANG_LIMIT
 
@@ -35,23 +33,10 @@ pytestmark = [
 
 FORKED = """
 import os, threading, numpy, minirt
+from tests.waiting import until
 scene = minirt.load("ball.rt")
 rays = [[0, 0, -5]], [[0, 0, 1]]
 before, hits = minirt.render(scene, 40, 30).array, minirt.trace(scene, *rays)
-child = os.fork()
-if not child:
-    same = numpy.array_equal(minirt.render(scene, 40, 30).array, before)
-    same &= minirt.trace(scene, *rays).distance == hits.distance
-    os._exit(0 if same else 1)
-assert os.waitpid(child, 0)[1] == 0
-assert numpy.array_equal(minirt.render(scene, 40, 30).array, before)  # the parent goes on, too
-"""
-
-FORKED_WHILE_RENDERING = """
-import os, threading, numpy, minirt
-from tests.waiting import until
-scene = minirt.load("ball.rt")
-before = minirt.render(scene, 40, 30).array
 renderer = minirt.renderer(None)
 def endless():
     renderer.render(scene, numpy.zeros((2000, 4000, 4), numpy.uint8), 65536)
@@ -60,12 +45,15 @@ thread.start()
 until(lambda: renderer.runner.next_row.max() > 0 and renderer.busy.locked(), "the first row")
 child = os.fork()
 if not child:
-    os._exit(0 if numpy.array_equal(minirt.render(scene, 40, 30).array, before) else 1)
+    same = numpy.array_equal(minirt.render(scene, 40, 30).array, before)
+    same &= minirt.trace(scene, *rays).distance == hits.distance
+    os._exit(0 if same else 1)
 status = os.waitpid(child, 0)[1]
 assert thread.is_alive()
 renderer.cancel()
 thread.join()
 assert status == 0
+assert numpy.array_equal(minirt.render(scene, 40, 30).array, before)  # the parent goes on, too
 """
 
 POOL = """
@@ -98,12 +86,8 @@ def run_script(folder: Path, source: str, *arguments: str) -> None:
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
-def test_a_forked_child_renders_and_traces(tmp_path: Path) -> None:
+def test_a_child_renders_and_traces_that_was_forked_while_another_thread_rendered(tmp_path: Path) -> None:
     run_script(tmp_path, FORKED)
-
-
-def test_a_child_renders_that_was_forked_while_another_thread_rendered(tmp_path: Path) -> None:
-    run_script(tmp_path, FORKED_WHILE_RENDERING)
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
@@ -123,31 +107,12 @@ def is_free(lock: Any) -> bool:
     return bool(lock.acquire(blocking=False))
 
 
-RENDERER = Renderer(1)
-LOCKS: dict[str, Callable[[], Any]] = {
-    "renderer": lambda: RENDERER.busy,
-    "renderers": lambda: renderers.lock.lock,
-}
-
-
-@pytest.mark.parametrize("owner", LOCKS)
-def test_locks_that_other_threads_hold_are_free_in_a_child(owner: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    lock_of = LOCKS[owner]
-    with lock_of():
-        assert holds_in_child(lambda: is_free(lock_of()))
-        assert lock_of().locked()  # in the parent process nothing changes
+def test_the_lock_of_all_renderers_is_free_in_a_child(monkeypatch: pytest.MonkeyPatch) -> None:
+    with renderers.lock:
+        assert holds_in_child(lambda: is_free(renderers.lock.lock))
+        assert renderers.lock.lock.locked()  # in the parent process nothing changes
         monkeypatch.setattr(system, "renewables", WeakSet())  # nothing is renewed: the check notices
-        assert not holds_in_child(lambda: is_free(lock_of()))
-
-
-def test_pools_of_threads_are_new_in_a_child(monkeypatch: pytest.MonkeyPatch) -> None:
-    renderer = Renderer(1)
-    assert renderer.render(ALL, np.zeros((4, 4, 4), np.uint8))
-    pool = renderer.runner.pool
-    assert holds_in_child(lambda: renderer.runner.pool is not pool)
-    assert renderer.runner.pool is pool
-    monkeypatch.setattr(system, "renewables", WeakSet())
-    assert not holds_in_child(lambda: renderer.runner.pool is not pool)
+        assert not holds_in_child(lambda: is_free(renderers.lock.lock))
 
 
 def test_a_child_leaves_the_compiling_processes_to_its_parent() -> None:

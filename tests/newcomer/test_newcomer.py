@@ -84,19 +84,6 @@ def test_a_new_shape_passes_the_questions_asked_of_every_shape(copy: Path) -> No
     assert "no known place of gate: add one to KNOWN in" in told
 
 
-def test_a_new_shape_without_special_places_is_told_what_to_declare(copy: Path) -> None:
-    missing = copy / "tests/stability/gate.py"
-    text = missing.read_text()
-    missing.unlink()
-    try:
-        command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-k", "gate and declares", QUESTIONS[-1]]
-        done = run(command, cwd=copy, env={**os.environ, "PYTHONPATH": str(copy)}, text=True)
-    finally:
-        missing.write_text(text)
-    assert done.returncode == 1
-    assert "no special places of a gate: declare them in tests/stability/gate.py" in done.stdout
-
-
 def test_a_new_shape_and_a_new_material_are_added_edited_and_saved_by_keys(copy: Path) -> None:
     told = answers(copy, "-m", "pytest", "-p", "no:xdist", "-k", "[ga or sheen", EDITING)
     assert "passed" in told
