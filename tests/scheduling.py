@@ -55,7 +55,7 @@ SLOW = (
     "tests/rendering/test_meshes.py",
     "tests/report/",
     "tests/scene/test_fast.py",
-    "tests/scene/test_round_trips.py",
+    "tests/scene/test_writer.py",
     "tests/shapes/test_mapping.py",
     "tests/shapes/test_protocol.py",
     "tests/stability/",

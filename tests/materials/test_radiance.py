@@ -164,6 +164,8 @@ def test_exposures_in_the_header_are_taken_back(tmp_path: Path) -> None:
 
 ROWS = b"".join(map(new_runs, np.full((2, 8, 4), 200, np.uint8)))  # 2 scanlines of 4 + 4 * 2 bytes each
 START = len(HEADER) + len(b"-Y 2 +X 8\n")
+TWO, ONE = HEADER + b"-Y 2 +X 8\n", HEADER + b"-Y 1 +X 4\n"
+END = b"\n-Y 2 +X 8\n" + ROWS
 DAMAGED = {
     "line 6: expected a size such as -Y 512 +X 1024, got '-Y 2 +Y 8'": HEADER + b"-Y 2 +Y 8\n" + ROWS,
     "line 6: expected a size such as -Y 512 +X 1024, got ''": HEADER,
@@ -183,29 +185,14 @@ DAMAGED = {
     "line 2: the format must be 32-bit_rle_rgbe, got '\\x1b[31m'": b"#?RGBE\nFORMAT=\x1b[31m\n\n",
     "line 3: the header has no end": b"#?RGBE\nA=1\n" + bytes(3 * 2**20) + b"\n\n-Y 2 +X 8\n" + ROWS,
     "line 4: expected a size such as -Y 512 +X 1024, got ''": b"#?RGBE\nA=1\n\n" + b" " * 2**20 + b"-Y 2 +X 8\n" + ROWS,
-    f"scanline 1 of 2, byte {START}: the file ends": HEADER + b"-Y 2 +X 8\n",
-    f"scanline 2 of 2, byte {START + 23}: the file ends": HEADER + b"-Y 2 +X 8\n" + ROWS[:-1],
-    f"scanline 2 of 2, byte {START + 12}: it has 9 pixels, and should have 8": HEADER
-    + b"-Y 2 +X 8\n"
-    + ROWS[:15]
-    + b"\x09"
-    + ROWS[16:],
-    f"scanline 1 of 2, byte {START + 4}: 9 pixels, where 8 of 8 are missing": HEADER
-    + b"-Y 2 +X 8\n"
-    + ROWS[:4]
-    + b"\x89"
-    + ROWS[5:],
-    f"scanline 1 of 2, byte {START + 4}: 0 pixels, where 8 of 8 are missing": HEADER
-    + b"-Y 2 +X 8\n"
-    + ROWS[:4]
-    + b"\x00"
-    + ROWS[5:],
-    f"scanline 1 of 1, byte {START}: no pixel to repeat": HEADER + b"-Y 1 +X 4\n" + b"\1\1\1\3" + b"abcd",
-    f"scanline 1 of 1, byte {START + 4}: 4 pixels, where 3 of 4 are missing": HEADER
-    + b"-Y 1 +X 4\n"
-    + b"abcd"
-    + b"\1\1\1\4",
-    f"scanline 1 of 1, byte {START + 6}: the file ends": HEADER + b"-Y 1 +X 4\n" + b"abcd" + b"ab",
+    f"scanline 1 of 2, byte {START}: the file ends": TWO,
+    f"scanline 2 of 2, byte {START + 23}: the file ends": TWO + ROWS[:-1],
+    f"scanline 2 of 2, byte {START + 12}: it has 9 pixels, and should have 8": TWO + ROWS[:15] + b"\x09" + ROWS[16:],
+    f"scanline 1 of 2, byte {START + 4}: 9 pixels, where 8 of 8 are missing": TWO + ROWS[:4] + b"\x89" + ROWS[5:],
+    f"scanline 1 of 2, byte {START + 4}: 0 pixels, where 8 of 8 are missing": TWO + ROWS[:4] + b"\x00" + ROWS[5:],
+    f"scanline 1 of 1, byte {START}: no pixel to repeat": ONE + b"\1\1\1\3abcd",
+    f"scanline 1 of 1, byte {START + 4}: 4 pixels, where 3 of 4 are missing": ONE + b"abcd\1\1\1\4",
+    f"scanline 1 of 1, byte {START + 6}: the file ends": ONE + b"abcdab",
 }
 
 

@@ -1,4 +1,4 @@
-"""Both readers of .obj files, the fast and the diagnosing one, give the right triangles."""
+"""Both readers of .obj files, the fast and the diagnosing one, give the right triangles; Newell's teapot is closed."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from minirt.meshes import Triangles, obj, obj_lines
+from minirt.meshes import Triangles, load_mesh, obj, obj_lines
 from minirt.meshes.obj_lines import Block, Counts
+from tests.paths import ROOT, SCENES
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 Read = Callable[[str], Triangles]
@@ -142,3 +143,36 @@ def test_both_readers_give_the_same_block() -> None:
         assert quick is not None
         assert all(np.array_equal(one, other) for one, other in zip(quick, slow, strict=True)), forms
         assert isinstance(slow, Block)
+
+
+TEAPOT = SCENES / "meshes" / "teapot.obj"
+
+
+def teapot() -> tuple[np.ndarray, list[list[int]]]:
+    """Points and faces of the file."""
+    lines = TEAPOT.read_text().splitlines()
+    points = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
+    faces = [[int(each.split("/")[0]) - 1 for each in line.split()[1:]] for line in lines if line.startswith("f ")]
+    return points, faces
+
+
+def test_the_teapot_is_closed_and_its_normals_point_outwards() -> None:
+    mesh = load_mesh(TEAPOT)
+    assert mesh.closed
+    assert not mesh.some(np.arange(1, len(mesh))).closed
+    assert mesh.normals is not None
+    a, b, c = np.moveaxis(np.asarray(mesh.points)[mesh.corners], 1, 0)
+    flat = np.cross(b - a, c - a)
+    agree = np.einsum("ij,ikj->ik", flat / np.linalg.norm(flat, axis=1)[:, None], np.asarray(mesh.normals))
+    assert agree.min() > 0
+    assert np.median(agree) > 0.99
+
+
+def test_the_script_writes_the_teapot(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "assets"))
+    import newell_teapot  # type: ignore[import-not-found]
+
+    points, _, faces = newell_teapot.teapot()
+    stored, stored_faces = teapot()
+    assert np.abs(points - stored).max() < 6e-4
+    assert [face[:, 0].tolist() for face in faces] == stored_faces

@@ -1,14 +1,51 @@
-"""Every text that a test of this folder parses is read by both readers, the fast and the diagnosing one."""
+"""Every text that a test of this folder parses is read by both readers, the fast and the diagnosing one: they find the
+same errors, and the same elements to the last bit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from unittest.mock import patch
 
 import pytest
 
-from minirt.scene import parser
-from tests.scene.readers import read_by_both
+from minirt.errors import Problem, SceneError
+from minirt.scene import Item, fast, parser
+from minirt.scene.lines import Log
+from minirt.scene.parser import read_lines
+
+Outcome = tuple[list[Problem], list[Problem], list[object] | tuple[Problem, ...]]
+
+
+def no_plain_lines(sources: Sequence[str], length: int) -> Sequence[None]:
+    """Stand in for `fast.read`: leave all lines to the diagnosing reader."""
+    return [None] * len(sources)
+
+
+def exact(item: Item) -> object:
+    """Return an item's type and all of its attributes, with all bits of its numbers."""
+    return item if isinstance(item, str) else (type(item), repr(vars(item)))
+
+
+def outcome(sources: list[str], log: Log) -> tuple[list[Item], Outcome]:
+    """Return the items of `read_lines`, and everything by which two readers are compared."""
+    try:
+        items = read_lines(sources, log)
+    except SceneError as error:
+        return [], (log.errors, log.notices, error.problems)
+    return items, (log.errors, log.notices, list(map(exact, items)))
+
+
+def read_by_both(sources: list[str], log: Log) -> list[Item]:
+    """Read lines as `read_lines` does; AssertionError when the diagnosing reader alone gives another outcome."""
+    with patch.object(fast, "read", no_plain_lines):
+        diagnosed = outcome(sources, Log(log.file, log.lenient))[1]
+    with patch.object(fast, "FEW_LINES", 0):
+        items, both = outcome(sources, log)
+    assert both == diagnosed
+    if isinstance(both[2], tuple):
+        raise SceneError(both[2])
+    return items
 
 
 @pytest.fixture(autouse=True, scope="package")

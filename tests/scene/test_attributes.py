@@ -150,40 +150,6 @@ def test_there_is_at_most_one_background() -> None:
 
 
 @pytest.mark.parametrize(
-    ("before", "changes", "after"),
-    [
-        (SPHERE, {"mirror": 0.5}, f"{SPHERE} mirror:0.5"),
-        (f"{SPHERE}  # ball", {"checker": Checker(2.0)}, f"{SPHERE} checker:2  # ball"),
-        (f"{SPHERE} spc:0.50,30 # a", {"mirror": 0.0}, f"{SPHERE} spc:0.50,30 mirror:0 # a"),
-        (f"{SPHERE} spc:0.50,30 # a", {"specular": Specular(0.5, 40)}, f"{SPHERE} spc:0.5,40 # a"),
-        (f"{SPHERE} spc:0.5,30,blinn", {"specular": Specular(0.5, 30)}, f"{SPHERE} spc:0.5,30"),
-        (f"{SPHERE} glass:1.5 mirror:0.1", {"glass": Glass(1.5, 0.5)}, f"{SPHERE} glass:1.5,0.5 mirror:0.1"),
-        (f"{SPHERE} glass:1.5,1", {"glass": Glass(1.6)}, f"{SPHERE} glass:1.6"),
-        (f"{SPHERE} checker mirror:1 # b", {"checker": Checker(3.0)}, f"{SPHERE} checker:3 mirror:1 # b"),
-        (f"{SPHERE} checker mirror:1 # b", {"diameter": 2.0}, "sp 0,0,20 2 10,0,255 checker mirror:1 # b"),
-        (f"{SPHERE} pat mirror:1 # b", {"checker": None}, f"{SPHERE} mirror:1 # b"),
-        (f"{SPHERE} mirror:0.5   # b", {"mirror": None}, f"{SPHERE}   # b"),
-        (f"{SPHERE} mirror:0.5 checker", {"mirror": None, "checker": None, "glass": Glass(2)}, f"{SPHERE} glass:2"),
-        ("l 0,0,0 1 fade:5", {"colour": (1, 2, 3)}, "l 0,0,0 1 1,2,3 fade:5"),
-        ("l 0,0,0 1", {"fade": 7.0}, "l 0,0,0 1 fade:7"),
-        ("sl 0,0,0 0,-1,0 40 1", {"rim": 0.0}, "sl 0,0,0 0,-1,0 40 1 rim:0"),
-        ("dl 0,-1,0 1 # sun", {"direction": (1.0, 0.0, 0.0)}, "dl 1,0,0 1 # sun"),
-        ("dl 0,-1,0 1 size:0.53", {"size": 2.0}, "dl 0,-1,0 1 size:2"),
-        ("L 0,0,0 1 fade:9 size:2", {"size": None}, "L 0,0,0 1 fade:9"),
-        ("bg 1,2,3", {"paint": (4, 5, 6)}, "bg 4,5,6"),
-    ],
-)
-def test_only_changed_fields_are_rewritten(before: str, changes: dict[str, Any], after: str) -> None:
-    scene = read("# one", before, "# two")
-    changed = scene.replace(scene.elements[2], **changes)
-    assert dump(changed) == scene_with("# one", after, "# two")
-    assert parse(dump(changed)).scene.elements == changed.elements
-    assert dump(changed.replace(changed.elements[2], source="")) == scene_with(
-        "# one", describe(changed.elements[2]), "# two"
-    )
-
-
-@pytest.mark.parametrize(
     ("make", "message"),
     [
         (lambda: Specular(2, 30), "specular share must be in [0, 1], got 2"),

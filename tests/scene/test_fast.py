@@ -22,8 +22,8 @@ from minirt.fields.scalars import LONGEST, NUMBER, PLAIN, WHOLE, Scalar
 from minirt.scene import describe, element_reader, fast, parse, parser
 from minirt.scene.lines import Log, line_from
 from minirt.scene.parser import read_lines
+from tests.scene.conftest import exact, no_plain_lines, read_by_both
 from tests.scene.examples import CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
-from tests.scene.readers import exact, no_plain_lines, read_by_both
 from tests.scene.strategies import ANY
 
 MANY = fast.FEW_LINES + 1  # of a file, so that the fast path reads it
