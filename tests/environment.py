@@ -20,27 +20,19 @@ def prepare() -> None:
     """Set missing environment variables."""
     if os.environ.get("NUMBA_CPU_NAME"):  # else numba adds the features of the actual processor, such as AVX-512
         os.environ.setdefault("NUMBA_CPU_FEATURES", "")
-    if not is_writable(user_cache()):
+    if not is_cache_writable():
         os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
     os.environ["XDG_STATE_HOME"] = str(STATE)
     os.environ["XDG_CONFIG_HOME"] = str(CONFIGURATION)
 
 
-def user_cache() -> Path | None:
-    """Return the user's cache folder; None for a user without a home folder."""
+def is_cache_writable() -> bool:
+    """Whether files can be created in the user's cache folder, which is created if necessary."""
     named = Path(os.environ.get("XDG_CACHE_HOME", ""))
     try:
-        return named if named.is_absolute() else Path.home() / ".cache"
-    except RuntimeError:
-        return None
-
-
-def is_writable(folder: Path | None) -> bool:
-    """Whether files can be created in a folder, which is created if necessary."""
-    try:
-        if folder:
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
+        folder = named if named.is_absolute() else Path.home() / ".cache"
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except (OSError, RuntimeError):  # RuntimeError for a user without a home folder
         return False
-    return folder is not None
+    return True

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import select
 import signal
 import subprocess
 import tempfile
@@ -67,6 +68,25 @@ def run(command: Sequence[str], given: Any = None, **options: Any) -> subprocess
     with started(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options) as process:
         out, err = process.communicate(given, timeout=waiting.HANG_LIMIT)
     return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+
+def next_line(process: subprocess.Popen[Any], errors: bool = False) -> str:
+    """Wait for the next line of standard output, or of standard error, and return it without its line end.
+
+    Only the line is read from the pipe: `communicate` returns the rest. EOFError at the end; TimeoutError after
+    `HANG_LIMIT`, while `readline` would wait for ever.
+    """
+    stream = process.stderr if errors else process.stdout
+    assert stream is not None
+    pipe = stream.fileno()
+    line = b""
+    while not line.endswith(b"\n"):
+        waiting.until(lambda: bool(select.select([pipe], [], [], 0)[0]), "a line of the program's output")
+        byte = os.read(pipe, 1)
+        if not byte:
+            raise EOFError(f"the program's output ended with {line!r}")
+        line += byte
+    return line.decode().removesuffix("\n")
 
 
 def fork(work: Callable[[], object]) -> Callable[[], int]:

@@ -2,7 +2,7 @@
 
 Each gets a new environment in .venv/pythons, with the newest versions of all packages, and compiles its own kernels.
 `python -m tests.pythons lowest` prints the lowest versions of the dependencies as arguments of pip, for `make lowest`.
-The Pythons are those that pyproject.toml names, and newer ones where numba has wheels for them.
+The Pythons are those that pyproject.toml names.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from tests.paths import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 FOLDER = Path(".venv/pythons")
-LATER = 3  # minor versions after the newest named one that are looked for
 TESTS = "not window and not slow or each_python"  # the quick ones, a film, a window and a notebook
 
 
@@ -35,12 +34,6 @@ def lowest_versions(*extras: str) -> list[str]:
     return [re.sub(r"^([\w-]+)>=([\d.]+).*$", r"\1==\2", each) for each in everywhere]
 
 
-def newer(versions: list[str]) -> list[str]:
-    """Return the versions after these that are looked for."""
-    last = int(versions[-1].partition(".")[2])
-    return [f"3.{minor}" for minor in range(last + 1, last + 1 + LATER)]
-
-
 def find(version: str) -> Path | None:
     """Return the path of a Python on PATH or in pyenv; None where there is none that starts."""
     pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
@@ -50,13 +43,6 @@ def find(version: str) -> Path | None:
         if started.returncode == 0:  # pyenv's shims fail, but for the versions that are chosen
             return path
     return None
-
-
-def has_numba(version: str) -> bool:
-    """Whether numba has wheels for a version of Python on this system."""
-    wanted = ["--only-binary=:all:", "--no-deps", f"--python-version={version}", "--target=unused", "numba"]
-    command = [sys.executable, "-m", "pip", "install", "--dry-run", "--quiet", *wanted]
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
 def passes(version: str, python: Path) -> bool:
@@ -72,16 +58,11 @@ def passes(version: str, python: Path) -> bool:
 
 def main() -> int:
     """Run the tests with each Python, and print what became of it; return 1 where some fail or nothing was found."""
-    told: dict[str, str] = {}
-    for version in (*named(), *newer(named())):
-        python = find(version)
-        if python and (version in named() or has_numba(version)):
+    told = dict.fromkeys(named(), "not found on PATH or in pyenv")
+    for version in named():
+        if python := find(version):
             print(f"Python {version}: {python}", flush=True)
             told[version] = "passed" if passes(version, python) else "FAILED"
-        elif python:
-            told[version] = "numba has no wheels for it"
-        else:
-            told[version] = "not found on PATH or in pyenv"
     print(*(f"Python {version}: {what}" for version, what in told.items()), sep="\n")
     return int("passed" not in told.values() or "FAILED" in told.values())
 

@@ -17,8 +17,7 @@ from minirt.errors import ElementError, FieldError, Problem
 from minirt.meshes.obj_lines import ObjError
 from minirt.rendering import renderer
 from tests.cli.program import SCENE, environment
-from tests.lines import next_line
-from tests.processes import run, started
+from tests.processes import next_line, run, started
 from tests.waiting import HANG_LIMIT
 
 SAME = """

@@ -40,8 +40,7 @@ def test_no_golden_picture_is_blank() -> None:
         assert len(np.unique(colours)) > 20, path.stem
 
 
-def test_a_wrong_picture_fails_and_is_saved_for_inspection(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+def test_a_wrong_picture_fails() -> None:
     golden_picture = stored(SCENES[1])
     speck, shifted = golden_picture.copy(), np.roll(golden_picture, 1, axis=1)
     y, x = np.argwhere(~edges(golden_picture))[5000]
@@ -49,8 +48,6 @@ def test_a_wrong_picture_fails_and_is_saved_for_inspection(tmp_path: Path, monke
     for wrong in (speck, shifted):
         with pytest.raises(AssertionError, match="pixels are off"):
             assert_alike("wrong", wrong, golden_picture)
-    names = {file.name for file in tmp_path.rglob("*.png")}
-    assert names == {f"wrong-{part}.png" for part in ("picture", "reference", "difference")}
 
 
 @pytest.mark.parametrize("batch", range(6))

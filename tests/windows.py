@@ -300,18 +300,8 @@ def display(size: tuple[int, int] = SCREEN, *options: str) -> Iterator[tuple[str
         number = stack.enter_context(os.fdopen(reader))
         with os.fdopen(writer):
             command = ["Xvfb", *options, "-displayfd", str(writer), "-screen", "0", "{}x{}x24".format(*size)]
-            command += [
-                "-nolisten",
-                "tcp",
-                "-noreset",
-            ]  # else it restarts when its last client leaves
-            command += [
-                "-r",
-                "-ardelay",
-                "100",
-                "-arinterval",
-                "20",
-            ]  # milliseconds of key repeat, if a test turns it on
+            command += ["-nolisten", "tcp", "-noreset"]  # else it restarts when its last client leaves
+            command += ["-r", "-ardelay", "100", "-arinterval", "20"]  # milliseconds, if a test turns key repeat on
             server = stack.enter_context(_server(command, pass_fds=(writer,)))
         # Xvfb writes its number when it is ready, or closes the pipe when it ends.
         until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's display number")

@@ -1,15 +1,12 @@
-"""`python -m tests.bench`: benchmark miniRT against other renderers, in frames, from its start and over growing
-scenes."""
+"""`python -m tests.bench [--quick]`: measure miniRT beside other renderers: frames, starts, and growing scenes."""
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable
+import sys
 from functools import lru_cache, partial
 from importlib.util import find_spec
 from itertools import cycle
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -57,57 +54,36 @@ class MiniRT(System):
         return [run.wall * 1e3 for run in timed]
 
 
-Maker = Callable[[Setting], System]
-
-OWN: list[Maker] = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
-PEERS: list[Maker] = [Embree, Tachyon, PovRay]
+OWN = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
+PEERS = [Embree, Tachyon, PovRay]
 WIDTH, HEIGHT = 1280, 720
+OUT = Path("out")
 
 
-class Plan(NamedTuple):
-    """The extent of the benchmark."""
-
-    rounds: int  # rounds of the comparison
-    starts: int  # rounds of the starts
-    grown_rounds: int  # rounds of the growth curve
-    most: int  # spheres of the growth curve, at most
-    seconds: float  # of a turn
-
-
-FULL = Plan(rounds=5, starts=5, grown_rounds=3, most=1_000_000, seconds=0.6)
-QUICK = Plan(rounds=2, starts=1, grown_rounds=1, most=10_000, seconds=0.2)
-
-
-def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__.split(": ")[1])
-    parser.add_argument("--quick", action="store_true", help="fewer rounds, and the growth up to 10,000 spheres")
-    parser.add_argument("--threads", type=int, default=usable_cores(), help="of each system (default: %(default)s)")
-    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the charts")
-    return parser.parse_args()
-
-
-def main() -> None:
-    asked = arguments()
-    plan = QUICK if asked.quick else FULL
-    folder = asked.out / "bench"
+def main(quick: bool) -> None:
+    """Measure all, print the tables, and draw the charts; `quick` has fewer rounds, and fewer spheres of the growth."""
+    rounds, start_rounds, grown_rounds, most, seconds = (2, 1, 1, 10_000, 0.2) if quick else (5, 5, 3, 1_000_000, 0.6)
+    folder = OUT / "bench"
     folder.mkdir(parents=True, exist_ok=True)
-    setting = Setting(WIDTH, HEIGHT, asked.threads, folder)
+    setting = Setting(WIDTH, HEIGHT, usable_cores(), folder)
     own, reasons = available(partial(make, setting) for make in OWN)
     peers, more_reasons = available(partial(make, setting) for make in PEERS)
     systems = own + peers
 
-    print(f"{processor()}, {usable_cores()} processors; {asked.threads} threads each.")
-    print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {plan.rounds} rounds")
+    print(f"{processor()}, {usable_cores()} threads each.")
+    print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {rounds} rounds")
     print("in which the systems take turns; the second figure is a multiple of the first row.\n", flush=True)
     four = scenes.compared(folder)
-    compared = take_turns(systems, four, plan.rounds, plan.seconds)
+    compared = take_turns(systems, four, rounds, seconds)
     print(table(compared), end="\n\n", flush=True)
 
-    started, start_reasons = starts.measured(setting, four[:3], plan.starts)
-    print(starts.report(started, plan.starts), end="\n\n", flush=True)
+    started, start_reasons = starts.measured(setting, four[:3], start_rounds)
+    print(f"Whole programs, until their picture of {starts.WIDTH}x{starts.HEIGHT} pixels is in a file or in a window.")
+    print(f"Median of {start_rounds} starts; a cold one finds an empty cache of kernels.\n")
+    print(table(started, "ms to a picture"), end="\n\n", flush=True)
 
-    grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= plan.most]
-    growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
+    grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= most]
+    growth = take_turns(own, grown, grown_rounds, seconds)
     print(table(growth, "spheres in view"), end="\n\n")
 
     for system in systems:
@@ -120,11 +96,11 @@ def main() -> None:
         return
     from tests.bench import charts
 
-    charts.dots(compared, asked.out / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
-    charts.dots(started, asked.out / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
-    charts.growth(growth, asked.out / "growth.png")
-    print(f"{asked.out}: bench.png, starts.png, growth.png")
+    charts.dots(compared, OUT / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
+    charts.dots(started, OUT / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
+    charts.growth(growth, OUT / "growth.png")
+    print(f"{OUT}: bench.png, starts.png, growth.png")
 
 
 if __name__ == "__main__":
-    main()
+    main("--quick" in sys.argv[1:])

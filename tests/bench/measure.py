@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
+from math import floor, log10
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -73,19 +74,10 @@ def take_turns(systems: list[System], scenes: list[Path], rounds: int, seconds: 
     return cells
 
 
-LACKING = "-"  # for a scene that a system does not render
-
-
-def figure(ms: float) -> str:
-    """Format milliseconds in three significant digits, without an exponent."""
-    digits = 2 if ms < 9.995 else 1 if ms < 99.95 else 0
-    return f"{ms:.{digits}f}"
-
-
-def times(ratio: float) -> str:
-    """Format a ratio in two significant digits, without an exponent."""
-    digits = 2 if ratio < 0.995 else 1 if ratio < 9.95 else 0
-    return f"x{ratio:.{digits}f}"
+def figure(value: float, digits: int = 3) -> str:
+    """Format a positive number in so many significant digits, without an exponent."""
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:.{max(0, min(2, digits - 1 - floor(log10(rounded))))}f}"
 
 
 def names(cells: Cells) -> tuple[list[str], list[str]]:
@@ -94,20 +86,12 @@ def names(cells: Cells) -> tuple[list[str], list[str]]:
 
 
 def table(cells: Cells, title: str = "ms a frame") -> str:
-    """Return a table with a row per system and a column per scene; ratios are to the first row, which has all."""
+    """Return a row per system and a column per scene: medians and their ratios to the first row, which has all."""
     systems, scenes = names(cells)
-    rows = [[title, *scenes]]
-    rows += [[system, *(text(cells, system, scene, systems[0]) for scene in scenes)] for system in systems]
-    first, *widths = (max(map(len, column)) for column in zip(*rows, strict=True))
-    lines = (
-        [row[0].ljust(first), *(cell.rjust(width) for cell, width in zip(row[1:], widths, strict=True))] for row in rows
-    )
-    return "\n".join("  ".join(line).rstrip() for line in lines)
-
-
-def text(cells: Cells, system: str, scene: str, first: str) -> str:
-    """Format the median of all rounds, and its ratio to the first system's."""
-    if (system, scene) not in cells:
-        return LACKING
-    ms = median(cells[system, scene])
-    return f"{figure(ms)} {times(ms / median(cells[first, scene])):>5}"
+    first = {scene: median(cells[systems[0], scene]) for scene in scenes}
+    lines = [f"{title:<16}" + "".join(f"{scene:>16}" for scene in scenes)]
+    for system in systems:
+        medians = ((scene, median(cells[system, scene]) if (system, scene) in cells else 0.0) for scene in scenes)
+        texts = (f"{figure(ms)} {'x' + figure(ms / first[scene], 2):>5}" if ms else "-" for scene, ms in medians)
+        lines.append(f"{system:<16}" + "".join(f"{text:>16}" for text in texts))
+    return "\n".join(lines)

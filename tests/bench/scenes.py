@@ -78,9 +78,8 @@ def write(path: Path, lines: Iterator[str]) -> Path:
 
 def compared(folder: Path) -> list[Path]:
     """Return the four scenes on which all systems are compared; generated ones are written into the folder."""
-    mesh = waves(folder, TRIANGLES).with_name("mesh.rt")
-    many, one = write(folder / "tenthousand.rt", tenthousand()), HERE / "one.rt"
-    return [one, HERE / "fifty.rt", many, write(mesh, iter([MESH.format(TRIANGLES)]))]
+    many = write(folder / "tenthousand.rt", tenthousand())
+    return [HERE / "one.rt", HERE / "fifty.rt", many, waves(folder, TRIANGLES)]
 
 
 def grown(folder: Path, count: int) -> Path:
@@ -95,20 +94,14 @@ A 0.2 255,255,255
 C 0,2,-14 0,-0.1,1 60
 L -40,30,-30 0.7 255,255,255
 pl 0,-6,0 0,1,0 200,200,200
-ob {}.obj 0,0,0 5 200,140,90
+ob mesh.obj 0,0,0 5 200,140,90
 """
-
-
-def grid(count: int) -> tuple[int, int]:
-    """Return how many rings of points, and points per ring, give about `count` triangles: two per point, except at both
-    poles."""
-    rings = max(2, round((count / 4) ** 0.5))
-    return rings, 2 * rings
 
 
 def ball(count: int) -> Iterator[str]:
     """Yield the lines of a closed .obj mesh of about `count` triangles, in quads except at its poles."""
-    rings, around = grid(count)
+    rings = round((count / 4) ** 0.5)  # two triangles per point, except at both poles
+    around = 2 * rings
     yield "v 0 1 0\n"
     for ring in range(1, rings + 1):
         down = pi * ring / (rings + 1)
@@ -130,5 +123,5 @@ def ball(count: int) -> Iterator[str]:
 
 def waves(folder: Path, count: int) -> Path:
     """Write the scene of a mesh of about `count` triangles; return its file."""
-    write(folder / "meshes" / f"{count}.obj", ball(count))
-    return write(folder / "meshes" / f"{count}.rt", iter([MESH.format(count)]))
+    write(folder / "mesh.obj", ball(count))
+    return write(folder / "mesh.rt", iter([MESH]))

@@ -15,13 +15,13 @@ from contextlib import ExitStack, contextmanager
 from functools import cache, partial
 from pathlib import Path
 from time import perf_counter, sleep
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import minirt
-from tests.bench.measure import INSTALL, Cells, MissingError, Setting, System, available, table, take_turns
+from tests.bench.measure import INSTALL, Cells, MissingError, Setting, System, available, take_turns
 from tests.bench.peers.programs import Command, PovRay, Tachyon
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT
@@ -31,20 +31,16 @@ Pixels = NDArray[np.uint8]  # (height, width, 3), red green blue
 QUIET: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 
-class Screen(NamedTuple):
-    """A running screen: its name for DISPLAY, and a view of its memory that follows what is drawn."""
-
-    name: str
-    pixels: Pixels
-
-
 @contextmanager
-def virtual_screen(width: int, height: int) -> Iterator[Screen]:
-    """Start a screen, which ends with the block; `MissingError` if Xvfb is not installed."""
+def virtual_screen(width: int, height: int) -> Iterator[tuple[str, Pixels]]:
+    """Start a screen, which ends with the block; yield its name for DISPLAY, and a view of what it shows.
+
+    `MissingError` if Xvfb is not installed.
+    """
     if not shutil.which("Xvfb"):
         raise MissingError(f"windows: Xvfb is not installed; {INSTALL}")
     with tempfile.TemporaryDirectory() as folder, display((width, height), "-fbdir", folder) as (name, _):
-        yield Screen(name, pixels(np.memmap(Path(folder) / "Xvfb_screen0", np.uint8, "r")))
+        yield name, pixels(np.memmap(Path(folder) / "Xvfb_screen0", np.uint8, "r"))
 
 
 WIDTH, HEIGHT = 320, 240
@@ -114,14 +110,14 @@ class WindowStart(Start):
 
     where = "window"
 
-    def __init__(self, setting: Setting, cold: bool, screen: Screen) -> None:
+    def __init__(self, setting: Setting, cold: bool, screen: tuple[str, Pixels]) -> None:
         super().__init__(setting, cold)
-        self.screen = screen
+        self.screen, self.pixels = screen
 
     def start(self, path: Path, environment: Environment) -> float:
-        right, window = right_picture(path), self.screen.pixels[:HEIGHT, :WIDTH]
+        right, window = right_picture(path), self.pixels[:HEIGHT, :WIDTH]
         environment = {key: value for key, value in environment.items() if key != "WAYLAND_DISPLAY"}
-        options = {"env": environment | {"DISPLAY": self.screen.name}} | QUIET
+        options = {"env": environment | {"DISPLAY": self.screen}} | QUIET
         begin = perf_counter()
         with started(self.command(path, "--samples", "1"), **options) as program:
             while not shows(window, right):
@@ -162,12 +158,3 @@ def measured(setting: Setting, scenes: list[Path], rounds: int) -> tuple[Cells, 
         makers += [partial(PeerStart, peer, small) for peer in (Tachyon, PovRay)]
         systems, _ = available(makers)  # of peers that are missing, their frames tell
         return take_turns(systems, scenes, rounds, 0.0), reasons
-
-
-def report(cells: Cells, rounds: int) -> str:
-    """Return the table of starts with its heading."""
-    return (
-        f"Whole programs, until their picture of {WIDTH}x{HEIGHT} pixels is in a file or in a window.\n"
-        f"Median of {rounds} starts; a cold one finds an empty cache of kernels.\n\n"
-        f"{table(cells, 'ms to a picture')}"
-    )

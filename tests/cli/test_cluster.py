@@ -15,8 +15,7 @@ import tifffile
 
 import minirt
 from tests.cli.program import Run, environment, program, start
-from tests.lines import next_line
-from tests.processes import is_running, started
+from tests.processes import is_running, next_line, started
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT, until
 

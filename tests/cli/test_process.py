@@ -13,8 +13,7 @@ import minirt
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, PROGRAM, environment, program, start
 from tests.cli.test_output import pixels
-from tests.lines import next_line
-from tests.processes import run
+from tests.processes import next_line, run
 from tests.waiting import HANG_LIMIT
 
 LOADED = "import sys; print(*sorted({each.split('.')[0] for each in sys.modules}), *sorted(sys.modules))"

@@ -14,8 +14,8 @@ from PIL import Image
 from minirt.mlx.memory import Headless
 from minirt.mlx.recording import COMMANDS, Line, add_recording
 from tests import processes
-from tests.lines import next_line
 from tests.paths import PACKAGE, ROOT
+from tests.processes import next_line
 from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from tests.idle import switches, until_idle
-from tests.lines import next_line
 from tests.paths import PACKAGE
+from tests.processes import next_line
 from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:

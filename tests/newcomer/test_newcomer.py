@@ -94,7 +94,7 @@ import numpy as np
 import minirt
 from minirt.rendering.packing.features import features
 from minirt.scene import dump, parse
-from tests.format_table import format_table
+from tests.make_tables import format_table
 
 assert minirt.Gate((0, 0, 0), 2, (1, 2, 3)).side == 2
 assert {"Gate", "Sheen"} <= set(minirt.__all__)

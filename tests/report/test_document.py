@@ -60,20 +60,16 @@ def test_disturbed_settings_are_counted_and_not_recommended() -> None:
     assert not [line for line in advice(calm) if "left out" in line]
 
 
-def test_every_picture_is_a_file_and_in_the_page() -> None:
+def test_every_picture_is_a_file_and_in_the_page_and_both_forms_tell_every_figure() -> None:
     made = report_files(FINDINGS, {ROWS[0].name: BLACK, ROWS[4].name: BLACK}, BLACK)
     pictures = {"error-uniform-1.png", "error-adaptive-16.png", "reference.png"}
     assert {name for name in made if name.endswith(".png")} == pictures
     assert made["report.html"].count(b"data:image/png;base64,") == 3
     assert b"![Error against run time](diagram.svg)" in made["report.md"]
-
-
-@pytest.mark.parametrize("name", ["report.html", "report.md"])
-def test_both_forms_tell_every_figure(name: str) -> None:
-    text = report_files(FINDINGS, {}, BLACK)[name].decode()
-    for figure in ("0.01000", "0.03600", "tiles", "+100.0", "shapes alone", "1.0e-07", "POV-Ray is not installed"):
-        assert figure in text
-    assert ("&lt;slow&gt; &amp; sure" if name == "report.html" else "<slow> & sure") in text
+    for name, knob in (("report.html", "&lt;slow&gt; &amp; sure"), ("report.md", "<slow> & sure")):
+        for figure in (knob, "0.01000", "0.03600", "tiles", "+100.0", "shapes alone", "1.0e-07"):
+            assert figure in made[name].decode()
+        assert b"POV-Ray is not installed" in made[name]
 
 
 class Made(NamedTuple):

@@ -26,9 +26,8 @@ from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from tests.kernel.machine_code.small_kernels import call, count, double, half, library, square
 from tests.kernel.pictures import AMBIENT, EYE, LAMP, SHAPES
-from tests.lines import next_line
 from tests.paths import PACKAGE, ROOT
-from tests.processes import started
+from tests.processes import next_line, started
 from tests.waiting import HANG_LIMIT, until
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
