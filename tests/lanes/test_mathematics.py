@@ -8,30 +8,24 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from numba import njit
 
-import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.pipeline import FLAGS
-from minirt.lanes import Vec, exponent, load, save, two_to, width
+from minirt.lanes import Vec, exponent, load, two_to
 from minirt.lanes import mathematics as noise_module
 from minirt.lanes.mathematics import GREATEST, PERIOD, arctan2, corner_gradient, noise_and_gradient, remainder
 from minirt.lanes.mathematics import power as power_of
 from tests.lanes.test_operators import PRECISIONS, assert_same, pairs
 from tests.reference import texturing as reference
+from tests.shapes.execution_modes import on_lanes, vec_lanes
 
 ULPS = 3.0  # what the documentation promises
 
 
-@njit(**FLAGS)
-def on_lanes(y: Any, x: Any, out: Any) -> None:
-    for i in range(0, y.size, width(y)):
-        save(arctan2(load(y, i), load(x, i)), out, i)
-
-
 def compiled(y: np.ndarray, x: np.ndarray) -> np.ndarray:
-    out = np.empty_like(y)
-    on_lanes(y, x, out)
-    return out
+    return on_lanes(angle_lanes, 1, y, x)[0]
+
+
+def angle_lanes(i: int, y: Any, x: Any) -> Any:
+    return (arctan2(load(y, i), load(x, i)),)
 
 
 def interpreted(y: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -88,28 +82,17 @@ def test_zeros_infinities_and_nan_are_as_in_numpy(angles_of: Any, dtype: Any) ->
     assert (np.abs(result - right)[~special] <= 4 * np.finfo(dtype).eps * np.abs(right)[~special] + 2 * tiny).all()
 
 
-def test_a_single_number_is_as_precise() -> None:
-    assert arctan2(np.float64(1.0), np.float64(-1.0)) == 0.75 * np.pi
-    assert arctan2(np.float64(-0.0), np.float64(-3.0)) == -np.pi
-
-
 BASES = np.concatenate([np.linspace(0.0, 1.0, 97), 1.0 - 0.5 ** np.arange(1, 54), 0.5 ** np.arange(1, 60, 0.37)])
 EXPONENTS = (1.0, 1.5, 2.0, 7.0, 50.0, 1e3, 1e6)
 
 
-@njit(**FLAGS)
-def power_on_lanes(x: Any, n: Any, out: Any) -> None:
-    save(power_of(load(x, 0), n), out, 0)
-
-
 def compiled_power(bases: np.ndarray, n: float) -> np.ndarray:
-    out = np.empty_like(bases)
-    for start in range(0, len(bases), 16):
-        packet = np.resize(bases[start : start + 16], 128 // bases.itemsize)
-        powers = np.empty_like(packet)
-        power_on_lanes(packet, bases.dtype.type(n), powers)
-        out[start : start + 16] = powers[: len(bases[start : start + 16])]
-    return out
+    padded = np.resize(bases, len(bases) + -len(bases) % 32)
+    return on_lanes(power_lanes, 1, bases.dtype.type(n), padded)[0, : len(bases)]
+
+
+def power_lanes(i: int, n: Any, x: Any) -> Any:
+    return (power_of(load(x, i), n),)
 
 
 @pytest.mark.parametrize("n", EXPONENTS)
@@ -146,21 +129,14 @@ POINTS = RANDOM.uniform(-300, 300, (3, 4096))
 CELLS = np.array(list(product((-150, -149, -1, 0, 1, 74, 75, 148), repeat=3)), float).T  # corners of cells
 
 
-@njit(**FLAGS)
-def noise_on_lanes(p: Any, out: Any) -> None:
-    for i in range(0, p.shape[1], width(p)):
-        value, gradient = noise_and_gradient(Vec(load(p[0], i), load(p[1], i), load(p[2], i)))
-        save(value, out[0], i)
-        save(gradient.x, out[1], i)
-        save(gradient.y, out[2], i)
-        save(gradient.z, out[3], i)
+def noise_lanes(i: int, p: Any) -> Any:
+    value, gradient = noise_and_gradient(vec_lanes(p, i))
+    return value, gradient.x, gradient.y, gradient.z
 
 
 def compiled_noise(p: np.ndarray) -> np.ndarray:
     """Return the noise at points (3, n) and its gradient, (4, n)."""
-    out = np.empty((4, p.shape[1]), p.dtype)
-    noise_on_lanes(p, out)
-    return out
+    return on_lanes(noise_lanes, 4, p)
 
 
 def interpreted_noise(p: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from numba import njit
 
 from minirt.kernel.machine_code.compile_process import environment
 from minirt.kernel.machine_code.fingerprint import V3
-from minirt.lanes import Vec, dot, greatest, inverse_root, lane, load, lowest, unit, width
+from minirt.lanes import Vec, greatest, inverse_root, load, width
 from minirt.lanes.compiled.operations import SERIES
 from tests.lanes.test_operators import DTYPES, PRECISIONS, assert_same, edges, store
 from tests.processes import run
@@ -59,72 +59,8 @@ def test_compiled_operators_are_those_of_the_components(one: int, other: int, dt
 
 
 @njit(error_model="numpy")
-def on_single_numbers(a: Any) -> Any:
-    u, v = Vec(a[0], a[1], a[2]), Vec(a[3], a[4], a[5])
-    r, s = (u + v - v / a[6]), -u
-    return r.x, r.y, r.z, s.x, s.y, s.z
-
-
-@PRECISIONS
-def test_compiled_vecs_may_be_of_single_numbers(dtype: Any) -> None:
-    a = table(dtype, 1)
-    u, v = a[:3], a[3:6]
-    assert_same(np.array(on_single_numbers(a), dtype), [*(u + v - v * (1 / a[6])), *-u])
-
-
-@PRECISIONS
-def test_interpreted_operators_are_those_of_the_components(dtype: Any) -> None:
-    n = 128 // np.dtype(dtype).itemsize
-    a, b = table(dtype, 1), table(dtype, 2)
-    columns, w = a.reshape(3, n), b[:3, None]
-    u, v, s = Vec(*columns), Vec(*b[:3]), a[4 : 4 + n]
-    for actual, right in (
-        (u + v, columns + w),
-        (u - v, columns - w),
-        (v - u, w - columns),
-        (s * v, s * w),
-        (v * s, s * w),
-        (u / s, columns * (1 / s)),
-        (dtype(2) * u, 2 * columns),
-        (-u, -columns),
-    ):
-        assert isinstance(actual, Vec)
-        assert_same([actual.x, actual.y, actual.z], right)
-        assert actual.x.dtype == dtype
-
-
-@njit(error_model="numpy")
-def products(a: Any, b: Any, out: Any) -> None:
-    n = width(a)
-    u, v = Vec(load(a, 0), load(a, n), load(a, 2 * n)), Vec(load(b, 0), load(b, n), load(b, 2 * n))
-    w = Vec(b[0], b[n], b[2 * n])
-    store(out[0], 0, dot(u, v))
-    store(out[1], 0, dot(u, w))
-    store(out[2], 0, dot(w, u))
-
-
-@PRECISIONS
-def test_the_dot_product_is_the_sum_of_products(dtype: Any) -> None:
-    n = 128 // np.dtype(dtype).itemsize
-    a, b = table(dtype, 1), table(dtype, 2)
-    u, v = a.reshape(3, n), b.reshape(3, n)
-    w = v[:, :1]
-    right = [np.sum(u * v, axis=0), np.sum(u * w, axis=0), np.sum(u * w, axis=0)]
-    size = [np.sum(np.abs(u * each), axis=0) for each in (v, w, w)]
-    out = np.empty((3, n), dtype)
-    products(a, b, out)
-    assert (np.abs(out - right) <= 2 * np.finfo(dtype).eps * np.array(size)).all()  # a * b + c may round once
-    assert_same(dot(Vec(*u), Vec(*v)), u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
-
-
-@njit(error_model="numpy")
 def greatest_of(values: Any) -> float:
     return greatest(load(values, 0))
-
-
-@njit
-def lowest_bit(number: int) -> int:
-    return lowest(number)
 
 
 @PRECISIONS
@@ -143,14 +79,6 @@ def test_the_greatest_number_is_found_in_any_lane(interpreted: bool, dtype: Any)
     assert function(np.full(count, np.nan, dtype)) == -np.inf
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_the_lowest_bit_is_found(interpreted: bool) -> None:
-    function = lowest_bit.py_func if interpreted else lowest_bit
-    for bit in range(62):
-        assert function(1 << bit) == bit
-        assert function((1 << bit) | (1 << 62)) == bit
-
-
 LLVM_NAMES = {np.float64: "double", np.float32: "float"}
 
 
@@ -158,14 +86,6 @@ LLVM_NAMES = {np.float64: "double", np.float32: "float"}
 def inverse_roots(a: Any, out: Any) -> None:
     for i in range(0, a.size, width(a)):
         store(out, i, inverse_root(load(a, i)))
-
-
-@njit(error_model="numpy")
-def units(a: Any, out: Any) -> None:
-    n = width(a)
-    v = unit(Vec(load(a, 0), load(a, n), load(a, 2 * n)))
-    for ray in range(n):
-        out[0, ray], out[1, ray], out[2, ray] = lane(v.x, ray), lane(v.y, ray), lane(v.z, ray)
 
 
 def largest_error(dtype: Any) -> float:
@@ -218,19 +138,6 @@ def test_the_series_is_precise_for_any_estimate_within_the_promise(dtype: Any, e
                 )
                 errors.append(abs(float((root - exact) / float(np.spacing(dtype(float(exact)))))))
     assert (max(errors) <= 2) == passes
-
-
-@PRECISIONS
-def test_unit_vectors_are_precise(dtype: Any) -> None:
-    n = 128 // np.dtype(dtype).itemsize
-    v = np.random.default_rng(5).normal(size=(3, n)).astype(dtype)
-    out = np.empty_like(v)
-    units(v.ravel(), out)
-    exact = v.astype(np.longdouble) / np.sqrt((v.astype(np.longdouble) ** 2).sum(axis=0))
-    assert np.abs(out - exact).max() <= 4 * np.finfo(dtype).eps
-    interpreted = unit(Vec(*v))
-    assert np.abs([interpreted.x, interpreted.y, interpreted.z] - exact).max() <= 4 * np.finfo(dtype).eps
-    assert interpreted.x.dtype == dtype
 
 
 def test_the_error_is_smaller_without_avx_512() -> None:

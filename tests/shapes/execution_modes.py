@@ -12,12 +12,44 @@ from numba import njit
 import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import scene_arrays
 from minirt.kernel.compiler.pipeline import FLAGS
-from minirt.lanes import Vec, lane, load, where, width
+from minirt.lanes import Vec, lane, load, save, where, width
 from minirt.rendering.packing.shape_arrays import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.regimes import RAYS, Array
 
 U = 2.0**-53
+
+
+@njit(**FLAGS)
+def vec_lanes(points: Any, i: int) -> Vec:
+    """Load a Vec on lanes from points (3, n)."""
+    return Vec(load(points[0], i), load(points[1], i), load(points[2], i))
+
+
+def on_lanes(function: Any, rows: int, *arguments: Any) -> Array:
+    """Compile `function(i, *arguments)`, which returns a tuple of lanes; call it on all lanes of the last argument.
+
+    Return its results, (rows, n).
+    """
+    out = np.full((rows, arguments[-1].shape[-1]), np.nan, arguments[-1].dtype)
+    lanes_caller(function)(arguments, out)
+    return out
+
+
+@cache
+def lanes_caller(function: Any) -> Any:
+    """Return a compiled loop that calls a function for each packet of lanes."""
+    inner = njit(**FLAGS)(function)
+
+    @njit(**FLAGS)
+    def run(arguments: Any, out: Any) -> None:
+        for i in range(0, out.shape[1], width(out)):
+            for row, result in enumerate(inner(i, *arguments)):
+                save(result, out[row], i)
+
+    return run
+
+
 Intersect = Callable[[list[Shape], Array, Array], Array]
 
 

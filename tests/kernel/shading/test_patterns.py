@@ -7,13 +7,10 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from numba import njit
 
-import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading import patterns
 from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply_patterns, share_and_slope
-from minirt.lanes import Vec, load, save, width
+from minirt.lanes import Vec, load
 from minirt.materials import Clouds, Marble, Wood
 from minirt.rendering.packing.lights import Colours
 from minirt.rendering.packing.materials import pack_patterns
@@ -24,6 +21,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.torus import Torus
 from tests.reference import texturing as reference
 from tests.shapes.examples import example
+from tests.shapes.execution_modes import on_lanes, vec_lanes
 
 NUMBERS = {Marble: MARBLE, Wood: WOOD, Clouds: CLOUDS}
 EACH = pytest.mark.parametrize("kind", NUMBERS)
@@ -33,22 +31,14 @@ FOOTPRINTS = np.where(np.arange(1024) % 2, RANDOM.uniform(0, 0.8, 1024), 0.0)
 WHITE = (255, 255, 255)
 
 
-@njit(**FLAGS)
-def share_lanes(kind: Any, octaves: Any, p: Any, footprints: Any, out: Any) -> None:
-    for i in range(0, p.shape[1], width(p)):
-        at = Vec(load(p[0], i), load(p[1], i), load(p[2], i))
-        share, slope = share_and_slope(kind, octaves, at, load(footprints, i))
-        save(share, out[0], i)
-        save(slope.x, out[1], i)
-        save(slope.y, out[2], i)
-        save(slope.z, out[3], i)
+def share_lanes(i: int, kind: Any, octaves: Any, p: Any, footprints: Any) -> Any:
+    share, slope = share_and_slope(kind, octaves, vec_lanes(p, i), load(footprints, i))
+    return share, slope.x, slope.y, slope.z
 
 
 def compiled(kind: type, octaves: int, p: Any, footprints: Any) -> Any:
     """Return shares and slopes at points (3, n), (4, n)."""
-    out = np.empty((4, p.shape[1]), p.dtype)
-    share_lanes(float(NUMBERS[kind]), octaves, p, footprints, out)
-    return out
+    return on_lanes(share_lanes, 4, float(NUMBERS[kind]), octaves, p, footprints)
 
 
 def interpreted(kind: type, octaves: int, p: Any, footprints: Any) -> Any:

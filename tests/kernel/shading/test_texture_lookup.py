@@ -8,16 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
 from PIL import Image
-from PIL import Image as pillow  # noqa: N813
 
 import minirt
-import minirt.kernel.compiler.object_code
 from minirt.fields import Triple
-from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading import texturing
-from minirt.lanes import load, save, width
+from minirt.lanes import load
 from minirt.rendering.packing.materials import Reader
 from minirt.scene import Ambient, Background, Camera, Scene
 from minirt.shapes import KINDS, Shape
@@ -34,6 +30,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.kernel.pictures import BLUE, GREEN, RED, WHITE, Array, interpreted, linear
+from tests.shapes.execution_modes import on_lanes
 from tests.skipping import skip_incomplete
 
 RANDOM = np.random.default_rng(1)
@@ -55,32 +52,22 @@ def all_pictures() -> tuple[Any, Any]:
 TEXELS, PICTURES = all_pictures()
 
 
-@njit(**FLAGS)
-def look_up_colours(texels: Any, pictures: Any, which: int, u: Any, v: Any, out: Any) -> None:
-    for i in range(0, u.size, width(u)):
-        colour = texturing.texture_lookup(texels, pictures, which, load(u, i), load(v, i))
-        save(colour.x, out[0], i)
-        save(colour.y, out[1], i)
-        save(colour.z, out[2], i)
+def colour_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any) -> Any:
+    colour = texturing.texture_lookup(texels, pictures, which, load(u, i), load(v, i))
+    return colour.x, colour.y, colour.z
 
 
-@njit(**FLAGS)
-def look_up_gradients(texels: Any, pictures: Any, which: int, u: Any, v: Any, out: Any) -> None:
-    for i in range(0, u.size, width(u)):
-        slope_u, slope_v = texturing.height_gradient(texels, pictures, which, load(u, i), load(v, i))
-        save(slope_u, out[0], i)
-        save(slope_v, out[1], i)
+def gradient_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any) -> Any:
+    return texturing.height_gradient(texels, pictures, which, load(u, i), load(v, i))
 
 
 def compiled(which: int, u: Array, v: Array) -> Array:
     """Look up colours by the compiled kernel, (n, 3)."""
-    out = np.full((3, u.size), np.nan)
-    look_up_colours(TEXELS, PICTURES, which, u, v, out)
-    return out.T
+    return on_lanes(colour_lanes, 3, TEXELS, PICTURES, which, u, v).T
 
 
 def looked_up(which: int, u: Array, v: Array) -> Array:
-    """Look up colours by the looked_up kernel, (n, 3)."""
+    """Look up colours by the interpreted kernel, (n, 3)."""
     with np.errstate(invalid="ignore"):
         colour = texturing.texture_lookup(TEXELS, PICTURES, which, u, v)
     return np.stack([colour.x, colour.y, colour.z], axis=-1)
@@ -140,8 +127,7 @@ def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
     slope_u = expected_colours(which, u + 0.5 / width, v) - expected_colours(which, u - 0.5 / width, v)
     slope_v = expected_colours(which, u, v + 0.5 / height) - expected_colours(which, u, v - 0.5 / height)
     expected = np.stack([slope_u[:, 0] * width, slope_v[:, 0] * height])
-    lanes = np.empty((2, 160))
-    look_up_gradients(TEXELS, PICTURES, which, u, v, lanes)
+    lanes = on_lanes(gradient_lanes, 2, TEXELS, PICTURES, which, u, v)
     for got in (np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
         assert np.abs(got - expected).max() < 1e-5
 
@@ -222,7 +208,7 @@ SQUARES = np.stack([*np.mgrid[:ROWS, :COLUMNS][::-1] * 30, np.zeros((ROWS, COLUM
 def file(tmp_path: Path) -> Path:
     # Large squares, so that interpolation leaves the middle of each in one colour.
     large = np.repeat(np.repeat(SQUARES, 16, axis=0), 16, axis=1)
-    pillow.fromarray(large).save(tmp_path / "sky.png")
+    Image.fromarray(large).save(tmp_path / "sky.png")
     return tmp_path / "scene.rt"
 
 

@@ -7,15 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
 
-import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped
-from minirt.lanes import Vec, load, save, width
+from minirt.lanes import Vec, load
 from minirt.shapes import KINDS, Kind
 from tests.kernel.pictures import Array
-from tests.shapes.execution_modes import array, vec
+from tests.shapes.execution_modes import array, on_lanes, vec, vec_lanes
 from tests.shapes.mapping_checks import SurfaceMapping, cases, interpreted, lengths
 from tests.shapes.regimes import random_directions, unit
 
@@ -52,31 +49,19 @@ def uniform(colour: tuple[int, int, int]) -> SurfaceMaps:
     return maps_of(np.tile(np.array(colour) / 255, (2, 3, 1)))
 
 
-@njit(**FLAGS)
-def bump_map_lanes(maps: Any, uv: Any, a: Any, b: Any, n: Any, out: Any) -> None:
-    for i in range(0, out.shape[1], width(out)):
-        along_u = Vec(load(a[0], i), load(a[1], i), load(a[2], i))
-        along_v = Vec(load(b[0], i), load(b[1], i), load(b[2], i))
-        normal = Vec(load(n[0], i), load(n[1], i), load(n[2], i))
-        result = bump_mapped(maps.bumps, maps, 0, load(uv[0], i), load(uv[1], i), along_u, along_v, normal)
-        save(result.x, out[0], i)
-        save(result.y, out[1], i)
-        save(result.z, out[2], i)
+def bump_lanes(i: int, maps: Any, uv: Any, a: Any, b: Any, n: Any) -> Any:
+    u, v, along_u, along_v, normal = load(uv[0], i), load(uv[1], i), vec_lanes(a, i), vec_lanes(b, i), vec_lanes(n, i)
+    result = bump_mapped(maps.bumps, maps, 0, u, v, along_u, along_v, normal)
+    return result.x, result.y, result.z
 
 
-@njit(**FLAGS)
-def normal_map_lanes(maps: Any, uv: Any, a: Any, b: Any, n: Any, out: Any) -> None:
-    for i in range(0, out.shape[1], width(out)):
-        along_u = Vec(load(a[0], i), load(a[1], i), load(a[2], i))
-        along_v = Vec(load(b[0], i), load(b[1], i), load(b[2], i))
-        normal = Vec(load(n[0], i), load(n[1], i), load(n[2], i))
-        result = normal_mapped(maps.normals, maps, 0, load(uv[0], i), load(uv[1], i), along_u, along_v, normal)
-        save(result.x, out[0], i)
-        save(result.y, out[1], i)
-        save(result.z, out[2], i)
+def normal_lanes(i: int, maps: Any, uv: Any, a: Any, b: Any, n: Any) -> Any:
+    u, v, along_u, along_v, normal = load(uv[0], i), load(uv[1], i), vec_lanes(a, i), vec_lanes(b, i), vec_lanes(n, i)
+    result = normal_mapped(maps.normals, maps, 0, u, v, along_u, along_v, normal)
+    return result.x, result.y, result.z
 
 
-LANES = {"bump": bump_map_lanes, "normal": normal_map_lanes}
+LANES = {"bump": bump_lanes, "normal": normal_lanes}
 PLAIN = {"bump": bump_mapped, "normal": normal_mapped}
 Bend = Callable[[str, SurfaceMaps, SurfaceMapping, Array], Array]
 
@@ -90,10 +75,8 @@ def interpreted_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: 
 
 def compiled_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
     """Apply a bump or normal map to normals by the compiled kernel."""
-    out = np.full((3, len(normals)), np.nan)
     vectors = (np.ascontiguousarray(each.T) for each in (at.along_u, at.along_v, normals))
-    LANES[name](maps, np.stack([at.u, at.v]), *vectors, out)
-    return out.T
+    return on_lanes(LANES[name], 3, maps, np.stack([at.u, at.v]), *vectors).T
 
 
 EITHER = pytest.mark.parametrize("bend", [interpreted_bend, compiled_bend])
@@ -200,23 +183,17 @@ def test_colours_of_a_normal_map_are_directions(bend: Bend, colour: Any, shares:
     assert lengths(bend("normal", uniform(colour), at, normals) - unit(expected)).max() < 1e-6
 
 
-@njit(**FLAGS)
-def check_lanes(checks: Any, uv: Any, own: Any, out: Any) -> None:
-    for i in range(0, out.shape[1], width(out)):
-        colour = Vec(load(own[0], i), load(own[1], i), load(own[2], i))
-        colours = checkered(checks, 0, load(uv[0], i), load(uv[1], i), colour)
-        save(colours.x, out[0], i)
-        save(colours.y, out[1], i)
-        save(colours.z, out[2], i)
+def check_lanes(i: int, checks: Any, uv: Any, own: Any) -> Any:
+    colours = checkered(checks, 0, load(uv[0], i), load(uv[1], i), vec_lanes(own, i))
+    return colours.x, colours.y, colours.z
 
 
 def checkerboards(size: float, u: Array, v: Array) -> list[Array]:
     """Return the colours of places on a checkerboard, interpreted and compiled, each (n, 3)."""
     checks = np.array([[size, *SECOND]])
     own = np.tile(np.array(OWN)[:, None], u.size)
-    out = np.full((3, u.size), np.nan)
-    check_lanes(checks, np.stack([u, v]), own, out)
-    return [array(checkered(checks, 0, u, v, Vec(*own)), np.empty((u.size, 3))), out.T]
+    lanes = on_lanes(check_lanes, 3, checks, np.stack([u, v]), own)
+    return [array(checkered(checks, 0, u, v, Vec(*own)), np.empty((u.size, 3))), lanes.T]
 
 
 @pytest.mark.parametrize("size", [0.125, 1.0, 2.5, 1e-3, 1e6])
