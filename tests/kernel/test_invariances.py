@@ -14,7 +14,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.square import Square
 from tests import reference
-from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SECOND, SHAPES, linear
+from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SHAPES, linear
 
 SCENES = pytest.mark.parametrize("scene", [ALL, EVERY], ids=["some kinds", "every kind"])
 UPRIGHT = (Box, Ellipsoid, Square)  # their axis alone does not determine their orientation
@@ -95,24 +95,7 @@ def random_rotation(random: np.random.Generator) -> np.ndarray:
     return matrix * np.linalg.det(matrix)
 
 
-def test_a_light_of_no_brightness_changes_nothing() -> None:
-    dark = Scene((AMBIENT, EYE, LAMP, SECOND.replace(brightness=0), FurtherLight((0, 5, 0), 1, (0, 0, 0)), *SHAPES))
-    assert np.array_equal(linear(dark, 60, 40), linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40))
-
-
 def test_two_lights_of_half_brightness_equal_one() -> None:
     half = FurtherLight(LAMP.position, LAMP.brightness / 2, LAMP.colour)
     twice = linear(Scene((AMBIENT, EYE, half, half, *SHAPES)), 60, 40)
     assert np.abs(twice - linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40)).max() <= 4e-16
-
-
-def test_without_ambient_light_a_shadow_is_black() -> None:
-    picture = linear(Scene((EYE, LAMP, *SHAPES)), 60, 40)
-    assert ((picture == 0).all(axis=-1)).sum() > 100
-    assert (picture > 0.1).any()
-
-
-def test_ambient_light_alone_shows_the_colours_of_surfaces() -> None:
-    picture = linear(Scene((AMBIENT, EYE, *SHAPES)), 60, 40)
-    colours = {tuple(np.round(np.divide(s.colour, 255) * np.divide(AMBIENT.colour, 255) * 0.15, 12)) for s in SHAPES}
-    assert {tuple(np.round(pixel, 12)) for pixel in picture.reshape(-1, 3)} <= colours | {(0, 0, 0)}

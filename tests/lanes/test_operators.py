@@ -281,39 +281,6 @@ def test_where_selects_lanes_and_single_numbers(truth: bool, dtype: Any) -> None
             assert_same(actual, right)
 
 
-@njit(error_model="numpy")
-def selected_vecs(mask_values: Any, a: Any, b: Any, out: Any) -> None:
-    mask = load(mask_values, 0) > 0.5
-    n = width(mask_values)
-    lanes = Vec(load(a, 0), load(a, n), load(a, 2 * n))
-    one = Vec(1, 2.0, 3.0)
-    chosen = (
-        where(mask, lanes, Vec(load(b, 0), load(b, n), load(b, 2 * n))),
-        where(mask, one, lanes),
-        where(mask, lanes, one),
-        where(mask, one, -one),
-    )
-    for row, v in enumerate(chosen):
-        store(out[row], 0, v.x)
-        store(out[row], n, v.y)
-        store(out[row], 2 * n, v.z)
-
-
-@PRECISIONS
-def test_where_selects_vecs(dtype: Any) -> None:
-    count = 128 // np.dtype(dtype).itemsize
-    a = np.resize(edges(dtype), 3 * count)
-    b, out = a[::-1].copy(), np.empty((4, 3 * count), dtype)
-    one = np.repeat(np.array([1.0, 2.0, 3.0], dtype), count)
-    for each in mask_values(dtype)[::3]:
-        selected_vecs(each, a, b, out)
-        mask = np.tile(each, 3) > 0.5
-        expected = [np.where(mask, x, y) for x, y in ((a, b), (one, a), (a, one), (one, -one))]
-        assert_same(out, expected)
-        chosen = where(each > 0.5, Vec(*a.reshape(3, count)), Vec(1.0, 2.0, 3.0))
-        assert_same([chosen.x, chosen.y, chosen.z], expected[2].reshape(3, count))
-
-
 A, B, C, D = np.random.default_rng(3).uniform(0.5, 2, (4, 64))
 
 

@@ -158,11 +158,6 @@ def test_every_shape_is_in_the_tree_once_and_every_box_encloses_its_subtree(coun
     check_tree(build_tree(shapes, kernel), shapes)
 
 
-def test_unbounded_shapes_are_in_no_box() -> None:
-    shapes: list[Shape] = [Plane((0, i, 0), (0, 1, 0), GREY) for i in range(40)]
-    assert check_tree(build_tree(shapes), shapes) == 1
-
-
 @pytest.mark.parametrize(
     "shapes",
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, inf, radians, sin
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,14 +43,6 @@ def test_a_point_light_shines_equally_in_all_directions() -> None:
     assert (distance, strength) == (pytest.approx(5, rel=1e-15), 1.0)
 
 
-def test_fading_light_decreases_linearly() -> None:
-    light = Light((0, 3, 4), 1, fade=20)
-    assert light_at(light, (0, 0, 0))[2] == pytest.approx(0.75, rel=1e-15)
-    assert light_at(light, (0, 3, 14))[2] == pytest.approx(0.5, rel=1e-15)
-    assert light_at(light, (0, 3, 24))[2] == 0
-    assert light_at(light, (0, 3, 99))[2] == 0
-
-
 def test_parallel_light_comes_from_infinitely_far() -> None:
     for point in ((0.0, 0.0, 0.0), (7.0, -3.0, 1e9)):
         to_light, distance, strength = light_at(ParallelLight((0.6, -0.8, 0), 1), point)
@@ -57,24 +50,29 @@ def test_parallel_light_comes_from_infinitely_far() -> None:
         assert (distance, strength) == (inf, 1.0)
 
 
-def test_a_spot_shines_within_its_cone() -> None:
-    # Half of 60 degrees is 30; the outer 0.4 of that is the rim, which begins at 18.
-    assert light_at(SPOT, spot_point(0))[2] == 1
-    assert light_at(SPOT, spot_point(17.99))[2] == 1
-    assert light_at(SPOT, spot_point(30.01))[2] == 0
-    assert light_at(SPOT, (0, 20, 0))[2] == 0
-    t = (cos(radians(25)) - cos(radians(30))) / (cos(radians(18)) - cos(radians(30)))
-    assert light_at(SPOT, spot_point(25))[2] == pytest.approx(3 * t**2 - 2 * t**3, rel=1e-12)
+RIM = (cos(radians(25)) - cos(radians(30))) / (cos(radians(18)) - cos(radians(30)))  # share of the way into the rim
 
 
-def test_a_spot_without_rim_has_a_sharp_edge() -> None:
-    sharp = SPOT.replace(rim=0.0)
-    assert light_at(sharp, spot_point(29.999))[2] == 1
-    assert light_at(sharp, spot_point(30.001))[2] == 0
-
-
-def test_a_spot_fades_too() -> None:
-    assert light_at(SPOT.replace(fade=10), spot_point(0))[2] == pytest.approx(0.5, rel=1e-15)
+@pytest.mark.parametrize(
+    ("light", "point", "strength"),
+    [
+        # Half of 60 degrees is 30; the outer 0.4 of that is the rim, which begins at 18.
+        (SPOT, spot_point(0), 1.0),
+        (SPOT, spot_point(17.99), 1.0),
+        (SPOT, spot_point(25), 3 * RIM**2 - 2 * RIM**3),
+        (SPOT, spot_point(30.01), 0.0),
+        (SPOT, (0, 20, 0), 0.0),
+        (SPOT.replace(rim=0.0), spot_point(29.999), 1.0),
+        (SPOT.replace(rim=0.0), spot_point(30.001), 0.0),
+        (SPOT.replace(fade=10), spot_point(0), 0.5),
+        (Light((0, 3, 4), 1, fade=20), (0, 0, 0), 0.75),
+        (Light((0, 3, 4), 1, fade=20), (0, 3, 14), 0.5),
+        (Light((0, 3, 4), 1, fade=20), (0, 3, 24), 0.0),
+        (Light((0, 3, 4), 1, fade=20), (0, 3, 99), 0.0),
+    ],
+)
+def test_spots_shine_within_their_cones_and_light_fades_linearly(light: Lamp, point: Any, strength: float) -> None:
+    assert light_at(light, point)[2] == pytest.approx(strength, rel=1e-12, abs=0)
 
 
 def test_lights_without_brightness_are_left_out() -> None:

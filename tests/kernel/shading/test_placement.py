@@ -87,15 +87,6 @@ def test_a_turned_sphere_is_mapped_in_its_own_axes() -> None:
     assert (seen.x, seen.y, seen.z) == (1, 0, 0)
 
 
-def test_shapes_without_a_placement_are_left_as_they_are() -> None:
-    u = np.array([0.1, 0.2])
-    tangent = vec(np.ones((2, 3)))
-    for rows in (None, np.zeros((0, 15)), np.zeros((1, 15))):
-        found = placed(rows, 0, u, u, tangent, tangent)
-        assert all(a is b for a, b in zip(found, (u, u, tangent, tangent), strict=True))
-        assert in_own_frame(rows, 0, tangent) is tangent
-
-
 def test_the_kernel_has_the_feature_only_where_a_picture_is_placed() -> None:
     scaled = Placement(2, 2)
     assert "placements" in features_of(GLOBE.replace(uv=scaled))

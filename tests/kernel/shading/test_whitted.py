@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import acos, asin, cos, degrees, radians, sin, sqrt
+from math import asin, cos, degrees, radians, sin, sqrt
 
 import numpy as np
 import pytest
@@ -99,15 +98,6 @@ def test_shares_of_more_than_one_are_scaled_down_alike() -> None:
     assert np.allclose(light(LIGHT, AHEAD, SKY, pane), [0.2, 0.4, 0.8], rtol=1e-12)
 
 
-def test_at_depth_0_a_mirror_is_a_diffuse_surface() -> None:
-    mirror = Plane((0, 0, 0), (0, 0, -1), RED, mirror=1.0)
-    assert np.array_equal(light(LIGHT, AHEAD, SKY, mirror, depth=0)[..., 0], np.ones((4, 4)))
-
-
-INDICES = [1.0, 1.1, 1.33, 1.5, 2.42, 10.0]
-Reflectance = Callable[[Array, float], Array]
-
-
 def transmittance(cosine: float, before: float, behind: float) -> float:
     """Share of the light that is refracted, from the amplitudes of the refracted waves, with 50 digits."""
     with mp.workdps(50):
@@ -120,19 +110,12 @@ def transmittance(cosine: float, before: float, behind: float) -> float:
         return float(n * there / (m * c) * (across**2 + along**2) / 2)
 
 
-def largest_error(formula: Reflectance) -> float:
-    """The largest error of the reflected shares, for rays that enter and that leave media of several indices."""
-    cosines = np.cos(np.radians([0, 1, 20, 41, 45, 60, 75, 89, 89.999]))
-    errors = [
-        np.abs(formula(cosines, before / behind) - [1 - transmittance(c, before, behind) for c in cosines])
-        for n in INDICES
-        for before, behind in ((1.0, n), (n, 1.0))
-    ]
-    return float(np.max(errors))
-
-
 def test_what_is_not_refracted_is_reflected() -> None:
-    assert largest_error(reflectance) < 1e-13
+    cosines = np.cos(np.radians([0, 1, 20, 41, 45, 60, 75, 89, 89.999]))
+    for n in (1.0, 1.1, 1.33, 1.5, 2.42, 10.0):
+        for before, behind in ((1.0, n), (n, 1.0)):
+            expected = [1 - transmittance(c, before, behind) for c in cosines]
+            assert np.abs(reflectance(cosines, before / behind) - expected).max() < 1e-13
 
 
 WHITE_WALL, BRIGHT_SKY = (255, 255, 255), Background((51, 102, 204))
@@ -177,4 +160,3 @@ def test_a_mirror_reflects_its_share_along_the_normal_and_more_elsewhere(share: 
             expected = (1 - reflected) + reflected * BLUE
             assert np.allclose(seen_at(angle, mirror, above=above), expected, atol=1e-5)
     assert np.allclose(seen_at(0.0, mirror), (1 - share) + share * BLUE, atol=1e-5)
-    assert acos(seen_at(89.9, mirror)[0]) > acos(seen_at(0.0, mirror)[0]) or share == 1.0
