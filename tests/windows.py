@@ -48,7 +48,6 @@ OPENBOX_CONFIG = """\
 </openbox_config>
 """  # without animation: a window that is being minimised or restored is not where the pointer moves to
 MANAGER_VARIABLE = "MINIRT_TEST_WINDOW_MANAGER"  # environment variable with the process id of the window manager
-SERVER_VARIABLE = "MINIRT_TEST_X_SERVER"  # environment variable with the process id of the X server
 NO_DELAY = ("--delay", "0")  # for xdotool, which otherwise pauses between press and release
 
 
@@ -59,7 +58,6 @@ class Desktop:
         self.environment = environment
         self._programs: list[subprocess.Popen[str]] = []  # running inside their `with` blocks
         self._held: list[str] = []  # keys that are down
-        self._has_server = True
 
     def run(self, *command: str) -> bytes:
         """Run a command and return its standard output. CalledProcessError if it fails, TimeoutExpired if it hangs."""
@@ -87,11 +85,6 @@ class Desktop:
             yield
         finally:
             os.kill(manager, signal.SIGCONT)
-
-    def kill_server(self) -> None:
-        """Kill the X server; nothing else can be done on this desktop afterwards."""
-        self._has_server = False
-        os.kill(int(self.environment[SERVER_VARIABLE]), signal.SIGKILL)
 
     @contextmanager
     def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
@@ -215,9 +208,8 @@ class Desktop:
         try:
             yield
         finally:
-            if self._has_server:
-                self.release_keys()
-            if self._has_server and not self._programs:
+            self.release_keys()
+            if not self._programs:
                 until(self._is_empty, "the end of all windows")
 
     def _expect_program(self) -> None:
@@ -277,8 +269,7 @@ def open_desktop() -> Iterator[Desktop]:
         (Path(home) / "openbox" / "rc.xml").write_text(OPENBOX_CONFIG)
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
-        environment["DISPLAY"], server = stack.enter_context(display())
-        environment[SERVER_VARIABLE] = str(server)
+        environment["DISPLAY"], _ = stack.enter_context(display())
         command = ["openbox", "--sm-disable"]
         manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
         opened = Desktop(environment | {MANAGER_VARIABLE: str(manager.pid)})

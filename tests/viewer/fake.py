@@ -54,7 +54,6 @@ class FakeRenderer:
         self.refined: list[int] = []  # samples of the refinements that were started
         self.cancelled = 0
         self.ready = True
-        self.previews = True
         self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
         self.prepare_error: Exception | None = None
@@ -84,8 +83,6 @@ class FakeRenderer:
     pick = staticmethod(pick)
 
     def preview(self, scene: Scene, width: int, height: int) -> NDArray[np.uint8] | None:
-        if not self.previews:
-            return None
         return np.full((2, 3, 4), colour_of(scene), np.uint8)
 
     def render(

@@ -1,17 +1,28 @@
-"""The table of bindings, and the texts and keymaps that are made from it."""
+"""The table of bindings, its texts and keymaps; each key does what its help says, on each keyboard layout."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
+from math import dist
+from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from minirt.mlx import Button, Key, Modifier
+from minirt.mlx.memory import Memory
+from minirt.scene import Camera, describe, dump, load
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.panels import TYPE
+from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import (
     BINDINGS,
     LAYOUTS,
+    Binding,
     Chord,
     Keymap,
     chords_of,
@@ -21,8 +32,12 @@ from minirt.viewer.bindings import (
     platform_spelling,
     resolve_layout,
 )
+from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS
 from minirt.viewer.editing.editor import EDITS
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import Frame
+from tests.viewer.fake import TEXT, played, scene
 
 ACTIONS = [binding.action for binding in BINDINGS]
 
@@ -85,3 +100,191 @@ def test_spellings_are_parsed_and_unknown_ones_raise(spelling):
     assert parse_chord("Ctrl+Shift+S") == Chord(Key.S, Modifier.ACCEL | Modifier.SHIFT)
     with pytest.raises(KeyError):
         parse_chord(spelling)
+
+
+# Effects of all keys.
+
+SPHERE = ("press Tab", "press Tab")  # from the camera over the light
+CYLINDER = (*SPHERE, "press Tab", "press Tab")
+AT_SPHERE, AT_CYLINDER = "32,24", "40,24"  # pixels of a window of 64x48
+
+Check = Callable[[Session, Session], bool]  # compares the sessions without and with the key
+MOUSE = {
+    "left click": (f"click {AT_SPHERE}",),
+    "right click": (f"click {AT_SPHERE} right",),
+    "left drag": (f"drag {AT_SPHERE} 45,30",),
+    "Shift+left drag": ("down Shift", f"drag {AT_CYLINDER} 48,36", "up Shift"),
+    "Ctrl+left drag": ("down Ctrl", f"drag {AT_SPHERE} 45,40", "up Ctrl"),
+    "right drag": ("drag 5,5 20,10 right",),
+    "middle drag": (f"drag {AT_SPHERE} 45,30 middle",),
+    "wheel up": ("wheel up",),
+    "wheel down": ("wheel down",),
+}
+
+
+def moved(direction: tuple[float, float, float]) -> Check:
+    """Check that the sphere has moved by a step in a direction."""
+
+    def check(before: Session, after: Session) -> bool:
+        step = before.state.stride
+        expected = [at + step * part for at, part in zip(before.state.element.centre, direction, strict=True)]
+        return after.state.element.centre == pytest.approx(expected)
+
+    return check
+
+
+def turned(part: int, sign: float) -> Check:
+    """Check that the camera, which looked along -z, looks to one side."""
+    return lambda _, after: sign * after.state.scene.camera.direction[part] > 0.05
+
+
+def resized(sign: float) -> Check:
+    """Check that the diameter of the selected shape has grown or shrunk."""
+    return lambda before, after: sign * (after.state.element.diameter - before.state.element.diameter) > 0.05
+
+
+def approached(sign: float) -> Check:
+    """Check that the camera came nearer to the scene by a tenth of its distance, or went away."""
+
+    def check(before: Session, after: Session) -> bool:
+        (x, y, z), (a, b, c) = camera(before).position, camera(after).position
+        return (a, b) == (x, y) and sign * (z - c) == pytest.approx(1.0, abs=0.12) and camera(after).fov == 90
+
+    return check
+
+
+def stands_on_the_plane(_: Session, after: Session) -> bool:
+    """Whether the sphere stands where the pointer was, on the plane y = -1 and on lines of the grid."""
+    x, y, z = after.state.scene.spheres[0].centre
+    lines = x / after.state.stride, z / after.state.stride
+    return y == pytest.approx(0) and x > 0.5 and lines == pytest.approx(tuple(map(round, lines)))
+
+
+def camera(session: Session) -> Camera:
+    return session.state.scene.camera
+
+
+def memory(session: Session) -> Memory:
+    assert isinstance(session.display, Memory)
+    return session.display
+
+
+def centred(_: Session, after: Session) -> bool:
+    """Whether the light is in the centre of the picture."""
+    return projection_of(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
+
+
+def focused(_: Session, after: Session) -> bool:
+    """Whether the camera has a lens that is focused on the front of the sphere, whose diameter is 4 at most."""
+    focus, there = camera(after).focus, dist(camera(after).position, (0, 0, 0))
+    return focus is not None and camera(after).lens is not None and there - 2 <= focus < there
+
+
+def saved_copy(_: Session, after: Session) -> bool:
+    """Whether a copy of the scene was written."""
+    path = after.path.with_name("scene-1.rt")
+    return path.exists() and path.read_text() == dump(scene())
+
+
+def saved_screenshot(before: Session, after: Session) -> bool:
+    """Whether the picture without overlay was written."""
+    path = after.path.with_name("scene-1.png")
+    if not path.exists():
+        return False
+    with Image.open(path) as picture:
+        return np.array_equal(np.asarray(picture), before.picture[..., 2::-1])
+
+
+# For each action the lines before it and the check of its effect.
+CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
+    "select next": ((), lambda _, after: after.state.selected == 2),
+    "select previous": (("press Tab",), lambda _, after: after.state.selected == 1),
+    "select at pointer": ((), lambda _, after: isinstance(after.state.element, Sphere)),
+    "select camera": (SPHERE, lambda _, after: isinstance(after.state.element, Camera)),
+    "select light": (SPHERE, lambda _, after: after.state.element.title == "light"),
+    "left": (SPHERE, moved((-1, 0, 0))),
+    "right": (SPHERE, moved((1, 0, 0))),
+    "forward": (SPHERE, moved((0, 0, -1))),
+    "back": (SPHERE, moved((0, 0, 1))),
+    "down": (SPHERE, moved((0, -1, 0))),
+    "up": (SPHERE, moved((0, 1, 0))),
+    "turn left": ((), turned(0, -1)),
+    "turn right": ((), turned(0, 1)),
+    "turn up": ((), turned(1, 1)),
+    "turn down": ((), turned(1, -1)),
+    "roll left": ((), lambda _, after: camera(after).roll == -5),
+    "roll right": ((), lambda _, after: camera(after).roll == 5),
+    "next frame": (SPHERE, lambda _, after: after.state.frame is Frame.X),
+    "move by hand": ((), lambda _, after: after.state.scene.spheres[0].centre[0] > 1),
+    "turn by hand": ((), lambda _, after: after.state.scene.cylinders[0].axis != (0, 1, 0)),
+    "place by hand": ((), stands_on_the_plane),
+    "drop": (SPHERE, lambda _, after: after.state.element.centre == (0, 0, 0) and "on a grid" in after.state.message),
+    "orbit": (SPHERE, lambda _, after: camera(after).position[2] < 10 and camera(after).direction[2] > -1),
+    "pan": ((), lambda _, after: camera(after).position[0] < -1 and camera(after).direction == (0, 0, -1)),
+    "grow": (SPHERE, resized(1)),
+    "shrink": (SPHERE, resized(-1)),
+    "type value": (
+        SPHERE,
+        lambda _, after: after.screen.panel is not None and "diameter: =_" in after.screen.panel.title,
+    ),
+    "nearer": ((), approached(1)),
+    "farther": ((), approached(-1)),
+    "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
+    "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
+    "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
+    "next tone": ((), lambda _, after: camera(after).tone == "srgb"),
+    "focus": ((f"move {AT_SPHERE}",), focused),
+    "look at": (("press Tab",), centred),
+    "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
+    "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
+    "redo": (
+        (*SPHERE, "press D", "press Ctrl+Z"),
+        lambda before, after: after.state.element.centre[0] > before.state.element.centre[0],
+    ),
+    "add": ((), lambda _, after: isinstance(after.state.element, Sphere) and len(after.state.scene.spheres) == 2),
+    "add previous": (
+        ("press N", "press N"),
+        lambda before, after: isinstance(before.state.element, Plane) and isinstance(after.state.element, Sphere),
+    ),
+    "duplicate": (SPHERE, lambda _, after: len(set(after.state.scene.spheres)) == 1 < len(after.state.scene.spheres)),
+    "delete": (SPHERE, lambda _, after: not after.state.scene.spheres),
+    "save": ((*SPHERE, "press D"), lambda before, after: load(after.path).scene.items == before.state.scene.items),
+    "save copy": ((), saved_copy),
+    "screenshot": ((), saved_screenshot),
+    "reload": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
+    "copy camera": ((), lambda _, after: memory(after).clipboard == describe(scene().camera)),
+    "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
+    "toggle icons": ((), lambda before, after: (before.screen.marks.icons, after.screen.marks.icons) == (False, True)),
+    "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
+    "larger text": ((), lambda before, after: after.screen.text_scale > before.screen.text_scale),
+    "smaller text": ((), lambda before, after: after.screen.text_scale < before.screen.text_scale),
+    "usual text": (("press Ctrl++",), lambda before, after: before.screen.text_scale > after.screen.text_scale == 1.0),
+    "toggle full screen": ((), lambda _, after: (after.window.width, after.window.height) == memory(after).screen),
+    "quit": ((), lambda _, after: after.state.selected == 1),
+}
+
+
+def test_every_binding_has_a_check() -> None:
+    assert set(CHECKS) == {binding.action for binding in BINDINGS}
+
+
+@pytest.mark.parametrize("keys", LAYOUTS[1:])
+@pytest.mark.parametrize("binding", BINDINGS, ids=lambda binding: binding.action)
+def test_a_binding_does_what_its_help_says(binding: Binding, keys: str, tmp_path: Path) -> None:
+    setup, check = CHECKS[binding.action]
+    afterwards = ("press Tab",) if binding.action == "quit" else ()  # must have no effect any more
+    for number, spelling in enumerate(binding.spellings(keys)):
+        path = tmp_path / f"{number}" / "scene.rt"
+        path.parent.mkdir()
+        path.write_text(TEXT)
+        lines = MOUSE.get(spelling, (f"press {spelling}",))
+        before = played(*setup, *afterwards, path=path, keys=keys)
+        assert not check(before, before), "the check holds before the key"
+        after = played(*setup, *lines, *afterwards, path=path, keys=keys)
+        assert check(before, after), spelling
+
+
+@pytest.mark.parametrize(("pressed", "steps"), [("press D", 1.0), ("press Shift+D", 0.1)])
+def test_shift_makes_a_tenth(pressed: str, steps: float) -> None:
+    state = played(*SPHERE, pressed).state
+    assert state.element.centre[0] == pytest.approx(steps * state.stride)

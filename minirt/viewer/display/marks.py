@@ -207,36 +207,28 @@ def outline_pixels(
     Coverage is evaluated on a coarse grid of about `rays` points, of which few may miss parts of thin shapes, and then
     on all pixels of the cells in which it changes.
     """
-    if isinstance(shape, Mesh):
-        return mask_outline(covers(shape, camera, width, height, *np.meshgrid(np.arange(width), np.arange(height))))
-    left, top, right, bottom = screen_bounds(shape, projection_of(camera, width, height))
-    step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
-    x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
-    grid = covers(shape, camera, width, height, x, y)
-    corners = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
-    mixed = np.logical_or.reduce(corners) & ~np.logical_and.reduce(corners)
-    mixed[:, 1:] |= mixed[:, :-1].copy()  # an edge on the border of two cells belongs to both
-    mixed[1:] |= mixed[:-1].copy()
-    rows, columns = (step * each[:, None, None] for each in np.nonzero(mixed))
-    reach = np.arange(-1, step + 1)
-    y = np.clip(top + rows + reach[:, None], 0, height - 1)
-    x = np.clip(left + columns + reach, 0, width - 1)
-    y, x = np.broadcast_arrays(y, x)
+    if isinstance(shape, Mesh):  # all pixels of a mesh cost as much as a few
+        y, x = np.ix_(np.arange(-1, height + 1), np.arange(-1, width + 1))
+        y, x = y[None], x[None]
+    else:
+        left, top, right, bottom = screen_bounds(shape, projection_of(camera, width, height))
+        step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
+        x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
+        grid = covers(shape, camera, width, height, x, y)
+        corners = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
+        mixed = np.logical_or.reduce(corners) & ~np.logical_and.reduce(corners)
+        mixed[:, 1:] |= mixed[:, :-1].copy()  # an edge on the border of two cells belongs to both
+        mixed[1:] |= mixed[:-1].copy()
+        rows, columns = (step * each[:, None, None] for each in np.nonzero(mixed))
+        reach = np.arange(-1, step + 1)
+        y, x = top + rows + reach[:, None], left + columns + reach
+    y, x = np.broadcast_arrays(np.clip(y, 0, height - 1), np.clip(x, 0, width - 1))
     mask = covers(shape, camera, width, height, x, y)
     around = mask[:, :-2, 1:-1], mask[:, 2:, 1:-1], mask[:, 1:-1, :-2], mask[:, 1:-1, 2:]
     middle = mask[:, 1:-1, 1:-1]
     outside, inside = np.logical_or.reduce(around) & ~middle, middle & ~np.logical_and.reduce(around)
     y, x = y[:, 1:-1, 1:-1], x[:, 1:-1, 1:-1]
     return (y[outside], x[outside]), (y[inside], x[inside])
-
-
-def mask_outline(mask: NDArray[np.bool_]) -> tuple[PixelIndices, PixelIndices]:
-    """Return the pixels just outside and just inside of a mask, (h, w), that is true where a shape is."""
-    down, right = np.nonzero(mask[1:] != mask[:-1]), np.nonzero(mask[:, 1:] != mask[:, :-1])
-    rows = np.concatenate([down[0], down[0] + 1, right[0], right[0]])
-    columns = np.concatenate([down[1], down[1], right[1], right[1] + 1])
-    inside = mask[rows, columns]
-    return (rows[~inside], columns[~inside]), (rows[inside], columns[inside])
 
 
 def screen_bounds(shape: Shape, view: Projection) -> Box:

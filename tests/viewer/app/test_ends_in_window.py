@@ -17,7 +17,7 @@ from tests.viewer.app.test_real_window import SIZE, Viewer, picture, viewing
 from tests.viewer.fake import SPHERE_ON_PLANE, WITH_CYLINDER
 from tests.viewer.idle_waits import compilers, group
 from tests.waiting import until
-from tests.windows import Desktop, open_desktop, require_tools
+from tests.windows import Desktop
 
 pytestmark = pytest.mark.window
 
@@ -91,16 +91,6 @@ def test_a_lost_connection_to_the_screen_keeps_changes(desktop, tmp_path):
         status, output, errors = viewer.end()
     assert (status, errors) == (1, LOST)
     check_recovered(desktop, path, output)
-
-
-def test_a_killed_x_server_keeps_changes(tmp_path):
-    require_tools()
-    path = tmp_path / "scene.rt"
-    with open_desktop() as desktop, with_unsaved_changes(desktop, path) as viewer:
-        desktop.kill_server()
-        status, output, errors = viewer.end()
-        assert (status, errors) == (1, LOST)
-        check_recovered(desktop, path, output)
 
 
 # The first run stays responsive while another process compiles the kernel.

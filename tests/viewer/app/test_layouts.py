@@ -16,8 +16,8 @@ from minirt.scene import load
 from minirt.viewer.app.desktop import run
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.bindings import BINDINGS, Binding
-from tests.viewer.display.test_help import MOUSE
 from tests.viewer.fake import TEXT, FakeRenderer
+from tests.viewer.test_bindings import MOUSE
 from tests.viewer.xdotool import LETTER_CODES, do
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop

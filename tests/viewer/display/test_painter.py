@@ -73,11 +73,13 @@ def test_during_an_urgent_picture_only_the_latest_request_is_kept(harness):
     assert harness.renderer.cancelled == 0
 
 
-def test_a_picture_that_is_not_urgent_is_cancelled(harness):
-    harness.start(JOB)
+@pytest.mark.parametrize("job", [JOB, REFINED], ids=["picture", "refinement"])
+def test_a_picture_that_is_not_urgent_is_cancelled(harness, job):
+    harness.start(job)
     harness.painter.request(replace(JOB, divisor=2))
     cancelled = harness.outcomes(1)[0]
-    assert (cancelled.job, cancelled.pixels, cancelled.error) == (JOB, None, None)
+    assert (cancelled.job, cancelled.pixels, cancelled.error) == (job, None, None)
+    assert (REFINED.base == colour_of(JOB.scene)).all()
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.divisor == 2
 
@@ -187,16 +189,6 @@ def test_a_picture_is_refined_in_a_copy(harness):
     assert (REFINED.base == colour_of(JOB.scene)).all()
     assert harness.renderer.refined == [16]
     assert harness.renderer.rendered == []
-
-
-def test_refining_is_cancelled_by_the_next_request(harness):
-    harness.start(REFINED)
-    harness.painter.request(replace(JOB, urgent=True))
-    cancelled = harness.outcomes(1)[0]
-    assert (cancelled.job, cancelled.pixels, cancelled.error) == (REFINED, None, None)
-    assert (REFINED.base == colour_of(JOB.scene)).all()
-    harness.renderer.gate.set()
-    assert harness.outcomes(1)[0].job.samples == 1
 
 
 def test_a_picture_is_dropped_if_it_becomes_unwanted_while_its_error_is_estimated():

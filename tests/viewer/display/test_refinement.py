@@ -14,6 +14,7 @@ from tests.viewer.fake import MARK, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
 
 SCENE = scene()
+URGENT, CANCELLED = {"urgent": True}, {"pixels": False}  # options of `outcome`
 
 
 def test_the_first_picture_has_full_resolution_and_is_rendered_once():
@@ -140,49 +141,24 @@ def test_the_divisor_is_as_small_as_the_render_time_allows(longest, divisor):
         assert render_moving(resolution, longest * FRAME_TIME) == divisor
 
 
-def test_the_divisor_is_greatest_while_no_time_is_known():
+@pytest.mark.parametrize(
+    ("pictures", "divisors"),
+    [
+        ([(0.06, CANCELLED)], [8, 8]),  # no time is known
+        ([(0.5, {}), (0.25, CANCELLED), (9, {"samples": 4})], [8, 1, 1, 1]),  # too short to count; refined
+        ([(0.5, {}), (3, CANCELLED), (3, CANCELLED)], [8, 1, 1, 2]),  # at least its time
+        ([(0.5, {}), (0.5, {}), (0.5, {}), (5, URGENT), (5, URGENT)], [8, 1, 1, 1, 1, 3]),
+        ([(3, {}), (30, URGENT)], [8, 2, 2]),  # late, of the former divisor
+        ([(3, {}), (0.75, {"divisor": 2, **URGENT}), (0.01, CANCELLED)], [8, 2, 2, 2]),  # at full resolution
+    ],
+)
+def test_two_slow_pictures_are_needed_to_coarsen_and_some_do_not_count(pictures, divisors):
     resolution = AdaptiveResolution()
-    assert resolution.divisor(800, 600) == 8
-    resolution.record(outcome(0.001, pixels=False))
-    assert resolution.divisor(800, 600) == 8
-
-
-def test_a_cancelled_picture_counts_as_at_least_its_time():
-    resolution = AdaptiveResolution()
-    resolution.record(outcome(FRAME_TIME / 2))
-    resolution.record(outcome(FRAME_TIME / 4, pixels=False))  # too short to count
-    resolution.record(outcome(FRAME_TIME * 9, samples=4))  # refined: it does not count either
-    assert resolution.divisor(400, 300) == 1
-    for _ in range(2):
-        assert resolution.divisor(800, 600) == 1
-        resolution.record(outcome(FRAME_TIME * 3, pixels=False))
-    assert resolution.divisor(800, 600) == 2
-
-
-def test_two_slow_pictures_are_needed_to_coarsen():
-    resolution = AdaptiveResolution()
-    for _ in range(3):
-        resolution.record(outcome(FRAME_TIME / 2))
-    resolution.record(outcome(FRAME_TIME * 5, urgent=True))
-    assert resolution.divisor(800, 600) == 1
-    resolution.record(outcome(FRAME_TIME * 5, urgent=True))
-    assert resolution.divisor(800, 600) == 3
-
-
-def test_a_late_picture_of_the_former_divisor_does_not_coarsen_again():
-    resolution = AdaptiveResolution()
-    resolution.record(outcome(FRAME_TIME * 3))
-    assert resolution.divisor(800, 600) == 2
-    resolution.record(outcome(FRAME_TIME * 30, urgent=True))  # of the former divisor
-    assert resolution.divisor(800, 600) == 2
-
-
-def test_a_cancelled_picture_at_full_resolution_leaves_the_divisor():
-    resolution = AdaptiveResolution()
-    resolution.record(outcome(FRAME_TIME * 3))
-    render_moving(resolution, FRAME_TIME * 3)
-    resolution.record(outcome(FRAME_TIME / 100, pixels=False))
-    assert resolution.divisor(800, 600) == 2
+    found = [resolution.divisor(800, 600)]
+    for frames, options in pictures:
+        resolution.record(outcome(frames * FRAME_TIME, **options))
+        found.append(resolution.divisor(800, 600))
+    assert found == divisors
 
 
 def first_divisors(resolution: AdaptiveResolution, factors: list[float]) -> list[int]:

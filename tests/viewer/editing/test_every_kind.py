@@ -93,18 +93,8 @@ def test_an_element_is_added_by_keys_clicked_moved_and_saved(kind: type[Element]
     for select in ["press Tab", *([f"click {pixel[0]},{pixel[1]}"] if pixel else [])]:
         found = played(*add, "press Return", "press C", *icons, select, text=BARE, path=path).state
         assert found.element == session.state.element
-    saved = played(
-        *add,
-        "press Return",
-        "press d",
-        "press Right",
-        "press +",
-        "press M",
-        "press +",
-        "press Ctrl+S",
-        text=BARE,
-        path=path,
-    )
+    edits = [f"press {key}" for key in ("Return", "d", "Right", "+", "M", "+", "Ctrl+S")]
+    saved = played(*add, *edits, text=BARE, path=path)
     lines = path.read_text().splitlines()
     assert lines[:2] == BARE.splitlines()
     lamps = ["L"] if issubclass(kind, Shape) else []
