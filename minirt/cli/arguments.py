@@ -219,16 +219,11 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
     if choice := CHOICE.fullmatch(message):
         choices = re.sub(r"'", "", choice["choices"])
         hint = suggestion(choice["value"], choices.split(", "))
-        return f"argument {choice['option']}: must be {in_words(choices)}, got '{choice['value'][:40]}'{hint}"
+        listed = " or ".join(choices.rsplit(", ", 1))
+        return f"argument {choice['option']}: must be {listed}, got '{choice['value'][:40]}'{hint}"
     return message.removeprefix("unrecognized arguments: ")
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """Return `, did you mean --size?`, or '' without a word that is near."""
     return "".join(f", did you mean {each}?" for each in nearest(word, known))
-
-
-def in_words(choices: str) -> str:
-    """Return `plain, srgb or filmic` for `plain, srgb, filmic`."""
-    first, _, last = choices.rpartition(", ")
-    return f"{first} or {last}" if first else last

@@ -73,13 +73,19 @@ def without_signals(work: Callable[..., None], *arguments: object) -> None:
 
 def line(state: State, seconds: float) -> str:
     """Return the bar: how much is done, and the time that is left if the rest is as fast, or that has passed."""
-    from minirt.helpers.system import in_words
-
     if not state.share:
         return f"{in_words(seconds)}  {state.what}"
     share = min(state.share, 1.0)
     left = in_words(seconds * (1 - share) / share)
     return f"{'#' * round(BAR * share):-<{BAR}} {share:4.0%}  {left} left  {state.what}"
+
+
+def in_words(seconds: float) -> str:
+    """Say a time in the unit that people would use."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
 
 
 def in_notebook() -> bool:

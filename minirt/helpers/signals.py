@@ -96,9 +96,8 @@ def _in_main_thread() -> bool:
 
 def signals_end_work() -> AbstractContextManager[None]:
     """Raise `Ended` in the main thread on a signal that asks the program to end, while it works without a window."""
-    return ended_by_signals(raise_ended, once=True)
 
+    def end(number: int) -> None:
+        raise Ended(number)
 
-def raise_ended(number: int) -> None:
-    """Let a signal propagate like Ctrl+C."""
-    raise Ended(number)
+    return ended_by_signals(end, once=True)

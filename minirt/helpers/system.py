@@ -112,12 +112,7 @@ def size_in_words(size: int) -> str:
 # that another thread held stays locked for ever. Spawned child processes import everything anew.
 
 
-renewables: WeakSet[Any] = WeakSet()  # objects with locks or threads, and a method `after_fork` that renews them
-
-
-def renew_after_fork(owner: Any) -> None:
-    """Call `owner.after_fork` in each child process, for as long as `owner` is alive."""
-    renewables.add(owner)
+renewables: WeakSet[Any] = WeakSet()  # objects whose method `after_fork` renews their locks or threads
 
 
 class ForkSafeLock:
@@ -125,7 +120,7 @@ class ForkSafeLock:
 
     def __init__(self) -> None:
         self.after_fork()
-        renew_after_fork(self)
+        renewables.add(self)
 
     def after_fork(self) -> None:
         """Replace the lock, which a thread that is gone may hold."""
@@ -183,11 +178,3 @@ def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
 def is_disturbed(run: Run, threads: int) -> bool:
     """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
     return run.wall * threads > DISTURBED * run.cpu
-
-
-def in_words(seconds: float) -> str:
-    """Say a time in the unit that people would use."""
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

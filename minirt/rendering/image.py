@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -65,7 +65,9 @@ class Image:
 
         light = self.light("16 bits")
         levels = np.empty(light.shape, np.uint16)
-        for rows in blocks_of_rows(light):
+        step = max(1, BLOCK // max(1, light.shape[1]))
+        for start in range(0, len(light), step):
+            rows = slice(start, start + step)
             levels[rows] = np.rint(DEEP * levels_of(light[rows], self.tone))
         return levels
 
@@ -134,12 +136,6 @@ class Image:
     def __repr__(self) -> str:
         height, width = self.array.shape[:2]
         return f"<Image of {width}x{height} pixels{'' if self.linear is None else ', with linear light'}>"
-
-
-def blocks_of_rows(array: np.ndarray) -> Iterator[slice]:
-    """Yield slices of the rows of a picture, with about `BLOCK` pixels each."""
-    step = max(1, BLOCK // max(1, array.shape[1]))
-    yield from (slice(start, start + step) for start in range(0, len(array), step))
 
 
 class LinearImage(Image):

@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError, check_whole
-from minirt.helpers.system import ForkSafeLock, renew_after_fork
+from minirt.helpers.system import ForkSafeLock, renewables
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.shading.whitted import MAX_DEPTH
 from minirt.rendering.frame_runner import FrameRunner, render_samples, render_to_error
@@ -48,7 +48,7 @@ class Renderer:
         self.kernels = Kernels(precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
         self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, dither)
-        renew_after_fork(self)
+        renewables.add(self)
 
     def after_fork(self) -> None:
         """In a child process: replace the lock, and drop the parent's threads and what they may have been packing."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,10 +12,10 @@ import pytest
 import tifffile
 
 import minirt
-from tests.cli.program import Run, environment, program, start
+from tests.cli.program import Run, environment, interrupt, program, start
 from tests.processes import is_running, next_line, started
 from tests.terminals import terminal
-from tests.waiting import HANG_LIMIT, until
+from tests.waiting import until
 
 LOCAL = ("--cluster", "local")
 
@@ -82,39 +80,16 @@ def test_an_error_is_reached_and_told(run: Run, folder: Path, output: str) -> No
         assert (ended.status, "notice: no more samples" in ended.err) == (1, True)
 
 
-def interrupted(folder: Path, words: bytes, *arguments: str) -> str:
-    """Output of the program when it is interrupted after it has shown some words."""
-    with terminal() as screen, start(folder, "ball.rt", *arguments, *LOCAL, stderr=screen.end) as running:
-        screen.leave()
-        until(lambda: bool(re.search(words, screen.read())) or running.poll() is not None, "some work")
-        assert running.poll() is None, "the work ended before it could be interrupted"
-        os.killpg(running.pid, signal.SIGINT)
-        screen.wait_for_end()  # which all processes have open
-        running.communicate(timeout=HANG_LIMIT)
-        assert running.returncode == 130
-    assert b"Traceback" not in screen.text
-    return screen.text.decode()
-
-
 def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: Path) -> None:
     how = "--size", "640x1600", "--samples", "16384", "--threads", "1", "-o", "a.tif"
-    text = interrupted(folder, rb"([4-9]|1\d) of 25 bands", *how)
-    assert re.search(r"\d+ of 25 bands of the picture are kept; the same command goes on", text)
+    with terminal() as screen, start(folder, "ball.rt", *how, *LOCAL, stderr=screen.end) as running:
+        screen.leave()
+        until(lambda: bool(re.search(rb"([4-9]|1\d) of 25 bands", screen.read())) or running.poll() is not None, "work")
+        assert running.poll() is None, "the work ended before it could be interrupted"
+        assert interrupt(running, screen)[0] == 130  # after the end of all processes, which have the terminal open
+    assert b"Traceback" not in screen.text
+    assert re.search(rb"\d+ of 25 bands of the picture are kept; the same command goes on", screen.text)
     assert {each.name for each in folder.iterdir()} == {"ball.rt", ".a.tif.journal"}
-
-
-def test_an_interrupted_film_goes_on(run: Run, folder: Path) -> None:
-    how = "--turntable", "12", "--size", "320x180", "--samples", "8192", "--threads", "1", "-o", "spin.png"
-    text = interrupted(folder, rb"([3-9]|1[01]) of \d+ pictures", *how)
-    assert re.search(r"\d+ of 12 pictures of the film are kept; miniRT .* --resume goes on", text)
-    before = {each.name: each.stat().st_mtime_ns for each in folder.glob("spin-*.png")}
-    kept = int(re.findall(r"(\d+) of 12 pictures", text)[-1])
-    assert 0 < kept <= len(before) < 12
-    assert run("ball.rt", *how, *LOCAL, "--resume") == (0, b"", "")
-    after = {each.name: each.stat().st_mtime_ns for each in folder.glob("spin-*.png")}
-    assert len(after) == 12
-    assert sum(before[each] == after[each] for each in before) >= kept
-    assert not (folder / ".spin.png.journal").exists()
 
 
 def test_a_scheduler_that_cannot_be_reached_is_an_error(run: Run, folder: Path) -> None:
