@@ -22,7 +22,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.oracle.body import body
-from tests.reference.vectors import Along, Array, dot, length, own_x_and_z, profile, right_and_up, turned, unit
+from tests.reference.vectors import Along, Array, dot, first_point, length, own_x_and_z, right_and_up, turned, unit
 
 
 class SurfacePoint(NamedTuple):
@@ -151,38 +151,26 @@ def _(torus: Torus, points: Array) -> SurfacePoint:
 @surface_point.register(Paraboloid)
 @surface_point.register(Hyperboloid)
 def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> SurfacePoint:
-    form = profile(shape)
-    _, z = own_x_and_z(form.axis, shape.roll)
-    axis = -form.axis if isinstance(shape, Cone) else form.axis  # a cone has its apex above
-    across_axis = np.cross(axis, z)
-    p = points - form.origin
-    height = dot(p, form.axis)
-    radius = p - height[..., None] * form.axis
-    far = length(radius)
-    outwards = radius / np.where(far > 0, far, 1)[..., None]
-    span = form.high - form.low
-    if isinstance(shape, Cone):
-        v, along_v = 1 - height / span, -span * (form.axis + np.sqrt(form.two) * outwards)
-    elif isinstance(shape, Paraboloid):
-        rim = shape.diameter / 2
-        v = far / rim
-        along_v = rim * outwards + (2 * span * v)[..., None] * form.axis
-    else:
-        v = (height - form.low) / span
-        along_v = span * (form.axis + form.two * (height / np.where(far > 0, far, 1))[..., None] * outwards)
-    side = SurfacePoint(longitude(p, axis, -z), v, 2 * np.pi * np.cross(axis, p), along_v)
+    _, z = own_x_and_z(np.array(shape.axis), shape.roll)
+    up = np.array(shape.axis) * (-1 if isinstance(shape, Cone) else 1)  # a cone has its apex above
+    out, p = normals(shape, points), points - first_point(shape)
+    height, around = dot(p, up), np.cross(up, p)
+    outwards = unit(p - height[..., None] * up)
+    upwards = unit(np.cross(out, around))  # along the side
+    with np.errstate(divide="ignore"):  # on caps, which follow
+        if isinstance(shape, Paraboloid):
+            v, per_v = 2 * length(around) / shape.diameter, shape.diameter / 2 / dot(upwards, outwards)
+        else:
+            v = height / shape.height + (1.0 if isinstance(shape, Cone) else 0.5)
+            per_v = shape.height / dot(upwards, up)
+    side = SurfacePoint(longitude(p, up, -z), v, 2 * np.pi * around, per_v[..., None] * upwards)
     # On a cap, right is along x of the upright shape and up along -z on the upper one, along z on the lower one.
-    out = normals(shape, points)
-    capped, above = np.abs(dot(out, form.axis)) > 1 - 1e-9, dot(out, axis) > 0
-    for is_above in (True, False):
-        on_cap = capped & (above == is_above)
-        if on_cap.any():
-            end = form.high if (dot(out[on_cap], form.axis) > 0).all() else form.low
-            across = 2 * np.sqrt(form.at(end))
-            right, up = across * across_axis, across * (-z if is_above else z)
-            corner = form.origin + end * form.axis - (right + up) / 2
-            for part, value in zip(side, flat_point(points[on_cap], corner, right, up), strict=True):
-                part[on_cap] = value
+    right = shape.diameter * np.cross(up, z)
+    for sign in (-1, 1):
+        on_cap, forward = sign * dot(out, up) > 1 - 1e-9, -sign * shape.diameter * z
+        cap = flat_point(points, first_point(shape) - (right + forward) / 2, right, forward)
+        for part, value in zip(side, cap, strict=True):
+            part[on_cap] = value[on_cap]
     return side
 
 

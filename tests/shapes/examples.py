@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -48,22 +47,6 @@ def place(shape: Shape) -> Array:
     if balls:
         return np.mean([centre for centre, _ in balls], axis=0)
     return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
-
-
-@cache
-def is_concave(kind: Kind) -> bool:
-    """Whether a shape is concave: a part of it lies beyond a tangent plane, so that rays along a normal may hit it
-    again.
-
-    Measured by the oracle on 3 shapes with 32 points each.
-    """
-    random = np.random.default_rng(7)
-    for shape in (example(kind, random) for _ in range(3)):
-        points, normals = on_surface(shape, random, 32)
-        beyond = np.einsum("ijk,ik->ij", points[None] - points[:, None], normals)
-        if beyond.max() > 1e-9:
-            return True
-    return False
 
 
 def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, Array]:

@@ -133,11 +133,3 @@ def check_tangents(case: Case, evaluate: Evaluate, size: float) -> None:
     got = evaluate(case.shape, case.points, case.normals)
     for along, right in ((got.along_u, case.right.along_u), (got.along_v, case.right.along_v)):
         assert lengths(along - right).max() <= 1e-6 * lengths(right).max()
-
-
-def check_hand(case: Case, evaluate: Evaluate, size: float) -> None:
-    """Assert that v is counter-clockwise of u as seen from outside: the picture is not mirrored."""
-    got = evaluate(case.shape, case.points, case.normals)
-    product = np.cross(got.along_u, got.along_v)
-    assert (np.sum(product * case.normals, axis=-1) >= (1 - 1e-6) * lengths(product)).all()
-    assert (lengths(product) > 0).all()

@@ -23,7 +23,6 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.shapes.execution_modes import Intersect, U, shoot, surfaces
-from tests.shapes.mapping_checks import interpreted
 from tests.shapes.regimes import GREY
 
 NEVER = np.inf
@@ -279,97 +278,6 @@ def test_a_parallel_ray_misses(intersect: Intersect, shape: Shape, slope: float,
     assert t == (pytest.approx(1, abs=1e-3 if slope > U * 8 else 1) if seen else NEVER)
 
 
-def flank(x: float, y: float) -> tuple[float, ...]:
-    """The unit vector along x, y."""
-    return (x / np.hypot(x, y), y / np.hypot(x, y), 0)
-
-
-REACH, HEIGHT = (9 + 3.9**2) ** 0.5, 7**0.5 / 4
-SURFACES: list[tuple[Shape, list[tuple[tuple[float, ...], ...]]]] = [  # points, moved onto the surface, and normals
-    (
-        TUBE,
-        [
-            ((3.001, 1, 5), (3, 1, 5), (1, 0, 0)),
-            ((0, 0, 1.99), (0, 0, 2), (0, 0, -1)),
-            ((2, 2.001, 5), (2, 2, 5), (0, 1, 0)),
-            ((2, 1.999, 5), (2, 2, 5), (0, 1, 0)),
-            ((1, -2.01, 5), (1, -2, 5), (0, -1, 0)),
-            ((0, -1.99, 5), (0, -2, 5), (0, -1, 0)),
-        ],
-    ),
-    (
-        TENT,
-        [
-            ((1.508, 2.006, 5), (1.5, 2, 5), (0.8, 0.6, 0)),
-            ((1, 0.001, 5), (1, 0, 5), (0, -1, 0)),
-            ((1, -0.01, 5), (1, 0, 5), (0, -1, 0)),
-            ((0, 4, 5), (0, 4, 5), (0, 1, 0)),
-        ],
-    ),
-    (  # across the axis where the side is steep, along it where it is flat
-        BOWL,
-        [
-            ((1.01, 0, 5), (1, 0, 5), flank(2, -1)),
-            ((0, -1.01, 5), (0, -1, 5), (0, -1, 0)),
-            ((0.25, -0.9, 5), (0.25, -0.9375, 5), flank(0.5, -1)),
-            ((1, 3.01, 5), (1, 3, 5), (0, 1, 0)),
-            ((1, 2.99, 5), (1, 3, 5), (0, 1, 0)),
-            ((0.76, -0.4375, 5), (0.75, -0.4375, 5), flank(1.5, -1)),
-        ],
-    ),
-    (
-        TOWER,
-        [
-            ((3.01, 0, 5), (3, 0, 5), (1, 0, 0)),
-            ((-5.01, 3.9, 5), (-REACH, 3.9, 5), flank(-REACH, -3.9)),
-            ((1, 4.01, 5), (1, 4, 5), (0, 1, 0)),
-            ((1, -3.99, 5), (1, -4, 5), (0, -1, 0)),
-        ],
-    ),
-    (TUBE_TOWER, [((3.01, 1, 5), (3, 1, 5), (1, 0, 0))]),
-    (  # along the axis where the side is flat
-        FLAT_TOWER,
-        [
-            ((4, 0.65, 5), (4, HEIGHT, 5), flank(4, -16 * HEIGHT)),
-            ((4, -0.65, 5), (4, -HEIGHT, 5), flank(4, 16 * HEIGHT)),
-        ],
-    ),
-    (SAIL, [((0.5, 1, 6.5), (0.5, 1.25, 6.25), (0, -(0.5**0.5), 0.5**0.5)), ((0.5, 1, 5.5), (0.5, 0.75, 5.75), ())]),
-    (BOARD, [((0.06, 2, 4.92), (0, 2, 5), BOARD.normal), ((0.8, 1, 5.6), (0.8, 1, 5.6), BOARD.normal)]),
-    (PLATE, [((0.06, 2, 4.92), (0, 2, 5), PLATE.normal), ((0.8, 1, 5.6), (0.8, 1, 5.6), PLATE.normal)]),
-    (FLOOR, [((0.3, -2.5, 7), (0.3, -2, 7), (0, 1, 0)), ((-9, 1, 1), (-9, -2, 1), (0, 1, 0))]),
-    (BALL, [((0, 0, 2.5), (0, 0, 2), (0, 0, -1)), ((4.8, 0, 8.6), (2.4, 0, 6.8), (0.8, 0, 0.6))]),
-    (
-        BLOCK,
-        [
-            ((1.01, 0, 5), (1, 0, 5), (1, 0, 0)),
-            ((-0.99, 0, 5), (-1, 0, 5), (-1, 0, 0)),
-            ((0, 3.01, 5), (0, 3, 5), (0, 1, 0)),
-            ((0, -0.99, 5), (0, -1, 5), (0, -1, 0)),
-            ((0, 0, 2.01), (0, 0, 2), (0, 0, -1)),
-            ((0.5, 2, 8.01), (0.5, 2, 8), (0, 0, 1)),
-        ],
-    ),
-    (
-        RING,
-        [
-            ((0, 1, 0.9), (0, 1, 1), (0, 0, -1)),
-            ((0, 1, 3.01), (0, 1, 3), (0, 0, 1)),
-            ((3, 2.01, 5), (3, 2, 5), (0, 1, 0)),
-            ((0, 0.01, 8), (0, 0, 8), (0, -1, 0)),
-        ],
-    ),
-]
-
-
-@pytest.mark.parametrize(("shape", "cases"), SURFACES, ids=title)
-def test_points_move_onto_the_surface(shape: Shape, cases: list[tuple[tuple[float, ...], ...]]) -> None:
-    on, normal = surfaces([shape], np.array([point for point, *_ in cases], float)[None])
-    assert np.abs(on[0] - [right for _, right, _ in cases]).max() <= 8 * U * 5
-    for found, (_, _, right) in zip(normal[0], cases, strict=True):
-        assert not right or np.abs(found - right).max() <= 4 * U
-
-
 def test_points_beside_the_special_places_of_a_surface() -> None:
     on, normal = surfaces([FLAT_TOWER], np.array([[[2.9, 0.2, 5]]]))  # inside the waist: onto it
     assert on[0, 0, 1] == 0
@@ -458,25 +366,3 @@ def test_sizes_that_contradict_each_other_are_refused(
     with pytest.raises(ElementError, match=message):
         shape.replace(**{name: refused})
     assert getattr(shape.replace(**{name: least}), name) == least
-
-
-@pytest.mark.parametrize(
-    ("axis", "axes"),
-    [
-        ((0, 1, 0), [(1, 0, 0), (0, 1, 0), (0, 0, 1)]),
-        ((1, 0, 0), [(0, -1, 0), (1, 0, 0), (0, 0, 1)]),
-        ((0, 0, 1), [(1, 0, 0), (0, 0, 1), (0, -1, 0)]),
-        ((0.6, 0.8, 0), [(0.8, -0.6, 0), (0.6, 0.8, 0), (0, 0, 1)]),
-    ],
-)
-def test_the_axes_of_a_box_are_those_of_the_scene_until_it_is_turned(
-    axis: tuple[float, ...], axes: list[tuple[float, ...]]
-) -> None:
-    assert np.allclose([(v.x, v.y, v.z) for v in BLOCK.replace(axis=axis).axes()], axes, atol=1e-12)
-
-
-def test_pictures_on_a_box_are_as_wide_and_high_as_its_faces() -> None:
-    faces = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
-    found = interpreted(BLOCK, BLOCK.centre + faces * [1, 2, 3], faces)
-    assert found.along_u.tolist() == [[0, 0, -6], [0, 0, 6], [2, 0, 0], [2, 0, 0], [2, 0, 0], [-2, 0, 0]]
-    assert found.along_v.tolist() == [[0, 4, 0], [0, 4, 0], [0, 0, -6], [0, 0, 6], [0, 4, 0], [0, 4, 0]]

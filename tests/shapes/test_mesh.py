@@ -2,34 +2,24 @@
 
 from __future__ import annotations
 
-import inspect
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import minirt
-from minirt.element import pattern
 from minirt.errors import ElementError, FieldError, FileError
 from minirt.fields import MeshFile
 from minirt.kernel.scene_arrays import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import primitives_of
-from minirt.shapes import ALL_KINDS, MESH, mesh
+from minirt.shapes import MESH, mesh
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
 from tests.meshes.examples import GREY, ball, named, soup
 from tests.shapes.execution_modes import U
 from tests.shapes.regimes import random_directions, unit
-
-
-def test_its_file_opens_with_its_manual_page() -> None:
-    first, *rest = (inspect.getdoc(mesh) or "").splitlines()
-    assert first == f"Mesh: `{pattern(Mesh)}`."
-    assert any(re.match(r"    ob \S+.*    \S", line) for line in rest)
-    assert ALL_KINDS[-1] is MESH
 
 
 def test_a_row_is_a_packed_triangle() -> None:

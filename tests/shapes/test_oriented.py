@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,16 +11,16 @@ from gmpy2 import const_pi, cos, mpfr, sin
 from minirt.fields import cos_and_sin
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.box import Box
-from minirt.shapes.mesh import Mesh
 from minirt.shapes.shape import Oriented
 from minirt.shapes.sphere import Sphere
-from tests import oracle
 from tests.meshes.examples import named
-from tests.reference.vectors import own_x_and_z, turned
-from tests.shapes.examples import example
+from tests.reference.hits import own_axes
+from tests.reference.vectors import turned
+from tests.shapes.examples import example, place
 from tests.shapes.execution_modes import MODES, on_arrays, shape_rows, surfaces
 from tests.shapes.mapping_checks import interpreted
-from tests.shapes.regimes import Array, random_directions
+from tests.shapes.regimes import Rays, random_directions, unit
+from tests.stability.degenerate import wrong_of
 
 U = 2.0**-53
 ROLLS = (90.0, 33.3, -200.0, 1e-3)
@@ -28,50 +28,23 @@ ORIENTED = [kind for kind in KINDS if issubclass(kind.element, Oriented) and kin
 ANGULAR = [kind for kind in ORIENTED if not kind.element.revolved]  # type: ignore[attr-defined]
 
 
-def rolled(kind: Kind) -> list[Oriented]:
+def rolled(kind: Kind) -> list[Any]:
     """Random shapes of a kind, each turned by one of ROLLS."""
     random = np.random.default_rng(5)
-    shapes = [example(kind, random).replace(roll=roll) for roll in ROLLS]
-    assert all(isinstance(shape, Oriented) for shape in shapes)
-    return shapes  # type: ignore[return-value]
-
-
-def rays_at(shapes: list[Oriented], count: int) -> tuple[Array, Array]:
-    """Rays from around some shapes towards points near their middles, (m, count, 3)."""
-    random = np.random.default_rng(6)
-    middles = np.array([np.mean([centre for centre, _ in shape.balls()], axis=0) for shape in shapes])[:, None]
-    origins = middles + 6 * random_directions(random, len(shapes) * count).reshape(len(shapes), count, 3)
-    directions = middles + random.uniform(-1, 1, origins.shape) - origins
-    return origins, directions / np.linalg.norm(directions, axis=-1, keepdims=True)
-
-
-def opposite(shapes: list[Oriented]) -> list[Oriented]:
-    """The shapes turned the other way."""
-    return [shape.replace(roll=-shape.roll) for shape in shapes]
-
-
-def times_by_oracle(shapes: list[Oriented], origins: Array, directions: Array) -> Array:
-    """t of the hits to 60 digits, infinite where there is none."""
-    found = [
-        [oracle.nearest(shape, o.tolist(), d.tolist()) for o, d in zip(starts, ways, strict=True)]
-        for shape, starts, ways in zip(shapes, origins, directions, strict=True)
-    ]
-    return np.array([[np.inf if t is None else float(t) for t in row] for row in found])
+    return [example(kind, random).replace(roll=roll) for roll in ROLLS]
 
 
 @pytest.mark.parametrize("kind", ANGULAR, ids=lambda kind: kind.element.title)
 def test_hits_of_turned_shapes_are_those_of_the_oracle(kind: Kind) -> None:
-    shapes = rolled(kind)
-    origins, directions = rays_at(shapes, 64)
-    right = times_by_oracle(shapes, origins, directions)
-    assert 40 < np.isfinite(right).sum() < right.size
-    for name, intersect in MODES.items():
-        t = intersect(shapes, origins, directions)  # type: ignore[arg-type]
-        assert np.array_equal(np.isfinite(t), np.isfinite(right)), name
-        hit = np.isfinite(t)
-        assert np.abs(t[hit] / right[hit] - 1).max() <= 1e-13
-    wrong = on_arrays(opposite(shapes)[1:3], origins[1:3], directions[1:3])  # type: ignore[arg-type]
-    assert not np.allclose(wrong, right[1:3])
+    shapes, random = rolled(kind), np.random.default_rng(6)
+    middles = np.array([place(shape) for shape in shapes])[:, None]
+    origins = middles + 6 * random_directions(random, len(shapes), 64)
+    rays = Rays(shapes, origins, unit(middles + random.uniform(-1, 1, origins.shape) - origins))
+    answers = [intersect(*rays) for intersect in MODES.values()]
+    assert 40 < np.isfinite(answers[0]).sum() < answers[0].size
+    assert not [str(each) for each in wrong_of(rays, *answers)]
+    opposite = [shape.replace(roll=-shape.roll) for shape in shapes]
+    assert wrong_of(rays, on_arrays(opposite, *rays[1:]))
 
 
 @pytest.mark.parametrize("kind", ORIENTED, ids=lambda kind: kind.element.title)
@@ -121,23 +94,16 @@ TURNS: list[tuple[tuple[float, float, float], float]] = [
 ]
 
 
-def by_matrix(mesh: Mesh) -> Callable[[Array], Array]:
-    """The rotation of vectors of the file into the scene, as a product with a matrix."""
-    x, z = own_x_and_z(np.array(mesh.axis), mesh.roll)
-    matrix = np.stack([x, np.array(mesh.axis), z])
-    return lambda vectors: np.asarray(vectors @ matrix)
-
-
 @pytest.mark.parametrize(("axis", "roll"), TURNS)
 def test_a_mesh_is_turned_about_its_origin(axis: tuple[float, float, float], roll: float) -> None:
     plain = named("knot", (1.0, 2.0, 3.0), 2.0)
     mesh = plain.replace(axis=axis, roll=roll)
-    rotate = by_matrix(mesh)
+    turn = own_axes(mesh)
     before, after = plain.rows(), mesh.rows()
-    corners = rotate(before[:, :9].reshape(-1, 3) - plain.position) + plain.position
+    corners = (before[:, :9].reshape(-1, 3) - plain.position) @ turn + plain.position
     assert np.abs(after[:, :9].reshape(-1, 3) - corners).max() <= 1e-14 * 10
     for column in (9, 12, 15, 18):
-        assert np.abs(after[:, column : column + 3] - rotate(before[:, column : column + 3])).max() <= 1e-9
+        assert np.abs(after[:, column : column + 3] - before[:, column : column + 3] @ turn).max() <= 1e-9
     assert np.array_equal(after[:, 21:], before[:, 21:])
     (low, high), placed = mesh.bounds(), after[:, :9].reshape(-1, 3)
     assert (low, high) == (tuple(placed.min(axis=0)), tuple(placed.max(axis=0)))

@@ -17,8 +17,6 @@ The facts come for many rays at once from `tests.oracle.many`, or one by one in 
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -26,13 +24,12 @@ import numpy as np
 from gmpy2 import mpfr
 
 from minirt.scene.writer import lines_of
-from minirt.shapes import KINDS, Kind, Shape
+from minirt.shapes import Kind, Shape
 from tests import oracle
 from tests.oracle.body import body, inside, meetings
 from tests.oracle.many import crossed
 from tests.shapes.execution_modes import Intersect
-from tests.shapes.regimes import Array
-from tests.stability.common import MODES
+from tests.shapes.regimes import Array, Rays
 from tests.stability.places import pose, snapped
 from tests.stability.regime import U, points, size
 
@@ -164,10 +161,6 @@ def facts_of_one(shape: Shape, origin: Array, direction: Array, t: float, roundi
     return Facts(*map(np.array, (exact, nearest(band), nearest(-band), *starts, in_shell, float(band), wider)))
 
 
-EACH = 1024  # rays of a shape, whole packets of a kernel
-SHOWN = 5  # wrong rays of a kind
-
-
 class Wrong(NamedTuple):
     """A ray with a wrong answer."""
 
@@ -196,9 +189,29 @@ def groups(kind: Kind, seed: int, shapes: int, rays: int) -> Iterator[tuple[Shap
 def wrong(
     intersect: Intersect, shape: Shape, origins: Array, directions: Array, most: int | None = None
 ) -> list[Wrong]:
-    """The rays whose answer is wrong; of those that seem wrong only so many are judged in 60 digits."""
-    t = intersect([shape], origins[None], directions[None])[0]
+    """The rays of a shape whose answer is wrong."""
+    return judged(shape, origins, directions, intersect([shape], origins[None], directions[None])[0], most)
+
+
+def wrong_of(rays: Rays, *answers: Array) -> list[Wrong]:
+    """The rays to which one of several answers t, (m, n) each, is wrong."""
+    parts = [rays.origins, rays.directions, *answers]
+    found = []
+    for i, shape in enumerate(rays.shapes):
+        origins, directions, *ts = (part[i] for part in parts)
+        given = (np.tile(part, (len(ts), 1)) for part in (origins, directions))
+        found += judged(shape, *given, np.concatenate(ts))
+    return found
+
+
+def judged(shape: Shape, origins: Array, directions: Array, t: Array, most: int | None = None) -> list[Wrong]:
+    """The wrong ones of answers t; of those that seem wrong only so many are judged in 60 digits."""
     with np.errstate(all="ignore"):
+        exact_t = crossed(shape, origins, directions).nearest()
+        unlike = np.flatnonzero(~((t == exact_t) | (np.abs(t - exact_t) <= 4 * U * t)))
+        if not unlike.size:
+            return []
+        origins, directions, t = origins[unlike], directions[unlike], t[unlike]
         facts = facts_of_many(shape, origins, directions, t)
         seem = np.flatnonzero(~right(shape, directions, t, facts))[:most]
         if not seem.size:
@@ -210,34 +223,3 @@ def wrong(
         Wrong(shape, o[i].tolist(), d[i].tolist(), float(t[i]), float(exact.exact[i]), bool(start[i]))
         for i in np.flatnonzero(sure)
     ]
-
-
-def main() -> int:
-    """Judge the rays that the command line asks for, and return whether some answers are wrong."""
-    titles = [kind.element.title for kind in KINDS]
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kinds", nargs="*", metavar="KIND", help=", ".join(titles))
-    parser.add_argument("--rays", type=int, default=1_000_000, help="of each kind")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--mode", choices=MODES, default="arrays")
-    chosen = parser.parse_args()
-    if unknown := set(chosen.kinds) - set(titles):
-        parser.error(f"no such kind: {', '.join(unknown)}")
-    failed = 0
-    for kind in KINDS:
-        if kind.element.title in (chosen.kinds or titles):
-            shapes = -(-chosen.rays // EACH)
-            found = []
-            for group in groups(kind, chosen.seed, shapes, EACH):
-                found += wrong(MODES[chosen.mode], *group)
-            start = sum(each.again for each in found)
-            print(f"{kind.element.title}: {shapes * EACH} rays, {len(found)} wrong, {start} of them where a ray starts")
-            others = [each for each in found if not each.again]
-            for each in (*others[:SHOWN], *[each for each in found if each.again][:SHOWN]):
-                print(f"    {each}")
-            failed += bool(found)
-    return int(failed > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

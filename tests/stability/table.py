@@ -1,4 +1,4 @@
-"""Table of all regimes of all shape types, with the backward errors of their hits."""
+"""All regimes of all kinds of shapes."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from minirt.shapes import KINDS, Kind
 from minirt.shapes.torus import Torus
 from tests.oracle.body import body
 from tests.shapes.examples import example
-from tests.shapes.execution_modes import on_arrays
 from tests.stability.common import common, stretched_regimes
 from tests.stability.places import files
-from tests.stability.regime import BOUND, Regime, certified, normals_of
+from tests.stability.regime import Regime
 
 
 def own_regimes(kind: Kind) -> list[Regime]:
@@ -26,15 +25,3 @@ def regimes(kind: Kind) -> list[Regime]:
 
 
 REGIMES = [(kind, regime) for kind in KINDS for regime in regimes(kind)]
-
-
-def main() -> None:
-    """Print the table of backward errors, a line for each kind."""
-    print("| shape | hits | bound | largest backward error | median |\n|---|---:|---:|---:|---:|")
-    for kind in KINDS:
-        found = []
-        for rays in (regime.make() for other, regime in REGIMES if other is kind):
-            t = on_arrays(*rays)
-            found.append(certified(rays, t, normals_of(rays, t)).backward_error[np.isfinite(t)])
-        errors = np.concatenate(found)
-        print(f"| {kind.element.title} | {len(errors)} | {BOUND:g} | {errors.max():.1f} | {np.median(errors):.2f} |")

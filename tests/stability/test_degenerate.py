@@ -1,6 +1,6 @@
 """Rays at the special places of every shape, exactly and to a few units in the last place, have right answers.
 
-A few thousand for each kind; `python -m tests.stability.degenerate` tries a million.
+A few thousand for each kind; `python -m tests.stability` tries a million.
 """
 
 from __future__ import annotations
@@ -12,13 +12,11 @@ import numpy as np
 import pytest
 
 from minirt.shapes import KINDS, Kind
-from tests.oracle.many import crossed
-from tests.shapes.execution_modes import Intersect
+from tests.shapes.execution_modes import Intersect, on_arrays
 from tests.stability import mutants
-from tests.stability.common import MODES, common
-from tests.stability.degenerate import groups, wrong
+from tests.stability.common import MODES, towards
+from tests.stability.degenerate import facts_of_each, facts_of_many, groups, wrong
 from tests.stability.places import places, pose
-from tests.stability.regime import posed
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 SEED, SHAPES, RAYS = 5, 24, 256
@@ -52,9 +50,7 @@ def test_a_wrong_formula_is_found(name: str) -> None:
 
 @KIND
 def test_many_rays_at_once_are_judged_as_each_alone(kind: Kind) -> None:
-    right = posed(next(each for each in common(kind) if each.name == "usual"))
-    shapes, origins, directions = right.rays
-    for i, shape in enumerate(shapes):
-        t = crossed(shape, origins[i], directions[i]).nearest()
-        assert np.array_equal(np.isfinite(t), np.isfinite(right.t[i]))
-        assert np.allclose(t, right.t[i], rtol=2.0**-52, atol=0.0)
+    rays = towards(kind, 1)
+    t = on_arrays(*rays)
+    for given in zip(*rays, t, strict=True):
+        assert np.allclose(facts_of_many(*given).exact, facts_of_each(*given).exact, rtol=2.0**-52, atol=0.0)
