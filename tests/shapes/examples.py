@@ -11,7 +11,7 @@ from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.packing.shape_arrays import extent
+from minirt.rendering.packing.shape_arrays import bounding_boxes
 from minirt.shapes import Kind, Shape
 from tests import oracle
 from tests.shapes.execution_modes import compiled, surfaces
@@ -101,5 +101,5 @@ def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, r
 
 def shadow_offsets(points: Array, shapes: list[Shape]) -> Array:
     """The offset from the surface at which `minirt.kernel.shading.shade` starts shadow rays, (m, n, 1)."""
-    extents = np.array([extent(shape) for shape in shapes])[:, None]
+    extents = np.array([np.abs(bounding_boxes([shape])).max() for shape in shapes])[:, None]
     return (ROUNDING * 2.0**-53 * (np.abs(points).max(axis=-1) + extents))[..., None]

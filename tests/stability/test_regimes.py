@@ -18,7 +18,7 @@ from minirt.element import fields_of
 from minirt.fields import Length, Lengths
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.packing.shape_arrays import extent
+from minirt.rendering.packing.shape_arrays import bounding_boxes
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from tests.oracle.body import body, normals
@@ -121,7 +121,7 @@ def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: 
     for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):
         distances, points, found = way(shape, origins, directions)
         for i in np.flatnonzero(np.isfinite(distances))[::3]:
-            coordinates = np.abs(points[i]).max() + extent(shape)
+            coordinates = np.abs(points[i]).max() + np.abs(bounding_boxes([shape])).max()
             distance, error = off(shape, points[i], found[i])
             # Rays leave from ROUNDING roundings above the point, which must be above the surface.
             assert distance <= ROUNDING / 2 * U * coordinates
