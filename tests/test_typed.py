@@ -30,7 +30,7 @@ def test_the_program_runs(tmp_path: Path) -> None:
 
 def test_type_checkers_see_the_elements_of_each_kind() -> None:
     source = (PACKAGE / "scene" / "scene.py").read_text(encoding="utf-8")
-    declared = re.findall(r"^        (\w+): tuple\[(\w+), \.\.\.\]$", source, re.MULTILINE)
+    declared = re.findall(r"^        (\w+): tuple\[(?:\w+\.)?(\w+), \.\.\.\]$", source, re.MULTILINE)
     kinds = [kind for kind in ELEMENTS.values() if kind.plural not in vars(minirt.Scene)]
     assert declared == [(kind.plural, kind.__name__) for kind in kinds]
 

@@ -157,13 +157,13 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Surfa
     height, around = dot(p, up), np.cross(up, p)
     outwards = unit(p - height[..., None] * up)
     upwards = unit(np.cross(out, around))  # along the side
-    with np.errstate(divide="ignore"):  # on caps, which follow
+    with np.errstate(divide="ignore", invalid="ignore"):  # on caps, which follow
         if isinstance(shape, Paraboloid):
             v, per_v = 2 * length(around) / shape.diameter, shape.diameter / 2 / dot(upwards, outwards)
         else:
             v = height / shape.height + (1.0 if isinstance(shape, Cone) else 0.5)
             per_v = shape.height / dot(upwards, up)
-    side = SurfacePoint(longitude(p, up, -z), v, 2 * np.pi * around, per_v[..., None] * upwards)
+        side = SurfacePoint(longitude(p, up, -z), v, 2 * np.pi * around, per_v[..., None] * upwards)
     # On a cap, right is along x of the upright shape and up along -z on the upper one, along z on the lower one.
     right = shape.diameter * np.cross(up, z)
     for sign in (-1, 1):

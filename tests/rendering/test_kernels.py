@@ -18,6 +18,7 @@ from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
 from minirt.kernel.machine_code.library import Library, identity_of
 from minirt.materials import Checker
 from minirt.rendering import Renderer, ahead_of_time, kernels
+from minirt.rendering import renderer as renderers
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.kernels import (
     Choice,
@@ -162,7 +163,7 @@ def empty_library(monkeypatch: pytest.MonkeyPatch, folder: Path) -> Library:
     """Let renderers use a library that has the kernels of the package and none of the user's."""
     library = Library()
     library.cache = CodeCache(folder)
-    for module in (functions, kernels, kernels):
+    for module in (functions, kernels, renderers):
         monkeypatch.setattr(module, "LIBRARY", library)
     if not all(library.find(each) for each in GENERIC.values()):
         skip_incomplete("generic kernels are not compiled: make all")

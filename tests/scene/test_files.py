@@ -90,7 +90,7 @@ def test_a_file_without_read_permission_is_refused(tmp_path: Path, monkeypatch: 
     path = tmp_path / "secret.rt"
     path.write_text(WHOLE)
 
-    def denied(*_: object) -> int:
+    def denied(*_: object, **__: object) -> int:
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", denied)  # root may read files without permissions

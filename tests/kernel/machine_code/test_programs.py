@@ -56,7 +56,7 @@ print(LIBRARY.cache and LIBRARY.cache.folder.name, len(LIBRARY.entries) - len(co
       image.array[4, 4].tolist())
 """
 FULL_DISK = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"  # every write to a file fails
-KERNELS = "3"  # that of the frame and two functions of binning
+KERNELS = "4"  # that of the frame, two functions of binning and that of contrast
 PIXEL, EDITED = "[10, 20, 30]", "[10, 40, 30]"
 NOTHING_KEPT = "notice: every run compiles anew, kernels cannot be kept"
 
