@@ -38,11 +38,9 @@ def test_the_same_number_gives_the_same_input() -> None:
 def test_a_leak_of_each_picture_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     leaked: list[np.ndarray] = []
     monkeypatch.setattr(soak, "render", lambda *_: leaked.append(np.ones(2**18)))
-    start = Usage.of().memory
 
-    def measure() -> Usage:
-        usage = Usage.of()
-        return usage._replace(memory=usage.memory - start + 10**8)  # as if other tests had left nothing in memory
+    def measure() -> Usage:  # whatever other tests have left in memory, or free meanwhile
+        return Usage.of()._replace(memory=10**8 + sum(each.nbytes for each in leaked))
 
     record = Record(6, measure)
     soak.soak(lambda pictures: pictures / 24, 1, record)
