@@ -183,12 +183,15 @@ def _torus(torus: Torus, swell: Any = 0) -> Body:
 def _ellipsoid(ellipsoid: Ellipsoid, swell: Any = 0) -> Body:
     """(p . x / a)^2 + (p . y / b)^2 + (p . z / c)^2 <= 1 for points p from the centre, and its own axes."""
     centre = exact(ellipsoid.centre)
-    semi_axes = [mpfr(size) / 2 + swell for size in ellipsoid.sizes]
+    semi_axes = [mpfr(size) / 2 for size in ellipsoid.sizes]
     axes = list(zip(own_axes(ellipsoid.axis, ellipsoid.roll), semi_axes, strict=True))
+    mean = 1 / sqrt(min(semi_axes) * max(semi_axes))  # of half the gradient's length on the surface
 
     def wall(p: Vector) -> Any:
         out = minus(p, centre)
-        x, y, z = ((dot(out, axis) * (1 / semi)) ** 2 for axis, semi in axes)
-        return x + y + z - 1
+        x, y, z = (dot(out, axis) * (1 / semi) for axis, semi in axes)
+        gradient = sum((part * (1 / semi)) ** 2 for part, semi in zip((x, y, z), semi_axes, strict=True))
+        more = swell * (gradient * (1 / mean) + mean)  # at least 2 sqrt(gradient): it moves by `swell` or more
+        return x**2 + y**2 + z**2 - 1 - more
 
     return Body((wall,))

@@ -53,4 +53,6 @@ def test_many_rays_at_once_are_judged_as_each_alone(kind: Kind) -> None:
     rays = towards(kind, 1)
     t = on_arrays(*rays)
     for given in zip(*rays, t, strict=True):
-        assert np.allclose(facts_of_many(*given).exact, facts_of_each(*given).exact, rtol=2.0**-52, atol=0.0)
+        with np.errstate(all="ignore"):
+            many, each = (facts(*given).exact for facts in (facts_of_many, facts_of_each))
+        assert np.allclose(many, each, rtol=2.0**-52, atol=0.0)
