@@ -26,6 +26,7 @@ from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.torus import Torus
+from tests import oracle
 from tests.oracle.body import body, dot, exact, gradient
 from tests.shapes.examples import example, on_surface, place
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays
@@ -142,17 +143,17 @@ def common(kind: Kind) -> list[Regime]:
     if solid:
         regimes += [
             Regime("along the surface", partial(shots, 8, plain, touching)),
-            Regime("beside the surface", partial(shots, 9, plain, leaving)),
+            Regime("beside the surface", partial(shots, 9, plain, leaving), blur=np.inf),
         ]
     if kind.element in CURVED:
         far = partial(example, kind, size=1.0, offset=1e4)
         regimes += [
-            Regime("on the surface", partial(shots, 12, plain, starting)),
-            Regime("on the surface, a scene at 1e4", partial(shots, 13, far, starting)),
+            Regime("on the surface", partial(shots, 12, plain, starting), nearest=oracle.onward),
+            Regime("on the surface, a scene at 1e4", partial(shots, 13, far, starting), nearest=oracle.onward),
         ]
     if kind.element in QUADRICS:
         huge = partial(example, kind, size=1e9)
-        regimes.append(Regime("just above a huge one", partial(shots, 14, huge, from_above)))
+        regimes.append(Regime("just above a huge one", partial(shots, 14, huge, from_above), 1e-9, 0.0))
     return regimes
 
 
@@ -247,5 +248,5 @@ def stretched_regimes(kind: Kind) -> list[Regime]:
             with suppress(ElementError):
                 stretched(example(kind, np.random.default_rng(1)), field.name, factor)
                 make = partial(seen, kind, 21, field.name, factor)
-                found.append(Regime(f"{field.title} times {factor:g}", make))
+                found.append(Regime(f"{field.title} times {factor:g}", make, blur=np.inf))
     return found

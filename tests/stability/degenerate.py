@@ -207,11 +207,6 @@ def wrong_of(rays: Rays, *answers: Array) -> list[Wrong]:
 def judged(shape: Shape, origins: Array, directions: Array, t: Array, most: int | None = None) -> list[Wrong]:
     """The wrong ones of answers t; of those that seem wrong only so many are judged in 60 digits."""
     with np.errstate(all="ignore"):
-        exact_t = crossed(shape, origins, directions).nearest()
-        unlike = np.flatnonzero(~((t == exact_t) | (np.abs(t - exact_t) <= 4 * U * exact_t) & np.isfinite(exact_t)))
-        if not unlike.size:
-            return []
-        origins, directions, t = origins[unlike], directions[unlike], t[unlike]
         facts = facts_of_many(shape, origins, directions, t)
         seem = np.flatnonzero(~right(shape, directions, t, facts))[:most]
         if not seem.size:
