@@ -173,12 +173,12 @@ print(Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()[0])
 def test_a_large_picture_needs_the_memory_of_a_few_bands(tmp_path: Path) -> None:
     """Less than its pixels take; a planted program that keeps the picture needs more."""
     BALL.save(tmp_path / "ball.rt")
-    size = "16000, 2400"
+    size = "16000, 3600"
     streamed, kept = (
         int(run([sys.executable, "-c", MEMORY.format(code)], cwd=tmp_path, env=environment()).stdout) * 1024
         for code in (f"minirt.render_to('a.tif', scene, {size})", f"minirt.render(scene, {size}, linear=False)")
     )
-    assert streamed < 4 * 16000 * 2400 < kept
+    assert streamed < 4 * 16000 * 3600 < kept
 
 
 @pytest.mark.parametrize(
