@@ -30,7 +30,7 @@ def parse(data: bytes) -> Triangles:
     file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
     before, triangles = Counts(), 0
     while lines := read_lines(file, before.lines):
-        block = obj_lines.read_quickly(lines, before) or obj_lines.diagnose(lines, before)
+        block = obj_lines.read(lines, before)
         blocks.append(block)
         before = before.after(block, len(lines))
         triangles += int((block.sizes - 2).sum())

@@ -22,7 +22,7 @@ BROKEN = {
     SQUARE + "f 1//1 2//2 3//1\n": "line 6: a corner names vn 2, but there is 1",
     SQUARE + "f 1/1 2/1 3/1\n": "line 6: a corner names vt 1, but there are 0",
     SQUARE + "f 1 2 9\nf 1 2 7": "line 6: a corner names point 9, but there are 4",
-    SQUARE + f"f 1 2 {10**30}\n": f"line 6: a corner names point {2**62 + 1}, but there are 4",
+    SQUARE + f"f 1 2 {10**30}\n": f"line 6, column 7: a corner names point {10**30}, but there are 4",
     SQUARE + "f 1/ 2/ 3/\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
     SQUARE + "f /1 /2 /3\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
     SQUARE + "f 1/1/1/1 2 3\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",

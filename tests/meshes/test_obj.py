@@ -1,33 +1,18 @@
-"""Both readers of .obj files, the fast and the diagnosing one, give the right triangles; Newell's teapot is closed."""
+"""The reader of .obj files gives the right triangles; Newell's teapot is closed."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from minirt.meshes import Triangles, load_mesh, obj, obj_lines
-from minirt.meshes.obj_lines import Block, Counts
+from minirt.meshes import Triangles, load_mesh, obj
 from tests.paths import ROOT, SCENES
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
-Read = Callable[[str], Triangles]
 
 
-@pytest.fixture(params=["fast", "diagnosing"])
-def read(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Read:
-    """Parse a text by one of the two readers alone."""
-    if request.param == "diagnosing":
-        monkeypatch.setattr(obj_lines, "read_quickly", lambda *_: None)
-    else:
-        monkeypatch.setattr(obj_lines, "diagnose", None)
-    return lambda text: obj.parse(text.encode())
-
-
-def parse_diagnosing(text: str) -> Triangles:
-    """Parse a text that the fast path leaves to the diagnosing reader."""
-    assert obj_lines.read_quickly(text.encode().splitlines(keepends=True), Counts()) is None
+def read(text: str) -> Triangles:
+    """Parse the text of a file."""
     return obj.parse(text.encode())
 
 
@@ -36,29 +21,29 @@ def corners(triangles: Triangles) -> list[list[list[float]]]:
     return triangles.points[triangles.corners].tolist()
 
 
-def test_points_and_faces_are_read_and_other_lines_skipped(read: Read) -> None:
+def test_points_and_faces_are_read_and_other_lines_skipped() -> None:
     mesh = read("# one\no thing\nv 0 0 0\nv 1e0 0 0.5\nv -1 +2. .25\n\nusemtl red\ns 1\nf 1 2 3\n")
     assert corners(mesh) == [[[0, 0, 0], [1, 0, 0.5], [-1, 2, 0.25]]]
     assert mesh.normals is None
     assert mesh.uvs is None
 
 
-def test_a_face_of_many_corners_is_a_fan(read: Read) -> None:
+def test_a_face_of_many_corners_is_a_fan() -> None:
     mesh = read("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\nf 3 2 1\n")
     assert mesh.corners.tolist() == [[0, 1, 2], [0, 2, 3], [0, 3, 4], [2, 1, 0]]
 
 
-def test_negative_numbers_count_backwards(read: Read) -> None:
+def test_negative_numbers_count_backwards() -> None:
     text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 5 5 0\nv 6 5 0\nv 6 6 0\nf -3 -2 -1\nf 1 -5 -4\n"
     assert read(text).corners.tolist() == [[0, 1, 2], [3, 4, 5], [0, 1, 2]]
 
 
-def test_a_face_may_name_later_points(read: Read) -> None:
+def test_a_face_may_name_later_points() -> None:
     assert len(read("f 1 2 3\n" + SQUARE)) == 1
 
 
 @pytest.mark.parametrize("form", ["{0}/{0}/{0}", "{0}//{0}", "{0}/{0}"])
-def test_normals_and_texture_coordinates_are_read(read: Read, form: str) -> None:
+def test_normals_and_texture_coordinates_are_read(form: str) -> None:
     face = "f " + " ".join(form.format(i) for i in (1, 2, 3)) + "\n"
     mesh = read(SQUARE + "vt 0 0\nvt 1 0\nvt 1 .5\nvn 0 0 1\nvn 3 0 4\nvn 0 0 1e-200\n" + face)
     if form.count("{0}") == 3 or "//" not in form:
@@ -74,49 +59,49 @@ def test_normals_and_texture_coordinates_are_read(read: Read, form: str) -> None
 
 
 def test_missing_normals_and_texture_coordinates_of_some_corners_get_defaults() -> None:
-    mesh = parse_diagnosing(SQUARE + "vt 1 1\nvn 0 1 0\nf 1/1/1 2 3//1\nf 1 3 4\n")
+    mesh = read(SQUARE + "vt 1 1\nvn 0 1 0\nf 1/1/1 2 3//1\nf 1 3 4\n")
     assert mesh.uvs is not None
     assert mesh.uvs.tolist() == [[[1, 1], [0, 0], [0, 0]], [[0, 0]] * 3]
     assert mesh.normals is not None
     assert mesh.normals.tolist() == [[[0, 1, 0], [0, 0, 1], [0, 1, 0]], [[0, 0, 1]] * 3]
 
 
-def test_a_zero_normal_becomes_that_of_the_triangle(read: Read) -> None:
+def test_a_zero_normal_becomes_that_of_the_triangle() -> None:
     mesh = read(SQUARE + "vn 0 0 0\nvn 0 3 4\nf 1//1 2//2 3//1\n")
     assert mesh.normals is not None
     assert mesh.normals.tolist() == [[[0, 0, 1], [0, 0.6, 0.8], [0, 0, 1]]]
 
 
-def test_colours_and_weights_of_points_are_left_out(read: Read) -> None:
+def test_colours_and_weights_of_points_are_left_out() -> None:
     mesh = read("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0.5 0 1\nvt 0 0 0\nf 1 2 3\n")
     assert corners(mesh) == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
 
 
 def test_a_backslash_continues_a_line_and_a_comment_ends_it() -> None:
-    mesh = parse_diagnosing("v 0 0 0 # zero\nv 1 \\\n 0 0\nv 0 1 0\nf 1 \\\r\n 2 \\\n 3 # all\r\nf 3 2 1 \\")
+    mesh = read("v 0 0 0 # zero\nv 1 \\\n 0 0\nv 0 1 0\nf 1 \\\r\n 2 \\\n 3 # all\r\nf 3 2 1 \\")
     assert mesh.corners.tolist() == [[0, 1, 2], [2, 1, 0]]
 
 
-def test_windows_line_ends_tabs_and_a_byte_order_mark_are_read(read: Read) -> None:
+def test_windows_line_ends_tabs_and_a_byte_order_mark_are_read() -> None:
     assert len(read("\ufeff" + SQUARE.replace("\n", "\r\n").replace(" ", "\t") + "f 1\t2 3 ")) == 1
 
 
-def test_degenerate_triangles_are_dropped(read: Read) -> None:
+def test_degenerate_triangles_are_dropped() -> None:
     mesh = read(SQUARE + "v 2 0 0\nv 1 0 0\nf 1 2 5\nf 2 6 3\nf 1 1 2\nf 1 2 3\n")
     assert mesh.corners.tolist() == [[0, 1, 2]]
 
 
-def test_a_sliver_is_kept(read: Read) -> None:
+def test_a_sliver_is_kept() -> None:
     mesh = read("v 0 0 0\nv 1 0 0\nv 0.5 1e-12 0\nf 1 2 3\n")
     assert mesh.flat_normals.tolist() == [[0, 0, 1]]
 
 
-def test_the_normals_of_a_file_orient_its_triangles(read: Read) -> None:
+def test_the_normals_of_a_file_orient_its_triangles() -> None:
     mesh = read(SQUARE + "vn 0 0 -1\nf 1//1 2//1 3//1\nf 3//1 2//1 1//1\n")
     assert mesh.flat_normals.tolist() == [[0, 0, -1], [0, 0, -1]]
 
 
-def test_blocks_are_assembled_to_one_mesh(monkeypatch: pytest.MonkeyPatch, read: Read) -> None:
+def test_blocks_are_assembled_to_one_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
     lines = [f"v {i} {i * i} 0\nf -1 -2 -3\n" if i > 1 else f"v {i} {i * i} 0\n" for i in range(50)]
     whole = read("".join(lines))
     assert len(whole) == 48
@@ -126,23 +111,7 @@ def test_blocks_are_assembled_to_one_mesh(monkeypatch: pytest.MonkeyPatch, read:
 
 def test_a_continued_line_is_not_split_between_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(obj, "BLOCK_BYTES", 1)
-    assert len(parse_diagnosing(SQUARE + "f 1 \\\n2 \\\n3\n")) == 1
-
-
-def test_both_readers_give_the_same_block() -> None:
-    random = np.random.default_rng(1)
-    for forms in ("{}", "{}/{}", "{}//{}", "{}/{}/{}"):
-        lines = [
-            f"{key} {x!r} {y!r} {z!r}" for key in ("v", "vt", "vn") for x, y, z in random.normal(size=(20, 3)).tolist()
-        ]
-        for _ in range(30):
-            numbers = random.integers(1, 21, (random.integers(3, 7), 3)) * random.choice([-1, 1], (1, 3))
-            lines.append("f " + " ".join(forms.format(*row) for row in numbers.tolist()))
-        data = [line.encode() + b"\n" for line in lines]
-        quick, slow = obj_lines.read_quickly(data, Counts(3, 4, 5, 6)), obj_lines.diagnose(data, Counts(3, 4, 5, 6))
-        assert quick is not None
-        assert all(np.array_equal(one, other) for one, other in zip(quick, slow, strict=True)), forms
-        assert isinstance(slow, Block)
+    assert len(read(SQUARE + "f 1 \\\n2 \\\n3\n")) == 1
 
 
 TEAPOT = SCENES / "meshes" / "teapot.obj"
