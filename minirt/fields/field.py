@@ -120,9 +120,9 @@ class Field(Immutable, ABC):
         """The picture files that `value` names."""
         return iter(())
 
-    def feature_of(self, value: Any) -> str:
-        """The feature that the kernel needs to draw `value`; empty if it has no effect."""
-        return self.feature if value else ""
+    def features_of(self, value: Any) -> tuple[str, ...]:
+        """The features that the kernel needs to draw `value`, the main one first; none if it has no effect."""
+        return (self.feature,) if value else ()
 
     def rows(self, value: Any, _shape: Any, reader: Any) -> dict[str, Any]:
         """The rows of a shape with `value` in the arrays of the kernel, by feature: see `minirt.materials`."""

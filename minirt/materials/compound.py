@@ -28,13 +28,9 @@ class Material(Record):
         """Whether the picture shows it: a material without effect, such as a share of 0, costs no feature."""
         return bool(getattr(self, "share", True))
 
-    def further_features(self) -> tuple[str, ...]:
-        """Features of the kernel that these values need beside `feature`."""
-        return ()
-
-    def used_feature(self) -> str:
-        """The feature that the kernel needs to draw it; empty if it has no effect."""
-        return self.feature if self.has_effect() else ""
+    def features(self) -> tuple[str, ...]:
+        """The features that the kernel needs to draw it, the main one first; none if it has no effect."""
+        return (self.feature,) if self.has_effect() else ()
 
 
 @record(kw_only=True)
@@ -90,8 +86,8 @@ class Compound(Field):
                 yield each._replace(part=start)
             start += field.width
 
-    def feature_of(self, value: Material) -> str:
-        return value.used_feature()
+    def features_of(self, value: Material) -> tuple[str, ...]:
+        return value.features()
 
     def rows(self, value: Material, shape: Any, reader: Any) -> dict[str, Any]:
         return value.rows(shape, reader)

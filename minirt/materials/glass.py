@@ -18,14 +18,28 @@ HIGHEST_ROOT = 1.0 - 1e-9  # of the reflectance of a varnish; that of a perfect 
 Fade = partial(Real, low=0.0, high=FARTHEST, step=0.5, unit="scene unit, 0 for never", placeholder="fade")
 
 
-@record()
 class Secondary(Material):
-    """Base of materials that send secondary rays."""
+    """Base of materials that send secondary rays; without a share they have no effect."""
 
     feature = "reflective"
+    share: float
+    fade: float
+
+    def features(self) -> tuple[str, ...]:
+        return (*super().features(), "fades") if self.fade and self.share else super().features()
 
     def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
-        return secondary_rays(shape)
+        """The rows of a shape with `mirror:` or `glass:`, the same for both.
+
+        They have the shares of mirrored and refracted light, scaled down to 1 where their sum exceeds it, and the index
+        of refraction; and one over the distances at which either light is gone, 0 for never.
+        """
+        mirror, glass = mirror_of(shape), shape.glass or Glass(1.0, 0.0)
+        total = max(1.0, mirror.share + glass.share)
+        row = mirror.share / total, glass.share / total, refractive_index(shape)
+        fades = [1.0 / fade if fade else 0.0 for fade in (mirror.fade, glass.fade)]
+        through = {"transparent": (*row, shape.fresnel or 0.0)} if shape.glass else {}
+        return {"reflective": row, "fades": fades, **through}
 
 
 @record()
@@ -44,9 +58,6 @@ class Mirror(Secondary):
     title = "mirror"
     share: float = declare(Real, "share of mirrored light", low=0.0, high=1.0, step=0.05, initial=0.3)
     fade: float = declare(Fade, "distance at which mirrored light is gone", default=0.0)
-
-    def further_features(self) -> tuple[str, ...]:
-        return ("fades",) if self.fade else ()
 
 
 @record()
@@ -72,27 +83,13 @@ class Glass(Secondary):
     share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0)
     fade: float = declare(Fade, "distance at which refracted light is gone", default=0.0)
 
-    def further_features(self) -> tuple[str, ...]:
-        return ("transparent", "fades") if self.fade else ("transparent",)
+    def features(self) -> tuple[str, ...]:
+        return (*super().features(), "transparent") if self.share else ()
 
 
 def mirror_of(shape: Any) -> Mirror:
     """Return the mirror of a shape; one of share 0 where it has none."""
     return shape.mirror if isinstance(shape.mirror, Mirror) else Mirror(0.0)
-
-
-def secondary_rays(shape: Any) -> dict[str, Any]:
-    """Return the rows of a shape with `mirror:` or `glass:`, by feature.
-
-    They have the shares of mirrored and refracted light, scaled down to 1 where their sum exceeds it, and the index of
-    refraction; and one over the distances at which either light is gone, 0 for never.
-    """
-    mirror, glass = mirror_of(shape), shape.glass or Glass(1.0, 0.0)
-    total = max(1.0, mirror.share + glass.share)
-    row = mirror.share / total, glass.share / total, refractive_index(shape)
-    fades = [1.0 / fade if fade else 0.0 for fade in (mirror.fade, glass.fade)]
-    through = {"transparent": (*row, shape.fresnel or 0.0)} if shape.glass else {}
-    return {"reflective": row, "fades": fades, **through}
 
 
 def refractive_index(shape: Any) -> float:

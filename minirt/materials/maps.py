@@ -125,8 +125,8 @@ class Pattern(Material):
     octaves: int = declare(Count, "levels of detail", low=1, high=MOST_OCTAVES, default=6)
     height: float = declare(Real, "height of the second colour, in sizes", low=-10.0, high=10.0, step=0.01, default=0.0)
 
-    def used_feature(self) -> str:
-        return "raised_patterns" if self.height else self.feature
+    def features(self) -> tuple[str, ...]:
+        return ("raised_patterns" if self.height else self.feature,)
 
 
 @record()

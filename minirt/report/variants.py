@@ -87,7 +87,7 @@ class InvisibleElements:
         found: dict[str, Any] = {}
         for field in fields_of(Attributes):
             value = self.value(field)
-            found.setdefault(field.feature_of(value), plain.replace(**{field.name: value}))
+            found.setdefault(field.features_of(value)[0], plain.replace(**{field.name: value}))
         glass = self.record(Glass)
         found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
         found["raised_patterns"] = plain.replace(clouds=Clouds(self.size, height=0.1))
@@ -160,8 +160,10 @@ def with_materials(scene: Scene, wanted: Callable[[Hashable], bool]) -> Iterator
     """Yield the elements of a scene, of whose materials those remain whose feature is wanted."""
     for each in scene.elements:
         if isinstance(each, Shape) and ATTRIBUTES(each) != PLAIN:
-            values = [(field, getattr(each, field.name)) for field in fields_of(Attributes)]
-            gone = (field for field, value in values if value is not None and not wanted(field.feature_of(value)))
-            yield each.replace(**dict.fromkeys(field.name for field in gone))
+            values = ((field, getattr(each, field.name)) for field in fields_of(Attributes))
+            gone = [
+                field.name for field, value in values if value and not all(map(wanted, field.features_of(value)[:1]))
+            ]
+            yield each.replace(**dict.fromkeys(gone))
         else:
             yield each

@@ -11,7 +11,6 @@ import numpy as np
 from minirt.element import Element, fields_of
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
-from minirt.materials.compound import Material
 from minirt.scene import Background, Camera, Lamp, Scene
 from minirt.shapes import Shape
 
@@ -114,13 +113,8 @@ def shape_features(shape: Shape) -> Iterable[str]:
 
 def material_features(shape: Shape) -> Iterable[str]:
     """The features that the materials of a shape need."""
-    values = [
-        (field, value) for (_, field), value in zip(MATERIALS, ATTRIBUTES(shape), strict=True) if value is not None
-    ]
-    found = dict.fromkeys(filter(None, (field.feature_of(value) for field, value in values)))
-    for _, value in values:
-        if isinstance(value, Material) and value.has_effect():
-            found.update(dict.fromkeys(value.further_features()))
+    values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
+    found = {feature for (_, field), value in values if value is not None for feature in field.features_of(value)}
     if not COORDINATE_MAPS.isdisjoint(found) and shape.map_frame():
-        found["placements"] = None
+        found.add("placements")
     return [feature for feature in found if NEEDS.get(feature, feature) in found]
