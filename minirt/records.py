@@ -7,38 +7,30 @@ the time, 6 us. Signatures and documentation are made from the declared fields w
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, FrozenInstanceError, dataclass, field, fields, is_dataclass
 from functools import cache
+from inspect import Parameter, Signature, cleandoc
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, TypeVar, cast, dataclass_transform
-
-if TYPE_CHECKING:
-    from inspect import Signature
-
-
-MODULE = re.compile(r"\bminirt(\.[a-z_]+)*\.")  # before the name of a class
-STUBS = ("A line `",)  # beginnings of the texts of classes whose module is their manual page
+from typing import Any, TypeVar, cast, dataclass_transform
 
 
 class FieldSignature:
     """Descriptor of `__signature__`, by which `help` and notebooks show the fields of a record."""
 
-    def __get__(self, instance: object, kind: type[Any]) -> Signature:
-        from inspect import Parameter, Signature
-
+    def __get__(self, instance: object, kind: Any) -> Signature:
         if not is_dataclass(kind):
             raise AttributeError("__signature__")  # of a base class of records
+        sorts = Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY
         parameters = [
             Parameter(
                 each.name,
-                Parameter.KEYWORD_ONLY if each.kw_only else Parameter.POSITIONAL_OR_KEYWORD,
+                sorts[each.kw_only],
                 default=Parameter.empty if each.default is MISSING else each.default,
                 annotation=each.type,
             )
-            for each in sorted(fields(kind), key=lambda each: bool(each.kw_only))
+            for each in ordered_fields(kind)
         ]
         return Signature(parameters)
 
@@ -46,27 +38,24 @@ class FieldSignature:
 class FieldDocumentation:
     """Descriptor of `__doc__`, which `help` shows: the text of a class, and the declared fields of a record.
 
-    Classes whose own text refers to their line of a scene file or their value show the manual page of their module.
+    A class whose own text only names its line of a scene file shows the manual page of its module.
     """
 
     def __init__(self, text: str) -> None:
         self.text = text
 
-    def __get__(self, instance: object, kind: type[Any]) -> str:
-        from inspect import cleandoc
-
-        declared = [each for each in fields(kind) if "field" in each.metadata] if is_dataclass(kind) else []
-        if not declared:
-            return self.text
-        text = sys.modules[kind.__module__].__doc__ if self.text.startswith(STUBS) else self.text
-        lines = [cleandoc(text or ""), "", "Fields; a value out of range is a ValueError:", ""]
-        for each in sorted(declared, key=lambda each: bool(each.kw_only)):
-            kind_of_value = MODULE.sub("", str(getattr(each.type, "__name__", each.type)))
-            lines += [f"- `{each.name}: {kind_of_value}`: {facts(each)}"]
-        return "\n".join(lines)
+    def __get__(self, instance: object, kind: Any) -> str:
+        text = sys.modules[kind.__module__].__doc__ if self.text.startswith("A line `") else self.text
+        facts = [
+            f"- `{each.name}: {each.type}`: {facts_of(each)}"
+            for each in ordered_fields(kind)
+            if "field" in each.metadata
+        ]
+        head = [cleandoc(text or ""), "", "Fields; a value out of range is a ValueError:", ""] if facts else [self.text]
+        return "\n".join([*head, *facts])
 
 
-def facts(attribute: Any) -> str:
+def facts_of(attribute: Any) -> str:
     """Return the meaning, unit, range and default of a declared field."""
     field, default = attribute.metadata["field"], attribute.default
     optional = "" if default is MISSING else "absent by default" if default is None else f"default {default!r}"
@@ -146,11 +135,14 @@ class Immutable:
 
     def __repr__(self) -> str:
         kind: Any = type(self)
-        shown = [each for each in fields(kind) if each.repr]
-        shown.sort(key=lambda each: bool(each.kw_only))
-        pairs = ((each, getattr(self, each.name)) for each in shown)
+        pairs = [(each, getattr(self, each.name)) for each in ordered_fields(kind) if each.repr]
         values = ", ".join(f"{each.name}={value!r}" for each, value in pairs if value != each.default)
         return f"{kind.__qualname__}({values})"
+
+
+def ordered_fields(kind: Any) -> list[Any]:
+    """Return the fields of a record, those that need a keyword last."""
+    return sorted(fields(kind), key=lambda each: bool(each.kw_only))
 
 
 @cache

@@ -11,7 +11,6 @@ are `FieldError`s that say what was expected, without the name of the field.
 from __future__ import annotations
 
 import os
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
@@ -43,7 +42,7 @@ class Repair(NamedTuple):
 
 
 @record(kw_only=True)
-class Field(Immutable, ABC):
+class Field(Immutable):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
 
     width: ClassVar[int] = 1  # components, with commas between them
@@ -65,9 +64,9 @@ class Field(Immutable, ABC):
     name: str = ""
     default: Any = None  # None: the field must be given, or as an attribute is absent
 
-    @abstractmethod
     def parse(self, text: str) -> Any:
         """The value spelled by `text`, not yet checked."""
+        return text
 
     def format(self, value: Any) -> str:
         """The spelling of `value` in a scene file."""
@@ -161,9 +160,6 @@ class Choice(Field):
     words: tuple[str, ...]
     placeholder: str = "word"
 
-    def parse(self, text: str) -> str:
-        return text
-
     def check(self, value: str) -> str:
         if value not in self.words:
             raise FieldError(f"must be {', '.join(self.words[:-1])} or {self.words[-1]}, got {quoted(str(value))}")
@@ -191,9 +187,6 @@ class Picture(Field):
     placeholder: str = "file"
     heights: bool = False
     also: str = ""
-
-    def parse(self, text: str) -> str:
-        return file_name(text, self.also)
 
     def check(self, value: str) -> str:
         return file_name(value, self.also)

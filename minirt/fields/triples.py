@@ -121,7 +121,7 @@ class Paint(Colour):
     """A colour or a picture file; a word with a comma is a colour."""
 
     def parse(self, text: str) -> Triple | str:  # type: ignore[override]
-        return super().parse(text) if "," in text else file_name(text, ",")
+        return super().parse(text) if "," in text else text
 
     def format(self, value: Triple | str) -> str:
         return value if isinstance(value, str) else super().format(value)
