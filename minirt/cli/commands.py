@@ -99,8 +99,8 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
 
 def replay(scene: Scene, options: argparse.Namespace) -> int:
     """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
-    from minirt.cli.files import check_output, is_film
-    from minirt.cli.render import write
+    from minirt.cli.files import check_output, is_film, write
+    from minirt.cli.render import encoding
     from minirt.movie import Film
     from minirt.rendering.image import Image
     from minirt.rendering.renderer import renderer
@@ -131,5 +131,5 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
         pixels = play(scene, lines, **settings)
     if options.output:  # which carries no scene: keys have edited it
         without_scene = argparse.Namespace(**vars(options) | {"metadata": False})
-        write(Image.from_bgra(pixels), options.output, scene, without_scene)
+        write(Image.from_bgra(pixels).encode(**encoding(scene, options.output, without_scene)), options.output)
     return OK

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from minirt.cli.arguments import DEMO, Arguments
-from minirt.cli.output import tell
+from minirt.cli.output import say, tell
 from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
@@ -120,3 +120,12 @@ def check_output(output: str, width: int, height: int) -> None:
     check_size(output, format_of(output), width, height)
     with file_io.told_errors(output):
         file_io.probe(output)
+
+
+def write(data: bytes, output: str) -> None:
+    """Write an encoded picture to a file as a whole, or to standard output; RenderError when that fails."""
+    if output == "-":
+        say(data)
+        return
+    with file_io.told_errors(output):
+        file_io.write(output, data)

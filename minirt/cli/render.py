@@ -10,8 +10,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import FAILED, OK, SAMPLES
-from minirt.cli.files import check_output, format_name, is_film, needs_light
-from minirt.cli.output import say, tell
+from minirt.cli.files import check_output, format_name, is_film, needs_light, write
+from minirt.cli.output import tell
 from minirt.cluster.job import Job
 from minirt.cluster.journal import Journal, delete, path_for
 from minirt.cluster.pictures import picture_of, results, stream
@@ -19,12 +19,12 @@ from minirt.errors import RenderError
 from minirt.formats.table import memory_of
 from minirt.helpers import system
 from minirt.helpers.progress import State, progress
+from minirt.rendering.packing.camera import Region, cut_for
 from minirt.rendering.settings import LIGHT, RenderSettings
 from minirt.scene import size_of
 
 if TYPE_CHECKING:
     from minirt.cluster.executor import Workers
-    from minirt.rendering.image import Image
     from minirt.rendering.outcome import Outcome
     from minirt.scene import Scene
 
@@ -36,10 +36,12 @@ PATIENCE = 10  # seconds for a scheduler to answer
 
 def render_output(scene: Scene, options: argparse.Namespace) -> int:
     """Render a picture, or the pictures of a turntable, and write the output."""
-    job = Job(scene, options.size or size_of(scene), settings_for(options))
-    render = stream_picture if is_streamed(job, options) else render_film if options.turntable else render_picture
+    size, settings = options.size or size_of(scene), settings_for(options)
+    region = cut_for(settings.region, *size).region
+    render = stream_picture if is_streamed(options, region) else render_film if options.turntable else render_picture
     with system.gc_paused(), workers(options) as executor:
-        reached = render(job, options, executor)
+        share = Share(settings, region, options, is_here=not executor)
+        reached = render(Job(scene, size, settings), options, executor, share)
     if reached:
         tell(reached)
         if reached.notice:
@@ -79,16 +81,12 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
 
 
 @contextmanager
-def kept_work(
-    job: Job, options: argparse.Namespace, share: Share, count: int = 1, has_parts: bool = True
-) -> Iterator[Journal | None]:
+def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bool = True) -> Iterator[Journal | None]:
     """Show progress, and keep what the block puts into the journal of the output, until it ends without an error.
 
-    Short work is not kept, and neither are samples that depend on those before. There are `count` pictures.
+    Short work is not kept, and neither are samples that depend on those before.
     """
-    *_, width, height = job.region
-    rays = 0 if job.settings.samples == "auto" else width * height * job.settings.samples * count
-    if options.output == "-" or not (options.resume or rays >= LONG):
+    if options.output == "-" or not (options.resume or share.rays >= LONG):
         if options.output != "-":
             delete(path_for(options.output))
         with progress(share.state):
@@ -115,11 +113,14 @@ def kept_work(
 class Share:
     """Share of some work that this program has done: bands or pictures, and rows of the one that is being rendered."""
 
-    def __init__(self, job: Job, executor: Workers | None, what: str) -> None:
-        self.settings, self.rows = job.settings, None if executor else job.region.height
-        self.what, self.start = what, perf_counter()
+    def __init__(self, settings: RenderSettings, region: Region, options: argparse.Namespace, is_here: bool) -> None:
+        self.settings, self.rows = settings, region.height if is_here else None
+        pictures = len(options.frames or range(options.turntable or 1))
+        self.rays = 0 if settings.samples == "auto" else region.width * region.height * settings.samples * pictures
+        self.what = "pictures of the film" if options.turntable else BANDS
+        self.start = perf_counter()
         self.found: int | None = None
-        self.done, self.total = 0, 0
+        self.done, self.total = 0, 1
 
     def note(self, done: int, total: int) -> None:
         """Note how much is done; the first time, what another program has done."""
@@ -136,7 +137,7 @@ class Share:
         return State(what, (self.done - found + rows) / max(1, self.total - found))
 
 
-def render_picture(job: Job, options: argparse.Namespace, executor: Workers | None) -> Outcome | None:
+def render_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render a picture as the options ask and write the output; print measurements and notices to standard error."""
     from minirt.rendering.notices import measurements, notices_about
 
@@ -145,46 +146,48 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
         start = perf_counter()
         job.settings.renderer.prepare(job.scene)
         tell(f"kernel ready after {perf_counter() - start:.2f} s")
-    share = Share(job, executor, BANDS)
     with kept_work(job, options, share) as journal:
-        made = picture_of(job, job.cut(bool(executor), journal is not None), executor, journal, share.note)
-        seconds, image = perf_counter() - share.start, made.image(job.scene)
-        write(image, options.output, job.scene, options)
-    for each in measurements(*job[:3], seconds, made.not_finite) if is_measured else ():
-        tell(each)
-    for each in notices_about(*job[:3], image, is_here=not executor):
-        tell(f"notice: {each}")
-    return made.reached
+        how = encoding(job.scene, options.output, options)
+        start = perf_counter()
+        image = picture_of(job, executor, journal, share.note)
+        seconds = perf_counter() - start
+        for each in notices_about(*job[:3], image, is_here=not executor):
+            tell(f"notice: {each}")
+        write(image.encode(**how), options.output)
+    if is_measured:
+        tell("\n".join(measurements(*job[:3], seconds, image.not_finite)))
+    return image.reached
 
 
-def render_film(job: Job, options: argparse.Namespace, executor: Workers | None) -> Outcome | None:
+def render_film(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render the scene from all around it and write the film, or numbered pictures; return the worst outcome."""
     from minirt.movie import Film, numbered
+    from minirt.rendering.image import Image
     from minirt.viewer.app.replay import turntable
 
     wanted = options.frames or range(1, options.turntable + 1)
     views = islice(turntable(job.scene, options.turntable), wanted.start - 1, wanted.stop - 1)
     bands = [job._replace(scene=view, number=number) for number, view in zip(wanted, views, strict=True)]
     film = Film(options.output, quality=options.quality) if is_film(options) else None
-    outcomes, share = [], Share(job, executor, "pictures of the film")
-    with kept_work(job, options, share, len(wanted), has_parts=film is not None) as journal:
+    outcomes = []
+    with kept_work(job, options, share, has_parts=film is not None) as journal:
         if journal and not film:
             places = journal.places.items()
             journal.places = {number: each for number, each in places if numbered(options.output, number).is_file()}
-        for band, made in results(bands, executor, journal, share.note, in_order=True):
-            outcomes.append(made.reached)
+        for band, image in results(bands, executor, journal, share.note, in_order=True):
+            outcomes.append(image.reached)
             if film:
-                film.add(made.image(band.scene))
-            elif made.parts:
-                write(made.image(band.scene), str(numbered(options.output, band.number)), band.scene, options)
+                film.add(image)
+            elif isinstance(image, Image):
+                output = str(numbered(options.output, band.number))
+                write(image.encode(**encoding(band.scene, output, options)), output)
         if film:
             film.save()
     return max(filter(None, outcomes), key=lambda each: each.error, default=None)
 
 
-def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | None) -> Outcome | None:
+def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render a picture of any size into a TIFF file, which goes on with what was interrupted."""
-    share = Share(job, executor, BANDS)
     try:
         with progress(share.state):
             return stream(options.output, job, options.bits or 8, executor, share.note)
@@ -193,20 +196,16 @@ def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | No
         raise
 
 
-def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) -> None:
-    """Write a picture to a file, or to standard output as PNG when `output` is `-`; PNG carries scene and settings."""
-    texts = {}
-    if options.metadata:
+def encoding(scene: Scene, output: str, options: argparse.Namespace) -> dict[str, Any]:
+    """Return how the picture of a scene is encoded: the arguments of `Image.encode`. PNG carries scene and settings."""
+    name, texts = format_name(output), {}
+    if options.metadata and name == "PNG":
         from minirt.cli.options import settings_text
         from minirt.scene import dump, files
 
         way = files.way_to_scene("" if output == "-" else output, scene.file)
         texts = files.picture_texts(dump(scene), settings_text(options, *(options.size or size_of(scene))), way)
-    how: dict[str, Any] = {"bits": options.bits, "quality": options.quality, "texts": texts}
-    if output == "-":
-        say(image.encode(**how))
-    else:
-        image.save(output, **how)
+    return {"name": name, "bits": options.bits, "quality": options.quality, "texts": texts}
 
 
 def settings_for(options: argparse.Namespace) -> RenderSettings:
@@ -215,18 +214,18 @@ def settings_for(options: argparse.Namespace) -> RenderSettings:
     return RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
 
 
-def is_streamed(job: Job, options: argparse.Namespace) -> bool:
+def is_streamed(options: argparse.Namespace, region: Region) -> bool:
     """Whether a picture is written as its bands come: by workers or beyond memory, as TIFF.
 
     RenderError where there is no memory for another, or where the output cannot hold it.
     """
-    *_, width, height = job.region
-    check_output(options.output, width, height)
+    check_output(options.output, region.width, region.height)
     name = format_name(options.output)
-    is_light_extra = (options.dither or options.verbose) and not job.settings.linear
+    is_light_extra = (options.dither or options.verbose) and not needs_light(options, options.output)
     may_stream = name == "TIFF" and not options.time and not options.turntable
     try:
-        system.check_picture(height, width, memory_of(name, options.bits) + LIGHT * is_light_extra)
+        bytes_per_pixel = memory_of(name, options.bits) + LIGHT * is_light_extra
+        system.check_picture(region.height, region.width, bytes_per_pixel)
     except system.TooLargeError:
         if not may_stream:
             raise

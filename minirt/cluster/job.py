@@ -7,7 +7,7 @@ from functools import partial
 from itertools import pairwise
 from math import sqrt
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from minirt import __version__
 from minirt.formats import tiff
 from minirt.kernel.pixels import TILE
 from minirt.rendering import settings as rendering_settings
-from minirt.rendering.image import Image, LinearImage
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Region, cut_for
 from minirt.rendering.settings import RenderSettings
@@ -53,13 +52,10 @@ class Job(NamedTuple):
         pairs = enumerate(regions)
         return [Job(self.scene, self.size, self.settings.replace(region=each), number, bits) for number, each in pairs]
 
-    def cut(self, by_workers: bool, is_kept: bool) -> list[Job]:
-        """Cut the picture into bands for workers, or for a journal; return one band where neither is there."""
-        if by_workers:
-            return self.bands(rows_of(self.region))
-        if is_kept and self.settings.samples != "auto":
-            return self.bands(columns_of(self.region, self.settings.samples))
-        return [self]
+    def cut(self, by_workers: bool) -> list[Job]:
+        """Cut the picture into bands for workers, or for a journal of what this process renders."""
+        samples = self.settings.samples
+        return self.bands(rows_of(self.region) if by_workers or samples == "auto" else columns_of(self.region, samples))
 
     def work(self, *more: object) -> str:
         """Return what tells the job from others: a hash of all that the bits of the picture, or of `more`, depend
@@ -69,26 +65,22 @@ class Job(NamedTuple):
         return identity(self.scene, f"{__version__} {self.size} {self.settings.replace(threads=None)} {more}")
 
 
-class Made(NamedTuple):
-    """Result of rendering a band."""
+class Strips(NamedTuple):
+    """Compressed strips of a TIFF file, made of a band; none of a picture that is in a file of its own already."""
 
-    parts: tuple[Any, ...]  # arrays of levels, and light if asked for; or compressed strips of a TIFF file
+    parts: tuple[bytes, ...]
     reached: Outcome | None
-    not_finite: int = 0  # rays
 
-    def image(self, scene: Scene) -> Image:
-        """Return the picture of a scene."""
-        levels, light = (*self.parts, None)[:2]
-        return (Image if light is None else LinearImage)(levels, light, self.reached, scene.camera.tone)
+
+Made: TypeAlias = Any  # what is made of a band: an `Image`, or `Strips` where the band has bits
 
 
 def render_band(band: Job) -> Made:
     """Render a band in this process."""
     image = rendering_settings.rendered(band.scene, band.size, band.settings)
     if band.bits:
-        return Made(tiff.strips(image.array if band.bits == 8 else image.deep), image.reached)
-    parts = (image.array,) if image.linear is None else (image.array, image.linear)
-    return Made(parts, image.reached, band.settings.renderer.not_finite)
+        return Strips(tiff.strips(image.array if band.bits == 8 else image.deep), image.reached)
+    return image
 
 
 def rows_of(region: Region) -> list[Region]:

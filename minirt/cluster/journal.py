@@ -19,12 +19,13 @@ from typing import IO, Any
 
 import numpy as np
 
-from minirt.cluster.job import Job, Made
+from minirt.cluster.job import Job, Made, Strips
 from minirt.errors import RenderError
 from minirt.helpers import file_io
+from minirt.rendering.image import Image
 from minirt.rendering.outcome import Outcome
 
-TITLE = b"miniRT journal 1, work "
+TITLE = b"miniRT journal 2, work "
 HEAD = struct.Struct("<QQI")  # number, length and checksum of a record
 LEVEL = 1  # of compression
 SHARE = 0.1  # of the time, that goes into keeping bands at most; cheap ones are sooner rendered again than kept
@@ -104,7 +105,7 @@ class Journal:
             return
         start = perf_counter()
         try:
-            self.append(number, packed(made if self.has_parts else made._replace(parts=())))
+            self.append(number, packed(made if self.has_parts else Strips((), made.reached)))
         except OSError:
             if self.keeps_all:
                 raise
@@ -143,21 +144,27 @@ class Journal:
 
 def packed(made: Made) -> bytes:
     """Return a band as a record: a line of JSON, then compressed arrays, or strips as they are."""
-    parts = [each if isinstance(each, bytes) else zlib.compress(each.tobytes(), LEVEL) for each in made.parts]
-    about = [len(each) for each in parts], made.reached, made.not_finite
-    return json.dumps(about).encode() + b"\n" + b"".join(parts)
+    about: list[Any] = [made.reached]
+    if isinstance(made, Strips):
+        parts = list(made.parts)
+    else:
+        parts = [zlib.compress(each.tobytes(), LEVEL) for each in (made.array, made.linear) if each is not None]
+        about += made.tone, made.not_finite
+    return json.dumps([[*map(len, parts)], *about]).encode() + b"\n" + b"".join(parts)
 
 
 def unpacked(data: bytes, band: Job) -> Made:
     """Return what a record holds of a band."""
     line, _, rest = data.partition(b"\n")
-    sizes, reached, not_finite = json.loads(line)
-    parts: list[Any] = [rest[start:end] for start, end in pairwise(accumulate(sizes, initial=0))]
-    if not band.bits:
-        shape = band.region.height, band.region.width, 3
-        kinds = zip(parts, (np.uint8, np.float64), strict=False)
-        parts = [np.frombuffer(zlib.decompress(part), kind).reshape(shape) for part, kind in kinds]
-    return Made(tuple(parts), reached and Outcome(*reached), not_finite)
+    sizes, reached, *about = json.loads(line)
+    parts = [rest[start:end] for start, end in pairwise(accumulate(sizes, initial=0))]
+    reached = reached and Outcome(*reached)
+    if not about:
+        return Strips(tuple(parts), reached)
+    shape = band.region.height, band.region.width, 3
+    kinds = zip(parts, (np.uint8, np.float64), strict=False)
+    levels, *light = [np.frombuffer(zlib.decompress(part), kind).reshape(shape) for part, kind in kinds]
+    return Image(levels, light[0] if light else None, reached, *about)
 
 
 def path_for(output: str | os.PathLike[str]) -> Path:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing
 from itertools import chain
 from operator import length_hint
@@ -56,7 +56,7 @@ def render_all(
             size = size or size_for(scene, width, height)
             yield Job(scene, size, how, number)
 
-    return (made.image(band.scene) for band, made in results(bands(), executor, in_order=True))
+    return (image for _, image in results(bands(), executor, in_order=True))
 
 
 @takes_settings
@@ -112,26 +112,27 @@ def stream(
 
 def picture_of(
     job: Job,
-    bands: Sequence[Job],
     executor: Workers | None = None,
     journal: Journal | None = None,
     on_progress: Progress = lambda done, bands: None,
-) -> Made:
-    """Return what is made of the bands of a picture, which are rendered, or which a journal has."""
-    made_of = results(bands, executor, journal, on_progress)
-    if len(bands) == 1:
-        ((_, made),) = made_of
-        return made
+) -> Image:
+    """Render a picture: as a whole, or of bands for workers and for a journal, which has some of them already."""
+    if executor is None and journal is None:
+        whole_picture: Image = render_band(job)
+        return whole_picture
     left, top, width, height = job.region
-    arrays = [np.empty((height, width, 3), np.uint8)] + [np.empty((height, width, 3))] * job.settings.linear
+    levels = np.empty((height, width, 3), np.uint8)
+    light = np.empty((height, width, 3)) if job.settings.linear else None
     outcomes, not_finite = [], 0
-    for band, made in made_of:
+    for band, image in results(job.cut(executor is not None), executor, journal, on_progress):
         x, y, across, down = band.region
-        for array, part in zip(arrays, made.parts, strict=True):
-            array[y - top : y - top + down, x - left : x - left + across] = part
-        outcomes.append((band.region, made.reached))
-        not_finite += made.not_finite
-    return Made(tuple(arrays), whole(outcomes), not_finite)
+        place = slice(y - top, y - top + down), slice(x - left, x - left + across)
+        levels[place] = image.array
+        if light is not None:
+            light[place] = image.linear
+        outcomes.append((band.region, image.reached))
+        not_finite += image.not_finite
+    return Image(levels, light, whole(outcomes), job.scene.camera.tone, not_finite)
 
 
 def results(

@@ -39,17 +39,12 @@ class Image:
     linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
     reached: Outcome | None = None  # samples and estimated error of a picture with samples="auto"
     tone: str = "plain"  # the curve from `linear` to `array`
+    not_finite: int = 0  # rays whose light was infinite or NaN, and is 0 in the picture
 
     @classmethod
-    def from_bgra(
-        cls,
-        pixels: np.ndarray,
-        linear: np.ndarray | None = None,
-        reached: Outcome | None = None,
-        tone: str = "plain",
-    ) -> Image:
+    def from_bgra(cls, pixels: np.ndarray) -> Image:
         """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha."""
-        return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached, tone)
+        return cls(np.ascontiguousarray(pixels[..., 2::-1]))
 
     @cached_property
     def pil(self) -> PillowImage:

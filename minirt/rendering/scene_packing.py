@@ -44,7 +44,7 @@ from minirt.rendering.packing.visibility import (
     seen_by_light,
     seen_by_parallel_light,
 )
-from minirt.scene import Scene
+from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
 
 
@@ -100,8 +100,8 @@ class Packing:
             self.cache[key] = before[key] if key in before else compute(*arguments)
             return self.cache[key]
 
-        used = features(scene) - (set() if self.depth else SECONDARY)
         camera, sources = camera_numbers(scene.camera, crop.width, crop.height), emitting_lights(scene)
+        used = features(scene) - (set() if self.depth else SECONDARY)
         colours = colours_of(scene.camera)
         lights = positions_and_intensities(sources, colours)
         lens = self.lens(scene, camera, cached) if "lens" in used else None
@@ -114,7 +114,7 @@ class Packing:
         cells = self.cells_that_fit.get(len(sources), light_buffer_cells(shapes)) if self.culls else 1
         while True:
             try:
-                binned, keys = self.seen_by_lights(scene, cells, cached, radius)
+                binned, keys = self.seen_by_lights(sources, lights[:, :3], camera[:3], cells, cached, radius)
                 break
             except TooLargeError:
                 if cells <= COARSEST:
@@ -162,17 +162,22 @@ class Packing:
         )
 
     def seen_by_lights(
-        self, scene: Scene, cells: int, cached: Callable[..., Any], radius: float
+        self,
+        sources: list[Lamp],
+        positions: np.ndarray,
+        eye: np.ndarray,
+        cells: int,
+        cached: Callable[..., Any],
+        radius: float,
     ) -> tuple[list[BinnedShapes], Hashable]:
         """Bin the shapes into the light buffers of all lights, and return also what they depend on.
 
         `TooLargeError` where memory does not suffice for so many cells.
         """
-        shapes, sources, colours = self.shape_arrays, emitting_lights(scene), colours_of(scene.camera)
-        eye, copies = np.array(scene.camera.position, np.float64), 2 * len(sources) if len(sources) > 1 else 1
+        shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
-        for light, position in zip(sources, positions_and_intensities(sources, colours)[:, :3], strict=True):
+        for light, position in zip(sources, positions, strict=True):
             skipped = never_occludes(shapes, eye, light, radius)
             if not light.place or (light.size and cells > 1):  # by the BVH
                 keys.append(("spread", cells, skipped.tobytes()))

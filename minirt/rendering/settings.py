@@ -176,9 +176,11 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
             is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
     if not is_done:
         raise RenderError(CANCELLED)
+    levels = np.ascontiguousarray(pixels[kept][..., 2::-1])
+    about = reached, scene.camera.tone, chosen.not_finite
     if light is None:
-        return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone)
-    return LinearImage.from_bgra(pixels[kept], np.ascontiguousarray(light[kept]), reached, scene.camera.tone)
+        return Image(levels, None, *about)
+    return LinearImage(levels, np.ascontiguousarray(light[kept]), *about)
 
 
 def identity(scene: Scene, settings: str) -> str:

@@ -34,7 +34,7 @@ def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> N
     shutil.rmtree(tmp_path / "home")
     for _ in range(2):
         made = work(worker.version(), data, scene.camera, Job(BALL, (40, 30), RenderSettings()))
-        assert np.array_equal(made.parts[1], expected.linear)
+        assert np.array_equal(made.linear, expected.linear)
         assert len(list((tmp_path / "files").iterdir())) == 1  # a picture that is there twice
     assert unpacked.cache_info().misses == 1
 

@@ -87,7 +87,7 @@ PLACES = 4  # decimals of directions
 def notice_about(scene: Scene, pixels: np.ndarray) -> str:
     """Return a sentence for a picture, (h, w, channels), in which nothing is in view; empty for any other."""
     height, width = pixels.shape[:2]
-    if not scene.shapes or not is_blank(pixels):
+    if not is_blank(pixels) or not scene.shapes:
         return ""
     arrays = ShapeArrays()
     arrays.update(scene.shapes)
