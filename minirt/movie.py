@@ -8,8 +8,7 @@ from __future__ import annotations
 import io
 import os
 from base64 import b64encode
-from collections.abc import Iterable, Iterator, Sized
-from contextlib import contextmanager
+from collections.abc import Iterable, Sized
 from fractions import Fraction
 from html import escape
 from pathlib import Path
@@ -124,7 +123,7 @@ def numbered(path: str | os.PathLike[str], number: int) -> Path:
     return target.with_name(f"{target.stem}-{number:04}{target.suffix}")
 
 
-# The bytes of a film, of pictures of one size, (h, w, 3) uint8; ValueError where it cannot hold one.
+# The bytes of a film, of pictures of one size, (h, w, 3) uint8; an error of its library where it cannot hold one.
 
 
 class LoopFilm:
@@ -188,12 +187,11 @@ class VideoFilm:
         import av
 
         even = np.pad(picture, [(0, len(picture) % 2), (0, picture.shape[1] % 2), (0, 0)], "edge")
-        with value_errors():
-            if self.stream is None:
-                self.stream = self.new_stream(*even.shape[:2])
-            frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="rgb24")
-            yuv = self.reformatter.reformat(frame, format="yuv420p", dst_colorspace="ITU709", dst_color_range="MPEG")
-            self.film.mux(self.stream.encode(yuv))
+        if self.stream is None:
+            self.stream = self.new_stream(*even.shape[:2])
+        frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="rgb24")
+        yuv = self.reformatter.reformat(frame, format="yuv420p", dst_colorspace="ITU709", dst_color_range="MPEG")
+        self.film.mux(self.stream.encode(yuv))
 
     def new_stream(self, height: int, width: int) -> Any:
         """Return a stream of pictures of that size."""
@@ -210,18 +208,6 @@ class VideoFilm:
 
     def data(self) -> bytes:
         """Return the bytes of the file, after what the codec still holds."""
-        with value_errors():
-            self.film.mux(self.stream.encode())
-            self.film.close()
+        self.film.mux(self.stream.encode())
+        self.film.close()
         return self.buffer.getvalue()
-
-
-@contextmanager
-def value_errors() -> Iterator[None]:
-    """Raise PyAV's errors as ValueError."""
-    import av
-
-    try:
-        yield
-    except av.FFmpegError as error:
-        raise ValueError(str(error)) from None

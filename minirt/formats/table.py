@@ -132,7 +132,12 @@ def check_quality(name: str, quality: int | None) -> None:
 @contextmanager
 def encoding(what: str, name: str) -> Iterator[None]:
     """Raise the errors of Pillow and PyAV as RenderError: a format cannot hold `what`, a picture or a film."""
+    errors: tuple[type[Exception], ...] = (OSError, ValueError, KeyError, OverflowError)
+    if name in FILMS_BY_PYAV:
+        import av
+
+        errors += (av.FFmpegError,)
     try:
         yield
-    except (OSError, ValueError, KeyError, OverflowError) as error:
+    except errors as error:
         raise RenderError(f"cannot write this {what} as {name}: {error}") from None

@@ -15,11 +15,12 @@ import numpy as np
 from minirt.errors import quoted
 
 FORMAT = b"32-bit_rle_rgbe"
-RESOLUTION = re.compile(rb"([-+])([XY]) ([0-9]{1,9}) ([-+])([XY]) ([0-9]{1,9})")
+RESOLUTION = re.compile(rb"([-+][XY]) ([0-9]{1,9}) ([-+][XY]) ([0-9]{1,9})")
 LONGEST_HEADER = 2**16  # bytes
 SHORTEST, LONGEST = 8, 2**15 - 1  # pixels of a scanline in the new encoding
 BRIGHTEST = 2.0**127  # that a float32 holds
-MOST_SHIFT = 24  # bits, by which the fourth of several repeats in a row is shifted
+REPEAT = b"\1\1\1"  # begins a pixel that tells how often the one before it is repeated
+MOST_REPEATS = 4  # in a row; the number in each counts 256 times as much as that in the one before
 
 
 class RadianceError(ValueError):
@@ -31,10 +32,7 @@ class Header(NamedTuple):
 
     width: int
     height: int
-    scanlines: tuple[int, int]  # how many, and of how many pixels
-    by_columns: bool  # whether a scanline is a column
-    down: bool  # whether the upper row comes first
-    right: bool  # whether the left column comes first
+    axes: tuple[bytes, bytes]  # from one scanline to the next, and along a scanline: -Y is downwards
     exposure: float  # by which the pixels were multiplied
     end: int  # byte at which the pixels begin
 
@@ -54,32 +52,20 @@ def read_header(data: bytes) -> Header:
         if key.strip() == b"FORMAT" and value.strip() != FORMAT:
             raise RadianceError(f"line {number - 1}: the format must be {FORMAT.decode()}, got {shown(value)}")
         if key.strip() == b"EXPOSURE":
-            exposure *= positive(value, number - 1)
+            try:
+                exposure *= float(value)
+            except ValueError:
+                exposure = 0.0
             if not 0 < exposure < inf:
-                size = "large" if exposure else "small"
-                raise RadianceError(f"line {number - 1}: the product of all exposures is too {size}")
+                message = "the exposure, times those before it, must be a number > 0"
+                raise RadianceError(f"line {number - 1}: {message}, got {shown(value)}")
     end = data.find(b"\n", start, start + LONGEST_HEADER)
     match = RESOLUTION.fullmatch(data[start:end].strip()) if end >= 0 else None
-    if not match or match[2] == match[5]:
+    if not match or match[1][1:] == match[3][1:]:
         found = shown(data[start : start + LONGEST_HEADER])
         raise RadianceError(f"line {number}: expected a size such as -Y 512 +X 1024, got {found}")
-    first, second = int(match[3]), int(match[6])
-    by_columns = match[2] == b"X"
-    width, height = (first, second) if by_columns else (second, first)
-    signs = {match[2]: match[1], match[5]: match[4]}
-    down, right = signs[b"Y"] == b"-", signs[b"X"] == b"+"
-    return Header(width, height, (first, second), by_columns, down, right, exposure, end + 1)
-
-
-def positive(text: bytes, line: int) -> float:
-    """Read a finite number above 0."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
-    if not 0 < number < inf:
-        raise RadianceError(f"line {line}: the exposure must be a number > 0, got {shown(text)}")
-    return number
+    sizes = {match[1][1:]: int(match[2]), match[3][1:]: int(match[4])}
+    return Header(sizes[b"X"], sizes[b"Y"], (match[1], match[3]), exposure, end + 1)
 
 
 def shown(text: bytes) -> str:
@@ -89,7 +75,8 @@ def shown(text: bytes) -> str:
 
 def read_pixels(data: bytes, header: Header) -> np.ndarray:
     """Return the light of the pixels, float32 (height, width, 3), the upper row first; RadianceError."""
-    count, length = header.scanlines
+    by_columns = header.axes[0] in (b"+X", b"-X")
+    count, length = (header.width, header.height) if by_columns else (header.height, header.width)
     rgbe = np.empty((count, length, 4), np.uint8)
     at = header.end
     for number in range(count):
@@ -97,9 +84,9 @@ def read_pixels(data: bytes, header: Header) -> np.ndarray:
             at = read_scanline(data, at, rgbe[number])
         except RadianceError as error:
             raise RadianceError(f"scanline {number + 1} of {count}, {error}") from None
-    if header.by_columns:
+    if by_columns:
         rgbe = rgbe.swapaxes(0, 1)
-    rgbe = rgbe[:: 1 if header.down else -1, :: 1 if header.right else -1]
+    rgbe = rgbe[:: 1 if b"-Y" in header.axes else -1, :: 1 if b"+X" in header.axes else -1]
     with np.errstate(over="ignore"):  # mantissas are fractions of 256, and an exponent of 128 is 2^0
         scale = np.minimum(np.ldexp(1.0 / header.exposure, np.arange(256) - 136), BRIGHTEST).astype(np.float32)
         scale[0] = 0.0  # black, whatever the mantissas are
@@ -142,25 +129,23 @@ def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
 def read_whole_pixels(data: bytes, at: int, pixels: np.ndarray) -> int:
     """Read a scanline of whole pixels; one of 1, 1, 1, n repeats the last one n times, the next 256 n times, and so
     on."""
-    length = len(pixels)
-    for window in (length, (2 + MOST_SHIFT // 8) * length):  # the longer one for repeats of no pixels
-        flat = np.frombuffer(data[at : at + 4 * window], np.uint8)
-        flat = flat[: len(flat) // 4 * 4].reshape(-1, 4)
-        repeats = (flat[:, :3] == 1).all(axis=1)
-        if repeats[:1].any():
-            raise RadianceError(f"byte {at}: no pixel to repeat")
-        places = np.arange(len(flat))
-        sources = np.maximum.accumulate(np.where(repeats, 0, places))  # of the pixels that are repeated
-        shifts = np.where(repeats, 8 * (places - sources - 1), 0)
-        counts = np.where(repeats, flat[:, 3].astype(np.int64) << np.minimum(shifts, MOST_SHIFT + 8), 1)
-        ends = np.cumsum(counts)
-        over = np.flatnonzero((ends >= length) | (shifts > MOST_SHIFT))
-        if not len(over):
-            continue
-        last = int(over[0])
-        if ends[last] > length or shifts[last] > MOST_SHIFT:
-            count, missing = int(flat[last, 3]) << int(shifts[last]), length - int(ends[last - 1])
-            raise RadianceError(f"byte {at + 4 * last}: {count} pixels, where {missing} of {length} are missing")
-        pixels[:] = np.repeat(flat[sources[: last + 1]], counts[: last + 1], axis=0)
-        return at + 4 * (last + 1)
-    raise RadianceError(f"byte {len(data)}: the file ends")
+    size = pixels.nbytes
+    line, end = bytearray(data[at : at + size]), at + size
+    if len(line) < size or REPEAT in line:  # which few files have
+        line, end, repeats = bytearray(), at, 0
+        while len(line) < size:
+            pixel, count, missing = data[end : end + 4], 1, (size - len(line)) // 4
+            if len(pixel) < 4:
+                raise RadianceError(f"byte {len(data)}: the file ends")
+            if pixel.startswith(REPEAT):
+                if not line:
+                    raise RadianceError(f"byte {end}: no pixel to repeat")
+                pixel, count, repeats = bytes(line[-4:]), pixel[3] << 8 * repeats, repeats + 1
+            else:
+                repeats = 0
+            if count > missing or repeats > MOST_REPEATS:
+                raise RadianceError(f"byte {end}: {count} pixels, where {missing} of {len(pixels)} are missing")
+            line += pixel * count
+            end += 4
+    pixels[:] = np.frombuffer(line, np.uint8).reshape(pixels.shape)
+    return end

@@ -21,38 +21,12 @@ from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
 if TYPE_CHECKING:
-    from minirt import shapes
+    from minirt import shapes as kinds
     from minirt.scene.lights import FurtherLight, ParallelLight, SpotLight
 
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 Kind = TypeVar("Kind", bound=Element)
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
-
-
-class Plurals:
-    """The elements of each kind as type checkers and editors see them: `scene.spheres`."""
-
-    if TYPE_CHECKING:
-        resolutions: tuple[Resolution, ...]
-        ambients: tuple[Ambient, ...]
-        backgrounds: tuple[Background, ...]
-        cameras: tuple[Camera, ...]
-        further_lights: tuple[FurtherLight, ...]
-        parallel_lights: tuple[ParallelLight, ...]
-        spot_lights: tuple[SpotLight, ...]
-        spheres: tuple[shapes.Sphere, ...]
-        planes: tuple[shapes.Plane, ...]
-        cylinders: tuple[shapes.Cylinder, ...]
-        cones: tuple[shapes.Cone, ...]
-        paraboloids: tuple[shapes.Paraboloid, ...]
-        hyperboloids: tuple[shapes.Hyperboloid, ...]
-        triangles: tuple[shapes.Triangle, ...]
-        squares: tuple[shapes.Square, ...]
-        discs: tuple[shapes.Disc, ...]
-        boxes: tuple[shapes.Box, ...]
-        tori: tuple[shapes.Torus, ...]
-        ellipsoids: tuple[shapes.Ellipsoid, ...]
-        meshes: tuple[shapes.Mesh, ...]
 
 
 def first(kind: type[Kind], doc: str) -> cached_property[Kind | None]:
@@ -65,7 +39,7 @@ def first(kind: type[Kind], doc: str) -> cached_property[Kind | None]:
     return cached_property(find)
 
 
-class Scene(Immutable, Plurals):
+class Scene(Immutable):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
     `scene.spheres`, `scene.planes` and so on are the elements of one kind. ValueError without exactly one camera, or
@@ -143,7 +117,28 @@ class Scene(Immutable, Plurals):
                 yield from (index for index, element in enumerate(elements, start) if isinstance(element, sort))
             start += len(elements)
 
-    if not TYPE_CHECKING:  # which sees `Plurals`
+    if TYPE_CHECKING:  # the elements of each kind, for type checkers and editors
+        resolutions: tuple[Resolution, ...]
+        ambients: tuple[Ambient, ...]
+        backgrounds: tuple[Background, ...]
+        cameras: tuple[Camera, ...]
+        further_lights: tuple[FurtherLight, ...]
+        parallel_lights: tuple[ParallelLight, ...]
+        spot_lights: tuple[SpotLight, ...]
+        spheres: tuple[kinds.Sphere, ...]
+        planes: tuple[kinds.Plane, ...]
+        cylinders: tuple[kinds.Cylinder, ...]
+        cones: tuple[kinds.Cone, ...]
+        paraboloids: tuple[kinds.Paraboloid, ...]
+        hyperboloids: tuple[kinds.Hyperboloid, ...]
+        triangles: tuple[kinds.Triangle, ...]
+        squares: tuple[kinds.Square, ...]
+        discs: tuple[kinds.Disc, ...]
+        boxes: tuple[kinds.Box, ...]
+        tori: tuple[kinds.Torus, ...]
+        ellipsoids: tuple[kinds.Ellipsoid, ...]
+        meshes: tuple[kinds.Mesh, ...]
+    else:
 
         def __getattr__(self, plural: str) -> tuple[Any, ...]:
             for kind in ELEMENTS.values():

@@ -166,22 +166,17 @@ ROWS = b"".join(map(new_runs, np.full((2, 8, 4), 200, np.uint8)))  # 2 scanlines
 START = len(HEADER) + len(b"-Y 2 +X 8\n")
 TWO, ONE = HEADER + b"-Y 2 +X 8\n", HEADER + b"-Y 1 +X 4\n"
 END = b"\n-Y 2 +X 8\n" + ROWS
+EXPOSURE = "the exposure, times those before it, must be a number > 0"
 DAMAGED = {
     "line 6: expected a size such as -Y 512 +X 1024, got '-Y 2 +Y 8'": HEADER + b"-Y 2 +Y 8\n" + ROWS,
     "line 6: expected a size such as -Y 512 +X 1024, got ''": HEADER,
     "line 6: expected a size such as -Y 512 +X 1024, got '2 8'": HEADER + b"2 8\n" + ROWS,
     "line 2: the header has no end": b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe",
     "line 2: the format must be 32-bit_rle_rgbe, got '32-bit_rle_xyze'": b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n",
-    "line 2: the exposure must be a number > 0, got '0'": b"#?RADIANCE\nEXPOSURE=0\n\n-Y 2 +X 8\n" + ROWS,
-    "line 2: the exposure must be a number > 0, got 'nan'": b"#?RADIANCE\nEXPOSURE=nan\n\n-Y 2 +X 8\n" + ROWS,
-    "line 3: the product of all exposures is too small": b"#?RGBE\n"
-    + 2 * b"EXPOSURE=1e-300\n"
-    + b"\n-Y 2 +X 8\n"
-    + ROWS,
-    "line 3: the product of all exposures is too large": b"#?RGBE\n"
-    + 2 * b"EXPOSURE=1e300\n"
-    + b"\n-Y 2 +X 8\n"
-    + ROWS,
+    f"line 2: {EXPOSURE}, got '0'": b"#?RADIANCE\nEXPOSURE=0\n\n-Y 2 +X 8\n" + ROWS,
+    f"line 2: {EXPOSURE}, got 'nan'": b"#?RADIANCE\nEXPOSURE=nan\n\n-Y 2 +X 8\n" + ROWS,
+    f"line 3: {EXPOSURE}, got '1e-300'": b"#?RGBE\n" + 2 * b"EXPOSURE=1e-300\n" + END,
+    f"line 3: {EXPOSURE}, got '1e300'": b"#?RGBE\n" + 2 * b"EXPOSURE=1e300\n" + END,
     "line 2: the format must be 32-bit_rle_rgbe, got '\\x1b[31m'": b"#?RGBE\nFORMAT=\x1b[31m\n\n",
     "line 3: the header has no end": b"#?RGBE\nA=1\n" + bytes(3 * 2**20) + b"\n\n-Y 2 +X 8\n" + ROWS,
     "line 4: expected a size such as -Y 512 +X 1024, got ''": b"#?RGBE\nA=1\n\n" + b" " * 2**20 + b"-Y 2 +X 8\n" + ROWS,
@@ -211,7 +206,7 @@ def test_no_cut_or_changed_byte_breaks_the_reader(tmp_path: Path) -> None:
         for damaged in (data[:at], data[:at] + bytes([data[at] ^ 1 << RANDOM.integers(8)]) + data[at + 1 :]):
             try:
                 header = read_header(damaged)
-                if max(header.scanlines) < 1000:
+                if max(header.width, header.height) < 1000:
                     assert np.isfinite(read_pixels(damaged, header)).all()
             except RadianceError:
                 continue
