@@ -11,7 +11,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
     from minirt.rendering.outcome import Outcome
 
-DEEP = 65535  # highest level of 16 bits
-BLOCK = 2**18  # pixels that are converted at once
+DEEP = 2**16  # levels of 16 bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +35,7 @@ class Image:
     """A picture; notebooks display it."""
 
     array: np.ndarray  # (h, w, 3) uint8, RGB
-    linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
+    linear: Any = None  # (h, w, 3) float64, radiance before clamping and rounding, if the picture has it
     reached: Outcome | None = None  # samples and estimated error of a picture with samples="auto"
     tone: str = "plain"  # the curve from `linear` to `array`
     not_finite: int = 0  # rays whose light was infinite or NaN, and is 0 in the picture
@@ -56,21 +55,19 @@ class Image:
     @property
     def deep(self) -> np.ndarray:
         """The picture with 16 bits a channel, (h, w, 3) uint16, made of its light; RenderError without light."""
-        from minirt.rendering.tone_mapping import levels_of
+        from minirt.rendering.tone_mapping import tone_named
 
-        light = self.light("16 bits")
+        light, curve = self.light("16 bits"), tone_named(self.tone, DEEP)
         levels = np.empty(light.shape, np.uint16)
-        step = max(1, BLOCK // max(1, light.shape[1]))
-        for start in range(0, len(light), step):
-            rows = slice(start, start + step)
-            levels[rows] = np.rint(DEEP * levels_of(light[rows], self.tone))
+        for into, row in zip(levels, light, strict=True):
+            into[...] = curve.nearest(row)
         return levels
 
     def light(self, what: str) -> np.ndarray:
         """Return the linear light; RenderError, which says that `what` needs it, where the picture has none."""
         if self.linear is None:
             raise RenderError(f"{what} need linear light, and this picture has levels of 8 bits alone")
-        return self.linear
+        return np.asarray(self.linear)
 
     def encode(
         self,
@@ -131,9 +128,3 @@ class Image:
     def __repr__(self) -> str:
         height, width = self.array.shape[:2]
         return f"<Image of {width}x{height} pixels{'' if self.linear is None else ', with linear light'}>"
-
-
-class LinearImage(Image):
-    """A picture with its linear light."""
-
-    linear: np.ndarray  # (h, w, 3) float64, radiance before clamping and rounding

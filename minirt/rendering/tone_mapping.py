@@ -36,18 +36,22 @@ A, B, C, D, E = 2.51, 0.03, 2.43, 0.59, 0.14  # Narkowicz: (A x^2 + B x) / (C x^
 
 
 class Tone(NamedTuple):
-    """A tone curve by its values at the levels of a picture."""
+    """A tone curve by its values at the n levels of a picture."""
 
-    light: np.ndarray  # (256,) the light that each level stands for
-    halfway: np.ndarray  # (255,) the light from which on a level and not the one below it is nearer, on the curve
+    light: np.ndarray  # (n,) the light that each level stands for
+    halfway: np.ndarray  # (n - 1,) the light from which on a level and not the one below it is nearer, on the curve
     decodes: bool  # whether colours are decoded by the transfer function of sRGB
+
+    def nearest(self, light: np.ndarray) -> np.ndarray:
+        """Return the level that is nearest to light, on the curve."""
+        return np.searchsorted(self.halfway, light, "right")
 
 
 @cache
-def tone_named(name: str) -> Tone:
-    """Return the tone curve with a name; KeyError for an unknown one."""
-    levels = np.arange(LEVELS)
-    return Tone(light_of(levels / 255, name), light_of((levels[1:] - 0.5) / 255, name), name != PLAIN)
+def tone_named(name: str, levels: int = LEVELS) -> Tone:
+    """Return the tone curve with a name, for so many levels; KeyError for an unknown one."""
+    numbers, highest = np.arange(levels), levels - 1
+    return Tone(light_of(numbers / highest, name), light_of((numbers[1:] - 0.5) / highest, name), name != PLAIN)
 
 
 def light_of(levels: np.ndarray, name: str) -> np.ndarray:
@@ -59,22 +63,6 @@ def decode_srgb(levels: np.ndarray) -> np.ndarray:
     """Return the light of levels in [0, 1] of sRGB."""
     light: np.ndarray = np.where(levels <= TOE, levels / SLOPE, ((levels + OFFSET) / (1 + OFFSET)) ** GAMMA)
     return light
-
-
-def levels_of(light: np.ndarray, name: str) -> np.ndarray:
-    """Return the levels in [0, 1] of light on a tone curve: the inverse of `light_of`, clamped."""
-    if name == FILMIC:
-        bounded = np.minimum(light, 1e6)  # whose square is finite; the curve has long passed 1
-        light = bounded * (A * bounded + B) / (bounded * (C * bounded + D) + E)
-    light = np.clip(light, 0.0, 1.0)
-    return light if name == PLAIN else encode_srgb(light)
-
-
-def encode_srgb(light: np.ndarray) -> np.ndarray:
-    """Return the levels in [0, 1] of light in [0, 1]."""
-    steep = (1 + OFFSET) * light ** (1 / GAMMA) - OFFSET
-    levels: np.ndarray = np.where(light <= TOE / SLOPE, light * SLOPE, steep)
-    return levels
 
 
 def uncompressed(shown: np.ndarray) -> np.ndarray:
@@ -133,7 +121,7 @@ def map_tones(
             columns = np.arange(left, left + strip.shape[1]) % NOISE
             levels += exact - levels > blue_noise()[np.ix_(rows, columns)][..., None]
         else:
-            levels = np.searchsorted(curve.halfway, strip, "right").astype(np.uint8)
+            levels = curve.nearest(strip).astype(np.uint8)
         into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
         if known.all():
             into[..., 2::-1], into[..., 3] = levels, 255

@@ -164,7 +164,8 @@ def bin_shapes(
     planes, heights = shape_arrays.planes[shown], height[shown]
     towards = -np.sign(heights[:, None]) * planes[:, :3]
     kinds, stride = len(shape_arrays.rows), grid.cells + 1
-    most = most_members(len(shape_arrays.slots), kinds, len(planes), grid, copies, largest)
+    fixed = copies * kinds * stride * START + len(planes) * len(grid.frames) * grid.down * RUN
+    check_lists(fixed, largest)
     cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
     plane_rectangles = np.zeros((0, 4), np.int64)
     if len(planes):
@@ -181,7 +182,7 @@ def bin_shapes(
     used = kernel.project_all(origin, grid, balls, slack, shape_arrays.first_ball, shape_arrays.slots, *output)
     starts = np.cumsum(counts)  # the ends, until `fill_bins` has counted them down
     count = int(starts[-1]) if kinds else 0
-    check_members(count, most, copies)
+    check_lists(fixed + copies * count * MEMBER, largest)
     cones[shape_arrays.plane_indices, 3] = -2.0
     cones[shape_arrays.plane_indices, 4] = np.abs(height)
     cones[:, 4], depths = quantised_depths(cones[:, 4].copy())
@@ -191,21 +192,10 @@ def bin_shapes(
     return BinnedShapes(starts.reshape(kinds, stride), members, cones)
 
 
-def most_members(shapes: int, kinds: int, planes: int, grid: Grid, copies: int, largest: int) -> int:
-    """Return how many members the lists of all cells may have together, so that there is room for copies of them."""
-    fixed = copies * kinds * (grid.cells + 1) * START + planes * len(grid.frames) * grid.down * RUN
-    if system.is_small_need(fixed + copies * shapes * grid.cells * MEMBER):
-        return system.UNLIMITED
-    return max(0, min(system.room(), largest) - fixed) // (copies * MEMBER)
-
-
-def check_members(count: int, most: int, copies: int) -> None:
-    """Raise `TooLargeError` where lists have more members than they may."""
-    if count > most:
-        raise system.TooLargeError(
-            f"the lists of shapes in view need more than {system.size_in_words(most * copies * MEMBER)} of memory, "
-            "all that is allowed; fewer or smaller shapes, or fewer lights, need less"
-        )
+def check_lists(size: int, largest: int) -> None:
+    """Raise `TooLargeError` where lists of this size, in bytes, have no room or are larger than they may."""
+    advice = "fewer or smaller shapes, or fewer lights, need less"
+    system.check_memory(size, "the lists of shapes in view need", advice, largest)
 
 
 def quantised_depths(distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
