@@ -254,7 +254,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "reload": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
     "copy camera": ((), lambda _, after: memory(after).clipboard == describe(scene().camera)),
     "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
-    "toggle icons": ((), lambda before, after: (before.screen.marks.icons, after.screen.marks.icons) == (False, True)),
+    "toggle icons": ((), lambda before, after: (before.screen.icons, after.screen.icons) == (False, True)),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
     "larger text": ((), lambda before, after: after.screen.text_scale > before.screen.text_scale),
     "smaller text": ((), lambda before, after: after.screen.text_scale < before.screen.text_scale),

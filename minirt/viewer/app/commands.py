@@ -62,7 +62,7 @@ def focus(session: Session) -> None:
 
 def toggle_icons(session: Session) -> None:
     """Show or hide the icons of all lights."""
-    session.screen.marks.icons = not session.screen.marks.icons
+    session.screen.icons = not session.screen.icons
 
 
 def toggle_hud(session: Session) -> None:

@@ -9,7 +9,7 @@ from minirt.errors import MiniRTError
 from minirt.mlx import Button, Cursor
 from minirt.viewer.app.session import PressedButton, Session
 from minirt.viewer.bindings import Binding
-from minirt.viewer.display.marks import SIZE
+from minirt.viewer.display.marks import SIZE, visible_icons
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart
 from minirt.viewer.editing.projection import Aim, aim, extent
@@ -95,7 +95,7 @@ class Mouse:
     def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
         """Return the point of the scene under the pointer, None if there is none; select the element there."""
         session, state, screen = self.session, self.session.state, self.session.screen
-        icons = screen.marks.visible_icons(state.scene, state.selected, session.view, screen.scale)
+        icons = visible_icons(state.scene, state.selected, session.view, screen.scale, screen.icons)
         reach = SIZE * screen.scale / 2 if screen.level > HudLevel.NOTHING else -1.0
         under = [each for each in icons if max(abs(each.x - x), abs(each.y - y)) <= reach]
         if under:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import ceil, hypot
 from typing import NamedTuple
 
@@ -35,51 +36,27 @@ PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns o
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are exclusive
 
 
-class Marks:
-    """Draw the marks; the last outline is cached, because it costs a millisecond or two."""
+def draw_marks(pixels: Pixels, state: State, scene: Scene, scale: float, *, moving: bool, icons: bool) -> None:
+    """Draw all marks over a picture of `scene`, which may be another version of the state's scene.
 
-    def __init__(self) -> None:
-        self.icons = False  # whether the icons of all lights are shown
-        self._outline_key: tuple[object, ...] = ()
-        self._outline: tuple[PixelIndices, PixelIndices]
-
-    def draw(self, pixels: Pixels, state: State, scene: Scene, scale: float, moving: bool) -> None:
-        """Draw all marks over a picture of `scene`, which may be another version of the state's scene.
-
-        The marks fit the picture: an element that it does not show yet has none.
-        """
-        view = projection_of(scene.camera, pixels.shape[1], pixels.shape[0])
-        selected = state.index_in(scene)
-        if selected is not None:
-            element = scene.elements[selected]
-            if isinstance(element, Shape):
-                rays = MOVING_RAYS if moving else STILL_RAYS
-                draw_outline(pixels, *self.outline(element, scene.camera, pixels, rays))
-            around, axis = extent(element), WORLD_AXES.get(state.frame)
-            if around and axis and (ends := view.visible_segment(around[0], axis)):
-                draw_line(pixels, *ends, AXIS_COLOURS[state.frame])
-            outside = arrow_direction(view, *around) if around else None
-            if outside and not (isinstance(element, Shape) and element.infinite):
-                draw_arrow(pixels, outside, scale)
-        for icon in self.visible_icons(scene, selected, view, scale):
-            draw_icon(pixels, icon, scale, selected=icon.owner == selected)
-
-    def outline(self, shape: Shape, camera: Camera, pixels: Pixels, rays: int) -> tuple[PixelIndices, PixelIndices]:
-        """Return the pixels just outside and just inside the silhouette of a shape."""
-        height, width = pixels.shape[:2]
-        key = (shape, camera, width, height, rays)
-        if key != self._outline_key:
-            self._outline, self._outline_key = outline_pixels(shape, camera, width, height, rays), key
-        return self._outline
-
-    def visible_icons(self, scene: Scene, selected: int | None, view: Projection, scale: float) -> list[Icon]:
-        """Return the icons that are shown: all if the user wants them, else that of the selected element."""
-        owners = []
-        if self.icons:
-            owners = sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
-        elif selected is not None and not isinstance(scene.elements[selected], (Shape, Camera)):
-            owners = [selected]
-        return place_icons(scene, owners, view, scale)
+    The marks fit the picture: an element that it does not show yet has none. `icons`: show those of all lights.
+    """
+    height, width = pixels.shape[:2]
+    view = projection_of(scene.camera, width, height)
+    selected = state.index_in(scene)
+    if selected is not None:
+        element = scene.elements[selected]
+        if isinstance(element, Shape):
+            rays = MOVING_RAYS if moving else STILL_RAYS
+            draw_outline(pixels, *outline_pixels(element, scene.camera, width, height, rays))
+        around, axis = extent(element), WORLD_AXES.get(state.frame)
+        if around and axis and (ends := view.visible_segment(around[0], axis)):
+            draw_line(pixels, *ends, AXIS_COLOURS[state.frame])
+        outside = arrow_direction(view, *around) if around else None
+        if outside and not (isinstance(element, Shape) and element.infinite):
+            draw_arrow(pixels, outside, scale)
+    for icon in visible_icons(scene, selected, view, scale, icons):
+        draw_icon(pixels, icon, scale, selected=icon.owner == selected)
 
 
 def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) -> None:
@@ -143,8 +120,13 @@ class Icon(NamedTuple):
     colour: int  # 0xFFRRGGBB
 
 
-def place_icons(scene: Scene, owners: list[int], view: Projection, scale: float) -> list[Icon]:
-    """Return the icons of the elements with these indices, as far as they lie within the picture."""
+def visible_icons(scene: Scene, selected: int | None, view: Projection, scale: float, every: bool) -> list[Icon]:
+    """Return the icons within the picture: of all lights and cameras, or else of the selected element alone."""
+    owners = []
+    if every:
+        owners = sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
+    elif selected is not None and not isinstance(scene.elements[selected], (Shape, Camera)):
+        owners = [selected]
     size = round(SIZE * scale)
     corner = view.width - size
     placed: list[Icon] = []
@@ -199,6 +181,7 @@ def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> 
 # The outline of a shape, whether it is hidden or not.
 
 
+@lru_cache(maxsize=1)  # an outline takes a millisecond or two
 def outline_pixels(
     shape: Shape, camera: Camera, width: int, height: int, rays: int
 ) -> tuple[PixelIndices, PixelIndices]:

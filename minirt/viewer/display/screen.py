@@ -17,7 +17,7 @@ from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import FINE_NOTE, key_groups
 from minirt.viewer.display import overlay
-from minirt.viewer.display.marks import Marks
+from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, Panel, wrap
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
@@ -120,7 +120,7 @@ class Screen:
         self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
         self.panel: Panel | None = None  # a value that is typed, or a list to choose from
-        self.marks = Marks()
+        self.icons = False  # whether the icons of all lights are shown
         self.image = mlx.mlx_new_image(window.display, 1, 1)
         self._drawn: tuple[object, ...] = ()  # the contents of the window
 
@@ -153,7 +153,7 @@ class Screen:
         width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        shown = self.panel, self.level, self.help, self.marks.icons
+        shown = self.panel, self.level, self.help, self.icons
         contents = described, picture, message, *shown, width, height, scale
         if contents == self._drawn:
             return False
@@ -164,7 +164,8 @@ class Screen:
             draw_help(self.frame, self.layout, size, self.help)
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
-                self.marks.draw(self.frame, state, picture.job.scene, scale, moving=picture.job.urgent)
+                job = picture.job
+                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, icons=self.icons)
             bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
         if self.panel and not self.help:
             overlay.draw_panel(self.frame, self.panel, size)

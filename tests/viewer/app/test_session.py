@@ -12,7 +12,7 @@ from minirt.mlx import Button, Cursor, Key
 from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.marks import GOLD, Marks, bgra
+from minirt.viewer.display.marks import GOLD, bgra, outline_pixels
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME
@@ -218,7 +218,7 @@ def perform(harness: SessionHarness, play: Play) -> None:
 def outline_mask(shown: Outcome, shape: Shape) -> np.ndarray:
     """Return a mask of the outline of a shape in a picture, between the words."""
     mask = np.zeros((HEIGHT, WIDTH), bool)
-    for places in Marks().outline(shape, shown.job.scene.camera, np.empty((HEIGHT, WIDTH, 4), np.uint8), 60_000):
+    for places in outline_pixels(shape, shown.job.scene.camera, WIDTH, HEIGHT, 60_000):
         mask[places] = True
     return mask[MIDDLE]
 

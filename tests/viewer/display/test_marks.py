@@ -20,7 +20,6 @@ from minirt.viewer.display.marks import (
     TOP,
     WHITE,
     Icon,
-    Marks,
     arrow_direction,
     bgra,
     draw_arrow,
@@ -28,6 +27,7 @@ from minirt.viewer.display.marks import (
     draw_line,
     draw_outline,
     outline_pixels,
+    visible_icons,
 )
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
@@ -155,9 +155,7 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     hidden, shown = played("resize 300x200", text=text), played("resize 300x200", "press G", text=text)
     assert not np.array_equal(hidden.screen.frame, shown.screen.frame)
     state = shown.state
-    marks, view = Marks(), projection_of(state.scene.camera, 300, 200)
-    marks.icons = True
-    placed = marks.visible_icons(state.scene, None, view, 1.0)
+    placed = visible_icons(state.scene, None, projection_of(state.scene.camera, 300, 200), 1.0, every=True)
     assert sorted(icon.code for icon in placed) == ["A", "C", "L"]
     for icon in placed:
         keys = ["resize 300x200", "press Tab", "press Tab", "press G", f"click {icon.x},{icon.y}"]
