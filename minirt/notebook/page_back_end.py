@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import threading
 from collections.abc import Callable, Mapping
+from math import inf
 from typing import Any, Final
 
 import numpy as np
@@ -19,6 +20,11 @@ from minirt.mlx.events import KEYS, Button, Event, Modifier
 from minirt.mlx.window import Window
 
 SCREEN = (3840, 2160)  # pixels: the largest window
+AHEAD = 2  # frames under way that the page has not shown yet
+COARSE = 80  # quality while frames follow each other: 4 ms at 960x540
+FINE = 95  # quality of the last one
+FULL_COLOUR = 0  # Pillow's number for colour at the resolution of brightness
+QUIET = 0.15  # seconds after which a frame was the last one
 Message = dict[str, Any]
 
 
@@ -34,7 +40,7 @@ class PageWindow(Window):
 
     def blit(self) -> None:
         self.shown.take_changes()
-        self.stale = not self.display.frames.offer(self.shown.pixels, self.display.time())
+        self.stale = not self.display.offer(self.shown.pixels)
 
     def set_fullscreen(self, on: bool) -> None:
         """Let the page fill the screen; the window keeps its size, and the page stretches its frames."""
@@ -52,7 +58,7 @@ class PageWindow(Window):
 
 
 class PageDisplay(Display):
-    """A back end whose loop runs in a thread of its own.
+    """A back end whose loop runs in a thread of its own. It keeps account of the frames that the page has shown.
 
     send: sends a message, and bytes with it, to the page.
     """
@@ -62,25 +68,20 @@ class PageDisplay(Display):
     def __init__(self, send: Callable[[Message, bytes], object]) -> None:
         super().__init__()
         self.send = send
-        self.frames = FrameStream(lambda number, data: send({"kind": "frame", "number": number}, data))
         self._awake = threading.Event()
         self._next_tick = 0.0
-
-    def restart(self) -> None:
-        """Send the frame again: a page shows the window anew."""
-        self.frames.restart()
-        for window in self.windows:
-            window.stale = True
+        self._sent = self._shown = 0  # numbers of the last frame that was sent, and of the last that the page has shown
+        self._due = inf  # when the frame in the page is replaced by a finer one
 
     def run(self) -> None:
         self.turn(tick=False)
         while not self.over:
-            self._awake.wait(self._patience())
+            self._awake.wait(self.patience())
             self._awake.clear()
             self.perform_actions()
             self.turn(tick=self._is_tick_due())
             for window in self.windows:
-                self.frames.sharpen(window.shown.pixels, self.time())
+                self.sharpen(window.shown.pixels)
 
     def wake_up(self) -> None:
         self._awake.set()
@@ -88,11 +89,39 @@ class PageDisplay(Display):
     def screen_size(self) -> tuple[int, int]:
         return SCREEN
 
-    def _patience(self) -> float | None:
-        """Seconds until there is something to do without an event; None for ever."""
-        now = self.time()
-        waits = [self.frames.patience(now), max(0.0, self._next_tick - now) if self.busy else None]
-        return min((each for each in waits if each is not None), default=None)
+    def restart(self) -> None:
+        """Send the frame again, and forget those under way: another page shows the window."""
+        self._shown = self._sent
+        for window in self.windows:
+            window.stale = True
+
+    def acknowledge(self, number: int) -> None:
+        """Note that the page has shown a frame."""
+        self._shown = max(self._shown, min(number, self._sent))
+
+    def offer(self, pixels: NDArray[np.uint8]) -> bool:
+        """Send a frame, (h, w, 4) BGRA, unless too many are under way; return whether it was sent."""
+        if self._sent - self._shown >= AHEAD:
+            return False
+        self._send_frame(encode(pixels, COARSE))
+        self._due = self.time() + QUIET
+        return True
+
+    def sharpen(self, pixels: NDArray[np.uint8]) -> None:
+        """Send the same frame in finer quality, if no other one has followed it for some time."""
+        if self.time() >= self._due and self._sent == self._shown:
+            self._due = inf
+            self._send_frame(encode(pixels, FINE))
+
+    def patience(self) -> float | None:
+        """Return the seconds until there is something to do without an event; None for ever."""
+        sharpening = self._due if self._sent == self._shown else inf
+        next_time = min(sharpening, self._next_tick if self.busy else inf)
+        return max(0.0, next_time - self.time()) if next_time < inf else None
+
+    def _send_frame(self, data: bytes) -> None:
+        self._sent += 1
+        self.send({"kind": "frame", "number": self._sent}, data)
 
     def _is_tick_due(self) -> bool:
         now = self.time()
@@ -100,53 +129,6 @@ class PageDisplay(Display):
             return False
         self._next_tick = now + TICK
         return True
-
-
-AHEAD = 2  # frames under way that the page has not shown yet
-COARSE = 80  # quality while frames follow each other: 4 ms at 960x540
-FINE = 95  # quality of the last one
-FULL_COLOUR = 0  # Pillow's number for colour at the resolution of brightness
-QUIET = 0.15  # seconds after which a frame was the last one
-
-
-class FrameStream:
-    """Sends frames by `send(number, data)`, and keeps account of those that the page has shown."""
-
-    def __init__(self, send: Callable[[int, bytes], object]) -> None:
-        self._send = send
-        self._number = 0  # of the last frame that was sent
-        self._shown = 0  # number of the last frame that the page has shown
-        self._due: float | None = None  # when the frame in the page is replaced by a finer one
-
-    def offer(self, pixels: NDArray[np.uint8], now: float) -> bool:
-        """Send a frame, (h, w, 4) BGRA, unless too many are under way; return whether it was sent."""
-        if self._number - self._shown >= AHEAD:
-            return False
-        self._put(encode(pixels, COARSE))
-        self._due = now + QUIET
-        return True
-
-    def sharpen(self, pixels: NDArray[np.uint8], now: float) -> None:
-        """Send the same frame in finer quality, if no other one has followed it for some time."""
-        if self._due is not None and now >= self._due and self._number == self._shown:
-            self._due = None
-            self._put(encode(pixels, FINE))
-
-    def patience(self, now: float) -> float | None:
-        """Return the seconds until `sharpen` has something to do; None for ever."""
-        return None if self._due is None or self._number != self._shown else max(0.0, self._due - now)
-
-    def acknowledge(self, number: int) -> None:
-        """Note that the page has shown a frame."""
-        self._shown = max(self._shown, min(number, self._number))
-
-    def restart(self) -> None:
-        """Forget the frames under way: another page shows the stream now."""
-        self._shown = self._number
-
-    def _put(self, data: bytes) -> None:
-        self._number += 1
-        self._send(self._number, data)
 
 
 def encode(pixels: NDArray[np.uint8], quality: int) -> bytes:

@@ -108,6 +108,6 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
             case "ready":
                 display.do(display.restart)
             case "shown":
-                display.do(lambda: display.frames.acknowledge(int(message["number"])))
+                display.do(lambda: display.acknowledge(int(message["number"])))
             case _:
                 display.do(lambda: deliver(window, message, display.time()))

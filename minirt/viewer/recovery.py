@@ -44,7 +44,6 @@ class Recovery:
         self._lock = -1  # descriptor of the file beside it, which is locked while this program runs
         self._newest: Version | None = None
         self._written: Version | None = None
-        self._obsolete: list[Path] = []  # files to delete as soon as this one holds their changes
         self._told = False  # that the disk is full, or the like
         self._timer: threading.Timer | None = None  # of the next write
         self._writing = threading.Lock()
@@ -57,9 +56,12 @@ class Recovery:
             self._timer.daemon = True
             self._timer.start()
 
-    def replace(self, path: Path) -> None:
-        """Delete the file of a killed program as soon as this one's holds its changes."""
-        self._obsolete.append(path)
+    def adopt(self, path: Path) -> None:
+        """Go on with the file of a killed program, whose changes the session has taken."""
+        with suppress(OSError), self._writing:  # OSError: another program has adopted it just now
+            lock = open_lock(path)
+            self._delete()
+            self.path, self._lock = path, lock
 
     def flush(self) -> None:
         """Write the newest version now. Where that fails, a notice says so and the next change tries again."""
@@ -82,15 +84,17 @@ class Recovery:
             self.flush()
         with self._writing:
             self._newest = None
-            self._end_file()
             if delete:
-                self._delete_obsolete()
+                self._delete()
+            elif self.path:
+                os.close(self._lock)
+                self.path = None
 
     def _write(self, version: Version) -> None:
         """Bring the file up to date with a version. OSError, RuntimeError."""
-        before, unsaved = self._written, contents_differ(version.scene, version.saved)
-        if before and (before.saved is not version.saved or not unsaved):
-            self._end_file()
+        unsaved = contents_differ(version.scene, version.saved)
+        if not unsaved or (self._written and self._written.file != version.file):
+            self._delete()
         if unsaved:
             if self.path is None:
                 folder = state_folder()
@@ -101,20 +105,14 @@ class Recovery:
             with suppress(OSError):  # clocks are set back, too: what was changed is never newer than its changes
                 file, kept = version.file.stat(), self.path.stat()
                 os.utime(self.path, ns=(kept.st_atime_ns, max(file.st_mtime_ns, kept.st_mtime_ns)))
-        if unsaved or before:
-            self._delete_obsolete()
-        self._written = version if unsaved else None
+        self._written = version
 
-    def _end_file(self) -> None:
-        """Give the file up: it is deleted when a new one holds its changes, or nothing is unsaved."""
+    def _delete(self) -> None:
+        """Delete the file, if there is one."""
         if self.path:
             os.close(self._lock)
-            self._obsolete.append(self.path)
-        self.path = self._written = None
-
-    def _delete_obsolete(self) -> None:
-        while self._obsolete:
-            delete(self._obsolete.pop())
+            delete(self.path)
+        self.path = None
 
 
 class FoundChanges(NamedTuple):

@@ -21,7 +21,7 @@ from minirt.notebook.page_back_end import (
     COARSE,
     FINE,
     QUIET,
-    FrameStream,
+    PageDisplay,
     code_of,
     encode,
     modifiers_of,
@@ -127,46 +127,53 @@ def test_an_assigned_scene_is_the_scene_at_once(scene: minirt.Scene) -> None:
 GRADIENT = np.dstack([np.add.outer(np.arange(64), np.arange(96) + shift).astype(np.uint8) for shift in (0, 20, 60, 0)])
 
 
-class PageOfFrames:
-    """A page that keeps frames, and shows them when it is told to."""
+class PageOfFrames(PageDisplay):
+    """A back end with a page that keeps frames, and shows them when it is told to. `now` is its time."""
 
     def __init__(self) -> None:
+        super().__init__(lambda message, data: self.frames.append((message["number"], data)))
         self.frames: list[tuple[int, bytes]] = []
-        self.stream = FrameStream(lambda number, data: self.frames.append((number, data)))
+        self.now = 0.0
+
+    def time(self) -> float:
+        return self.now
 
     def show_all(self) -> None:
         for number, _ in self.frames:
-            self.stream.acknowledge(number)
+            self.acknowledge(number)
 
 
 def test_frames_wait_for_a_page_that_shows_none() -> None:
     page = PageOfFrames()
-    assert [page.stream.offer(GRADIENT, 0.0) for _ in range(4)] == [True] * AHEAD + [False] * (4 - AHEAD)
-    page.stream.acknowledge(page.frames[0][0])
-    assert [page.stream.offer(GRADIENT, 0.0) for _ in range(2)] == [True, False]
-    page.stream.restart()
-    assert page.stream.offer(GRADIENT, 0.0)
+    assert [page.offer(GRADIENT) for _ in range(4)] == [True] * AHEAD + [False] * (4 - AHEAD)
+    page.acknowledge(page.frames[0][0])
+    assert [page.offer(GRADIENT) for _ in range(2)] == [True, False]
+    page.restart()
+    assert page.offer(GRADIENT)
 
 
 def test_a_page_cannot_acknowledge_what_was_not_sent() -> None:
     page = PageOfFrames()
-    page.stream.acknowledge(1000)
-    assert [page.stream.offer(GRADIENT, 0.0) for _ in range(3)] == [True, True, False]
+    page.acknowledge(1000)
+    assert [page.offer(GRADIENT) for _ in range(3)] == [True, True, False]
 
 
 def test_the_last_frame_is_sent_again_in_finer_quality_once() -> None:
     page = PageOfFrames()
-    page.stream.offer(GRADIENT, 1.0)
-    assert page.stream.patience(1.0) is None  # the page has not shown it: its answer comes as an event
+    page.offer(GRADIENT)
+    assert page.patience() is None  # the page has not shown it: its answer comes as an event
     page.show_all()
-    assert page.stream.patience(0.0) == 1.0 + QUIET
-    page.stream.sharpen(GRADIENT, 1.0 + QUIET / 2)
+    assert page.patience() == QUIET
+    page.now = QUIET / 2
+    page.sharpen(GRADIENT)
     assert len(page.frames) == 1
-    page.stream.sharpen(GRADIENT, 1.0 + QUIET)
+    page.now = QUIET
+    page.sharpen(GRADIENT)
     page.show_all()
-    page.stream.sharpen(GRADIENT, 1.0 + 2 * QUIET)
+    page.now = 2 * QUIET
+    page.sharpen(GRADIENT)
     assert [data for _, data in page.frames] == [encode(GRADIENT, COARSE), encode(GRADIENT, FINE)]
-    assert page.stream.patience(2.0) is None
+    assert page.patience() is None
 
 
 def test_frames_have_the_colours_of_the_picture() -> None:

@@ -147,14 +147,15 @@ def test_changes_are_kept_for_a_month_and_longer_where_they_are_newer_than_the_f
     assert left.exists() == kept
 
 
-def test_taken_changes_are_deleted_when_a_new_file_holds_them(recovery, path):
-    left = left_by_a_killed_program(path)
-    recovery.replace(left)
-    saved = load(path).scene
-    keep(recovery, saved, saved, path)
-    assert left.exists()
+def test_taken_changes_stay_in_their_file_until_nothing_is_unsaved(recovery, path):
+    left, saved = left_by_a_killed_program(path), load(path).scene
+    recovery.adopt(left)
+    Recovery().adopt(left)  # of another program, which is too late
+    assert find_changes(path) is None
     keep(recovery, grown(saved, 3.0), saved, path)
-    assert not left.exists()
+    assert left.read_text() == dump(grown(saved, 3.0))
+    keep(recovery, saved, saved, path)
+    assert list(state_folder().iterdir()) == []
 
 
 def test_a_full_disk_gives_one_notice_and_the_next_change_tries_again(recovery, path, monkeypatch, caplog):

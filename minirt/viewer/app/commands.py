@@ -149,7 +149,7 @@ def take_found(session: Session, found: FoundChanges) -> None:
     session.show_file(state_after_reading(session.state, scene, None), session.saved)
     session.say(f"{found.title}: {named('Ctrl+S')} saves them, {named('Ctrl+Z')} takes them back")
     if session.recovery and not found.beside:
-        session.recovery.replace(found.path)
+        session.recovery.adopt(found.path)
 
 
 COMMANDS: dict[str, Callable[[Session], None]] = {

@@ -89,11 +89,6 @@ class Painter:
         self.notify = notify
         self.outcomes: list[Outcome] = []
 
-    @property
-    def busy(self) -> bool:
-        """Whether there are or will be outcomes to take."""
-        return bool(self.outcomes)
-
     def request(self, job: Job) -> None:
         """Request a picture."""
         self.outcomes.append(paint(self.renderer, job))
@@ -150,11 +145,6 @@ class BackgroundPainter(Painter):
         self._closed = False
         self._preparing = False
         self._threads = [threading.Thread(target=self._work, name="minirt-painter", daemon=True)]
-
-    @property
-    def busy(self) -> bool:
-        with self._changed:
-            return bool(self._waiting or self._running or self._previewed or self.outcomes)
 
     def request(self, job: Job) -> None:
         with self._changed:
