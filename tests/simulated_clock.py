@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.helpers import system
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import frame_runner, renderer
@@ -45,9 +44,9 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(FrameRunner, "run", counted)
-    for module in (system, auto, frame_runner, renderer, bench):
+    for module in (auto, frame_runner, renderer, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
-    patch.setattr(system, "process_time", clock.cpu)
+    patch.setattr(bench, "process_time", clock.cpu)
     return clock
 
 

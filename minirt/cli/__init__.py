@@ -107,9 +107,9 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         read = read_scene(options, sys.stdout if command is show else sys.stderr)
     if command is show:  # which compares what it shows with the file
         return show(with_camera_options(read, options), options, read)
-    from minirt.helpers.signals import signals_end_work
+    from minirt.helpers.signals import end_work, ended_by_signals
 
-    with signals_end_work():
+    with ended_by_signals(end_work):
         return command(with_camera_options(read, options), options)
 
 

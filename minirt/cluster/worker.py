@@ -6,18 +6,16 @@ on other machines get textures, too, under the hashes of their contents.
 
 from __future__ import annotations
 
-import atexit
 import copyreg
 import hashlib
 import io
 import pickle
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable
 from copy import copy
 from functools import cache, lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
 import minirt
@@ -87,19 +85,18 @@ def unpacked(data: bytes) -> Scene:
     elements, place = pickle.loads(data)
     if isinstance(place, Path):
         return Scene(elements, place)
+    textures = Path(folder().name)
     for digest, content in place.items():
-        if not (folder() / digest).exists():
-            file_io.write(folder() / digest, content)
-    return Scene(elements, folder() / "scene.rt")
+        if not (textures / digest).exists():
+            file_io.write(textures / digest, content)
+    return Scene(elements, textures / "scene.rt")
 
 
 @cache
-def folder() -> Path:
+def folder() -> TemporaryDirectory[str]:
     """Return a folder for textures, which is deleted at the end of this process or, if it was killed, by dask."""
     worker = dask_worker()
-    path = tempfile.mkdtemp(prefix="minirt-", dir=worker and worker.local_directory)
-    atexit.register(shutil.rmtree, path, ignore_errors=True)
-    return Path(path)
+    return TemporaryDirectory(prefix="minirt-", dir=worker and worker.local_directory, ignore_cleanup_errors=True)
 
 
 def work(asked: str, data: bytes, camera: Camera, band: Job) -> Made:

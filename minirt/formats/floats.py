@@ -6,6 +6,7 @@ layout of openexr.com (version 2, one part): a header of attributes, a table of 
 
 from __future__ import annotations
 
+import re
 import struct
 import zlib
 
@@ -73,7 +74,7 @@ def exr_block(top: int, planes: np.ndarray) -> bytes:
 
 SHORTEST, LONGEST = 8, 2**15 - 1  # pixels of a scanline that can have runs
 SCANLINES = 16  # scanlines that are converted at once
-MIN_RUN, MAX_RUN, MAX_LITERAL = 4, 127, 128
+RUN = re.compile(rb"(.)\1{3,126}|(?:(?!(.)\2{3}).){1,128}", re.DOTALL)  # equal bytes, or others up to such a run
 BRIGHTEST = 2.0**127 * (255 / 256)
 
 
@@ -103,25 +104,11 @@ def rgbe(light: np.ndarray) -> np.ndarray:
 
 def runs(line: np.ndarray) -> bytes:
     """Return the bytes of a channel of a scanline: a count above 128 repeats a byte, another copies some bytes."""
-    edges = np.flatnonzero(np.diff(line)) + 1
-    starts, ends = np.append(0, edges), np.append(edges, len(line))
-    long = ends - starts >= MIN_RUN
-    out, done, data = bytearray(), 0, line.tobytes()
-    for start, end in zip(starts[long].tolist(), ends[long].tolist(), strict=True):
-        copy(out, data[done:start])
-        for at in range(start, end, MAX_RUN):
-            out += bytes([128 + min(MAX_RUN, end - at), data[start]])
-        done = end
-    copy(out, data[done:])
-    return bytes(out)
 
+    def with_count(run: re.Match[bytes]) -> bytes:
+        return bytes([128 + len(run[0])]) + run[1] if run[1] else bytes([len(run[0])]) + run[0]
 
-def copy(out: bytearray, data: bytes) -> None:
-    """Append bytes as they are, with the counts that announce them."""
-    for at in range(0, len(data), MAX_LITERAL):
-        part = data[at : at + MAX_LITERAL]
-        out.append(len(part))
-        out += part
+    return RUN.sub(with_count, line.tobytes())
 
 
 # Portable float maps (`.pfm`): float32, the lower line first (Debevec).

@@ -9,7 +9,6 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Iterator, Mapping
-from types import MappingProxyType
 
 import numpy as np
 
@@ -19,10 +18,9 @@ STRATEGY = zlib.Z_FILTERED
 ROWS, BLOCK = 256, 2**18  # rows filtered at once, and their bytes, at most: filtering takes eight times the memory
 LARGEST_SIDE = 2**31 - 1  # pixels
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
-NO_TEXTS: Mapping[str, str] = MappingProxyType({})
 
 
-def encode(array: np.ndarray, texts: Mapping[str, str] = NO_TEXTS) -> bytes:
+def encode(array: np.ndarray, texts: Mapping[str, str] | None = None) -> bytes:
     """Return the PNG file of a picture, (h, w, 3) uint8 or uint16; ValueError when it has no pixels.
 
     The keywords of `texts` have at most 79 letters of ASCII.
@@ -32,7 +30,7 @@ def encode(array: np.ndarray, texts: Mapping[str, str] = NO_TEXTS) -> bytes:
         raise ValueError(f"a picture of {width}x{height} pixels")
     header = struct.pack(">IIBBBBB", width, height, 8 * array.dtype.itemsize, 2, 0, 0, 0)  # RGB, not interlaced
     parts = [SIGNATURE, chunk(b"IHDR", header)]
-    parts += [chunk(b"iTXt", text_data(keyword, text)) for keyword, text in texts.items()]
+    parts += [chunk(b"iTXt", text_data(keyword, text)) for keyword, text in (texts or {}).items()]
     compressor = zlib.compressobj(LEVEL, strategy=STRATEGY)
     for block in filtered(array.reshape(height, -1), 3 * array.dtype.itemsize):
         if part := compressor.compress(block):
@@ -82,20 +80,16 @@ class PngError(ValueError):
     """The file is no PNG picture, or its text is damaged."""
 
 
-def texts(data: bytes, keywords: tuple[str, ...], longest: int) -> dict[str, bytes]:
-    """Return the texts with some keywords, at most `longest` bytes each, in UTF-8 unless the writer erred; PngError.
-
-    Only texts before the pixels are read, as `minirt.formats.png` writes them.
+def text(data: bytes, keyword: str, longest: int) -> bytes | None:
+    """Return the text with a keyword, of at most `longest` bytes, in UTF-8 unless the writer erred; None where the file
+    has none before its pixels, where `encode` writes it; PngError.
     """
     if not data.startswith(SIGNATURE):
         raise PngError("is not a PNG picture")
-    found: dict[str, bytes] = {}
+    found, start = None, keyword.encode() + b"\0"
     for kind, content in chunks(data):
-        if kind == b"iTXt":
-            keyword, _, rest = content.partition(b"\0")
-            name = keyword.decode("latin-1")
-            if name in keywords:
-                found[name] = text_of(rest, longest)
+        if kind == b"iTXt" and content.startswith(start):
+            found = text_of(content.removeprefix(start), longest)
     return found
 
 

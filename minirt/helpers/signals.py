@@ -19,6 +19,11 @@ class Ended(KeyboardInterrupt):
         self.number = number  # of the signal
 
 
+def end_work(number: int) -> None:
+    """Raise `Ended`, for work without a window."""
+    raise Ended(number)
+
+
 @contextmanager
 def signal_handlers(*numbers: int, handler: Callable[[int, FrameType | None], object] | None = None) -> Iterator[None]:
     """Handle signals by `handler`, if there is one, and restore their handlers at the end.
@@ -35,18 +40,17 @@ def signal_handlers(*numbers: int, handler: Callable[[int, FrameType | None], ob
             signal.signal(number, old)
 
 
-def ended_by_signals(end: Callable[[int], None], once: bool = False) -> AbstractContextManager[None]:
-    """Call `end` in the main thread with the number of a signal that asks the program to end; `once` ignores further
-    ones, so that files are cleared up.
+def ended_by_signals(end: Callable[[int], None]) -> AbstractContextManager[None]:
+    """Call `end` in the main thread with the number of a signal that asks the program to end, and ignore further ones,
+    so that files are cleared up.
 
     Signals that are ignored, as under nohup, or that have a handler stay as they are.
     """
     mine = [number for number in ENDING if signal.getsignal(number) is signal.SIG_DFL]
 
     def handle(number: int, _frame: FrameType | None) -> None:
-        if once:
-            for each in mine:
-                signal.signal(each, signal.SIG_IGN)
+        for each in mine:
+            signal.signal(each, signal.SIG_IGN)
         end(number)
 
     return signal_handlers(*mine, handler=handle)
@@ -92,12 +96,3 @@ def interruptible(interrupted: Callable[[], None], wake: Callable[[], None]) -> 
 
 def _in_main_thread() -> bool:
     return threading.current_thread() is threading.main_thread()
-
-
-def signals_end_work() -> AbstractContextManager[None]:
-    """Raise `Ended` in the main thread on a signal that asks the program to end, while it works without a window."""
-
-    def end(number: int) -> None:
-        raise Ended(number)
-
-    return ended_by_signals(end, once=True)

@@ -1,4 +1,4 @@
-"""The process and its machine: the limit of memory, forks, garbage collection and clocks.
+"""The process and its machine: the limit of memory, forks and garbage collection.
 
 The limit of memory is the user's, or that of the container or machine. Large needs are compared with it before
 memory is allocated, since the system would end the program without a word.
@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from threading import Lock
-from time import perf_counter, process_time
-from typing import Any, NamedTuple
+from typing import Any
 from weakref import WeakSet
 
 from minirt.errors import RenderError
@@ -153,28 +152,3 @@ def gc_paused(freeze: bool = True) -> Iterator[None]:
             gc.freeze()
         if enabled:
             gc.enable()
-
-
-DISTURBED = 1.15  # ratio of wall time to processor time from which a run counts as disturbed
-
-
-class Run(NamedTuple):
-    """Wall time and processor time of a run in seconds; the latter is the sum over all threads of this program."""
-
-    wall: float
-    cpu: float
-
-
-def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
-    """Time at least `least` runs of some work, and more until they take `seconds` together."""
-    times: list[Run] = []
-    while len(times) < least or sum(run.wall for run in times) < seconds:
-        wall, cpu = perf_counter(), process_time()
-        work()
-        times.append(Run(perf_counter() - wall, process_time() - cpu))
-    return times
-
-
-def is_disturbed(run: Run, threads: int) -> bool:
-    """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
-    return run.wall * threads > DISTURBED * run.cpu

@@ -17,7 +17,6 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.formats import png
-from minirt.formats.png import NO_TEXTS
 from minirt.formats.table import FLOAT, check_bits, check_quality, encoding, format_of
 from minirt.helpers import file_io
 
@@ -75,7 +74,7 @@ class Image:
         *,
         bits: int | None = None,
         quality: int | None = None,
-        texts: Mapping[str, str] = NO_TEXTS,
+        texts: Mapping[str, str] | None = None,
     ) -> bytes:
         """Return the bytes of a file in a format of `minirt.formats.table`; RenderError when it cannot hold the
         picture.
@@ -105,7 +104,7 @@ class Image:
         *,
         bits: int | None = None,
         quality: int | None = None,
-        texts: Mapping[str, str] = NO_TEXTS,
+        texts: Mapping[str, str] | None = None,
     ) -> None:
         """Write a file in the format of its extension, as a whole or not at all; RenderError when that fails.
 

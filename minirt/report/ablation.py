@@ -13,12 +13,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.helpers.system import Run
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY, load
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
+from minirt.report.bench import Run
 from minirt.report.metrics import Interval, of_median
 from minirt.report.pictures import Budget, Step, measure_times, timed
 from minirt.report.settings import ChangedPacking

@@ -3,19 +3,42 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import cycle, repeat
 from statistics import median
-from time import perf_counter
+from time import perf_counter, process_time
+from typing import NamedTuple
 
 import numpy as np
 
-from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.scene import Scene, load, size_of
 
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0  # of each of both measurements
 STEP = 1e-3  # scene units that the eye moves from frame to frame
+DISTURBED = 1.15  # ratio of wall time to processor time from which a run counts as disturbed
+
+
+class Run(NamedTuple):
+    """Wall time and processor time of a run in seconds; the latter is the sum over all threads of this program."""
+
+    wall: float
+    cpu: float
+
+
+def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
+    """Time at least `least` runs of some work, and more until they take `seconds` together."""
+    times: list[Run] = []
+    while len(times) < least or sum(run.wall for run in times) < seconds:
+        wall, cpu = perf_counter(), process_time()
+        work()
+        times.append(Run(perf_counter() - wall, process_time() - cpu))
+    return times
+
+
+def is_disturbed(run: Run, threads: int) -> bool:
+    """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
+    return run.wall * threads > DISTURBED * run.cpu
 
 
 def measure(

@@ -14,13 +14,13 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.helpers.progress import State, progress
-from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.queries.stiffness import coincident, stiff_shapes
 from minirt.rendering.threads import usable_cores
 from minirt.report import povray
 from minirt.report.ablation import PAIRS, Ablation
+from minirt.report.bench import runs
 from minirt.report.diagram import require_matplotlib
 from minirt.report.document import PAGE, summary, write_files
 from minirt.report.findings import Findings, subject

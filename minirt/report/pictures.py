@@ -11,12 +11,12 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.helpers.system import Run, is_disturbed, runs
 from minirt.lanes import width as lanes_of
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
 from minirt.report import metrics
+from minirt.report.bench import Run, is_disturbed, runs
 from minirt.report.metrics import Picture, clamped, rmse
 from minirt.report.settings import Drawn, Knob, Setting
 from minirt.scene import Scene

@@ -16,11 +16,11 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.errors import RenderError
-from minirt.helpers.system import Run
 from minirt.materials import Attributes
 from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
+from minirt.report.bench import Run
 from minirt.report.metrics import Picture, rmse
 from minirt.report.pictures import FEW, TOO_SLOW, Budget, Reference, Row, Step, measure_times
 from minirt.scene import Ambient, Lamp, Light, Scene

@@ -52,11 +52,11 @@ def picture_folder(path: str | os.PathLike[str]) -> Path:
 
 def read_picture_text(path: str | os.PathLike[str], keyword: str, longest: int) -> bytes | None:
     """Return a text of a PNG picture, None where it has none; FileError where it cannot be read."""
-    from minirt.formats.png import PngError, texts
+    from minirt.formats.png import PngError, text
 
     data = file_io.read(path, LARGEST_PICTURE)
     try:
-        return texts(data, (keyword,), longest).get(keyword)
+        return text(data, keyword, longest)
     except PngError as error:
         raise FileError(path, str(error)) from None
 

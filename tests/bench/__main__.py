@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from minirt import load
-from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.rendering.threads import usable_cores
-from minirt.report.bench import moved
+from minirt.report.bench import moved, runs
 from minirt.report.findings import processor
 from tests.bench import scenes, starts
 from tests.bench.measure import Setting, System, available, table, take_turns

@@ -1,4 +1,4 @@
-"""The memory that is allowed: default, option, refusals; run times, and waiting that disturbs them."""
+"""The memory that is allowed: default, option, refusals."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ import minirt
 from minirt.cli import main
 from minirt.cli.arguments import memory_size
 from minirt.helpers import system
-from minirt.helpers.system import Run, is_disturbed, runs
 from minirt.rendering.packing.materials import Reader
 from tests.cli.program import SCENE
 
@@ -120,25 +119,3 @@ def test_too_large_a_texture_is_refused_with_its_place(tmp_path: Path) -> None:
     minirt.limit_memory(MIB)
     with pytest.raises(minirt.SceneError, match=r"x.rt:3:.*need.? about .* MiB of memory, allowed 0 MiB"):
         minirt.load(tmp_path / "x.rt")
-
-
-def test_runs_have_both_times_and_fill_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On a simulated machine, whose clocks advance by its work alone."""
-    clocks = {"perf_counter": 100.0, "process_time": 7.0}
-
-    def work() -> None:
-        clocks["perf_counter"] += 0.25
-        clocks["process_time"] += 0.75
-
-    monkeypatch.setattr(system, "perf_counter", lambda: clocks["perf_counter"])
-    monkeypatch.setattr(system, "process_time", lambda: clocks["process_time"])
-    assert runs(work, 2, 1.0) == [Run(wall=0.25, cpu=0.75)] * 4
-    assert [len(runs(work, 2, seconds)) for seconds in (0.0, 0.4, 1.1)] == [2, 2, 5]
-
-
-def test_a_run_that_waited_is_disturbed() -> None:
-    assert not is_disturbed(Run(wall=1.0, cpu=1.0), 1)
-    assert not is_disturbed(Run(wall=1.1, cpu=1.0), 1)
-    assert is_disturbed(Run(wall=1.2, cpu=1.0), 1)
-    assert not is_disturbed(Run(wall=1.0, cpu=1.95), 2)
-    assert is_disturbed(Run(wall=1.0, cpu=1.0), 2)

@@ -11,9 +11,9 @@ import pytest
 
 import minirt
 from minirt.errors import RenderError
-from minirt.helpers.system import Run
 from minirt.rendering import scene_packing
 from minirt.report import pictures
+from minirt.report.bench import Run
 from minirt.report.pictures import (
     DISTURBED_BY_OTHERS,
     Budget,

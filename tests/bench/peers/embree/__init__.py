@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from minirt import load
-from minirt.helpers.system import runs
 from minirt.rendering.packing.camera import camera_numbers
+from minirt.report.bench import runs
 from minirt.shapes.sphere import Sphere
 from tests.bench.measure import INSTALL, MissingError, Setting, System
 from tests.bench.triangles import light, triangulated
