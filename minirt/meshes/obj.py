@@ -13,8 +13,8 @@ from io import BytesIO
 import numpy as np
 
 from minirt.meshes import obj_lines
-from minirt.meshes.obj_lines import Block, Counts, ObjError
-from minirt.meshes.polygons import FaceError, triangulate
+from minirt.meshes.obj_lines import Block, ObjError
+from minirt.meshes.polygons import triangulate
 from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
 
 BLOCK_BYTES = 2**20  # of lines that are parsed at once; their words take up to a hundred times as much
@@ -28,26 +28,27 @@ def parse(data: bytes) -> Triangles:
     if (lines_in_all := data.count(b"\n")) > MAX_LINES:
         raise ObjError(f"has {lines_in_all:,} lines, more than {MAX_LINES:,}")
     file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
-    before, triangles = Counts(), 0
-    while lines := read_lines(file, before.lines):
-        block = obj_lines.read(lines, before)
+    first, before, triangles = 1, [0, 0, 0], 0
+    while lines := read_lines(file, first):
+        block = obj_lines.read(lines, first, before)
         blocks.append(block)
-        before = before.after(block, len(lines))
+        first += len(lines)
+        before = [count + len(new) for count, new in zip(before, block[:3], strict=True)]
         triangles += int((block.sizes - 2).sum())
         if triangles > MAX_TRIANGLES:
             raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
     return assemble(blocks)
 
 
-def read_lines(file: BytesIO, before: int) -> list[bytes]:
-    """Return the next lines of a file, about `BLOCK_BYTES`, with all that continue the last; ObjError."""
+def read_lines(file: BytesIO, first: int) -> list[bytes]:
+    """Return the next lines of a file, from number `first`, about `BLOCK_BYTES`, and what continues them; ObjError."""
     lines = file.readlines(BLOCK_BYTES)
     size = len(lines[-1]) if lines else 0
     while size <= LONGEST_LINE and lines and lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
         lines.append(more)
         size += len(more)
     if size > LONGEST_LINE:
-        raise ObjError(f"longer than {LONGEST_LINE // 2**20} MiB", before + len(lines))
+        raise ObjError(f"longer than {LONGEST_LINE // 2**20} MiB", first + len(lines) - 1)
     return lines
 
 
@@ -57,12 +58,7 @@ def assemble(blocks: list[Block]) -> Triangles:
         raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_indices(whole)
-    try:
-        fans = whole.corners[triangulate(whole.points, whole.corners[:, 0], whole.sizes)]
-    except FaceError as error:
-        face = error.face
-        message = f"a face of {whole.sizes[face]:,} corners takes too long to cut into triangles"
-        raise ObjError(message, int(whole.lines[face])) from None
+    fans = whole.corners[triangulate(whole.points, whole.corners[:, 0], whole.sizes, whole.lines)]
     corners = fans[..., 0]
     valid = non_degenerate(whole.points[corners])
     if not valid.any():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -30,13 +31,6 @@ class ObjError(Exception):
         super().__init__(f"{place}: {message}" if line else message)
 
 
-class Word(NamedTuple):
-    """A word of a line, and the column at which it begins, from 1."""
-
-    text: str
-    column: int
-
-
 class Block(NamedTuple):
     """Vertices, corners and faces of a block of lines, or of a whole file."""
 
@@ -48,22 +42,9 @@ class Block(NamedTuple):
     lines: np.ndarray  # (f,) line of each face, from 1
 
 
-class Counts(NamedTuple):
-    """Numbers of points, uvs, normals and lines of a file before a block."""
-
-    points: int = 0
-    uvs: int = 0
-    normals: int = 0
-    lines: int = 0
-
-    def after(self, block: Block, lines: int) -> Counts:
-        """Return the counts after a block of that many lines."""
-        points, uvs, normals = (before + len(new) for before, new in zip(self[:3], block[:3], strict=True))
-        return Counts(points, uvs, normals, self.lines + lines)
-
-
-def read(lines: list[bytes], before: Counts) -> Block:
-    """Parse lines; `before` counts what precedes them in the file. ObjError names the first wrong line."""
+def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) -> Block:
+    """Parse lines, of which the `first` has that number in the file, after so many points, uvs and normals; ObjError
+    names the first wrong line."""
     lines = plain_lines(lines)
     rows = [line.split() for line in lines]
     places: dict[bytes, list[int]] = {key: [] for key in (*NUMBERS, b"f", *SKIPPED)}  # indices, by the first word
@@ -78,14 +59,14 @@ def read(lines: list[bytes], before: Counts) -> Block:
         faces = np.array(places[b"f"], np.int64)
         sizes = np.array([len(rows[index]) for index in places[b"f"]], np.int64)
         named = corner_table([word for index in places[b"f"] for word in rows[index]])
-        preceding = [count + np.searchsorted(places[key], faces) for key, count in zip(NUMBERS, before, strict=False)]
+        preceding = [count + np.searchsorted(places[key], faces) for key, count in zip(NUMBERS, before, strict=True)]
         corners = np.where(named < 0, np.repeat(np.stack(preceding, axis=1), sizes, axis=0) + named, named - 1)
         if (sizes < 3).any() or ((named < 0) & (corners < 0)).any():
             raise ValueError
     except (KeyError, ValueError, OverflowError):
-        explain(lines, before)
+        explain(lines, first, before)
         raise
-    return Block(points, uvs, normals, corners, sizes, before.lines + 1 + faces)
+    return Block(points, uvs, normals, corners, sizes, first + faces)
 
 
 def plain_lines(lines: list[bytes]) -> list[bytes]:
@@ -139,15 +120,12 @@ def padded(values: np.ndarray, sizes: np.ndarray, width: int) -> np.ndarray:
     return np.where(columns < sizes[:, None], values[np.minimum(places, len(values) - 1)], 0)
 
 
-def explain(lines: list[bytes], before: Counts) -> None:
-    """Raise the ObjError of the first wrong line."""
-    counts = dict(zip(NUMBERS, before, strict=False))
-    for line, text in enumerate(lines, before.lines + 1):
-        words = [
-            Word(each[0].decode("utf-8", "replace"), len(text[: each.start()].decode("utf-8", "replace")) + 1)
-            for each in re.finditer(rb"\S+", text)
-        ]
-        key, values = words[0].text.encode() if words else b"", words[1:]
+def explain(lines: list[bytes], first: int, before: Sequence[int]) -> None:
+    """Raise the ObjError of the first wrong line; arguments are those of `read`."""
+    counts = dict(zip(NUMBERS, before, strict=True))
+    for line, text in enumerate(lines, first):
+        words = list(re.finditer(r"\S+", text.decode("utf-8", "replace"), re.ASCII))
+        key, values = words[0][0].encode() if words else b"", words[1:]
         if key in counts:
             check_numbers(key, values, line)
             counts[key] += 1
@@ -157,21 +135,21 @@ def explain(lines: list[bytes], before: Counts) -> None:
             for word in values:
                 check_corner(word, list(counts.values()), line)
         elif words and key not in SKIPPED:
-            raise ObjError("a line begins with v, vt, vn, f or another word of .obj", line, words[0].column)
+            raise ObjError("a line begins with v, vt, vn, f or another word of .obj", line, words[0].start() + 1)
 
 
-def check_numbers(key: bytes, words: list[Word], line: int) -> None:
+def check_numbers(key: bytes, words: list[re.Match[str]], line: int) -> None:
     """Check the numbers of a line `v`, `vt` or `vn`; further numbers, such as colours, are left out."""
     name, (least, most, names) = key.decode(), NUMBERS[key]
     if not least <= len(words) <= most:
         raise ObjError(f"{name} has {names}, got {len(words)} number{'s' * (len(words) != 1)}", line)
     for word in words:
         try:
-            value = number(word.text)
+            value = number(word[0])
         except FieldError as error:
-            raise ObjError(f"{name} {expected(error)}", line, word.column) from None
+            raise ObjError(f"{name} {expected(error)}", line, word.start() + 1) from None
         if abs(value) > FARTHEST:
-            raise ObjError(f"{name} must be in [-{FARTHEST:g}, {FARTHEST:g}]", line, word.column)
+            raise ObjError(f"{name} must be in [-{FARTHEST:g}, {FARTHEST:g}]", line, word.start() + 1)
 
 
 def expected(error: FieldError) -> str:
@@ -179,20 +157,20 @@ def expected(error: FieldError) -> str:
     return str(error).partition(", got ")[0]
 
 
-def check_corner(word: Word, counts: list[int], line: int) -> None:
+def check_corner(word: re.Match[str], counts: list[int], line: int) -> None:
     """Check the numbers of a corner's point, uv and normal; `counts` of them precede it."""
-    parts = word.text.split("/")
+    parts, column = word[0].split("/"), word.start() + 1
     if len(parts) > 3 or not parts[0] or not parts[-1]:
-        raise ObjError("a corner is v, v/vt, v//vn or v/vt/vn", line, word.column)
+        raise ObjError("a corner is v, v/vt, v//vn or v/vt/vn", line, column)
     for part, text in enumerate(parts):
         if not text:
             continue
         try:
             named = whole(text)
         except FieldError as error:
-            raise ObjError(f"the {CORNER_PARTS[part]} of a corner {expected(error)}", line, word.column) from None
+            raise ObjError(f"the {CORNER_PARTS[part]} of a corner {expected(error)}", line, column) from None
         if named == 0 or not -counts[part] <= named < 2**63:
-            raise ObjError(missing_index_message(part, named, counts[part]), line, word.column)
+            raise ObjError(missing_index_message(part, named, counts[part]), line, column)
 
 
 def missing_index_message(part: int, named: int, count: int) -> str:

@@ -14,6 +14,8 @@ from math import inf
 
 import numpy as np
 
+from minirt.meshes.obj_lines import ObjError
+
 ROUNDING = 2.0**-50  # error of a cross product of differences, as a share of the sum of its products
 MOST_LOOKS = 2**25  # at corners, for the faces of a file: half a minute at worst
 
@@ -21,20 +23,13 @@ Point = tuple[float, float]
 Ears = list[tuple[int, int, int]]
 
 
-class FaceError(Exception):
-    """A face that takes too long to cut into triangles: its index."""
-
-    def __init__(self, face: int) -> None:
-        super().__init__(face)
-        self.face = face
-
-
-def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray, lines: np.ndarray) -> np.ndarray:
     """Cut faces of `sizes` corners into triangles: indices of the triangles' corners among all corners, (m, 3).
 
     `corners` (c,) are the points of all corners. The triangles of a face go round as the face does. They are a fan
     around its first corner where that covers the polygon and nothing else, as it does every convex one. Other polygons
-    are cut into ears. A polygon that crosses itself may leave no ear to cut; it becomes a fan. FaceError.
+    are cut into ears. A polygon that crosses itself may leave no ear to cut; it becomes a fan. ObjError,
+    with the face's entry of `lines`, for one that takes too long.
     """
     triangles, looks = fan_triangulation(sizes), MOST_LOOKS
     many = np.flatnonzero(sizes > 3)
@@ -50,7 +45,8 @@ def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray) -> n
         polygon = Polygon(flat, looks)
         ears, looks = polygon.cut(), polygon.looks
         if looks < 0:
-            raise FaceError(face)
+            message = f"a face of {sizes[face]:,} corners takes too long to cut into triangles"
+            raise ObjError(message, int(lines[face]))
         if ears:
             start = first[face] - 2 * face
             triangles[start : start + len(ears)] = first[face] + np.array(ears)

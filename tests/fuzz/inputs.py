@@ -24,7 +24,7 @@ from minirt.helpers.system import limit_memory
 from minirt.materials import pictures
 from minirt.materials.pictures import SIDE
 from minirt.meshes import obj, obj_lines
-from minirt.meshes.obj_lines import Counts, ObjError
+from minirt.meshes.obj_lines import ObjError
 from minirt.meshes.triangles import Triangles
 from minirt.mlx.events import KEYS
 from minirt.mlx.memory import Memory
@@ -155,7 +155,7 @@ LINE = re.compile(
 
 def grammar_tables(data: bytes) -> list[list[list[float]]] | None:
     """Read a mesh line by line by a strict grammar: points, uvs, normals and corners; None where it is wrong."""
-    items: dict[bytes, list[list[float]]] = {b"v": [], b"vt": [], b"vn": [], b"f": []}
+    items: dict[bytes, list[Any]] = {b"v": [], b"vt": [], b"vn": [], b"f": []}
     for line in re.sub(rb"\\\r*(\n|\Z)", b" ", data).split(b"\n"):
         text = line.partition(b"#")[0]
         key, *words = text.split() or [b""]
@@ -183,7 +183,7 @@ def check_mesh(data: bytes) -> str:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            found: Any = obj_lines.read(BytesIO(data).readlines(), Counts())
+            found: Any = obj_lines.read(BytesIO(data).readlines())
         except ObjError:
             found = None
         assert (found is None) == (expected is None), "reader or grammar alone accepts it"
