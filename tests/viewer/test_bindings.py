@@ -17,7 +17,7 @@ from minirt.scene import Camera, describe, dump, load
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.commands import COMMANDS
-from minirt.viewer.app.panels import TYPE
+from minirt.viewer.app.panels import LISTS, TYPE
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import (
     BINDINGS,
@@ -49,7 +49,7 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    actions = {*EDITS, *COMMANDS, *DRAGS, "select at pointer", TYPE}
+    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, "select at pointer", TYPE}
     assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)

@@ -13,7 +13,6 @@ from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.panels import ADDING, LISTS, TYPE, Choosing, Typing
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
-from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
 from minirt.viewer.editing.state import State
 
@@ -68,8 +67,7 @@ class EventDispatcher:
             return
         if pressed:  # any other key that does something closes them
             self.typing.end()
-            if not self.choosing.goes_on(pressed):
-                self.choosing.end()
+            self.choosing.end()
             if pressed.held:
                 self.hold(pressed, code)
             else:
@@ -149,16 +147,15 @@ class EventDispatcher:
         """Perform the action of a key binding: an edit of the scene, or a command."""
         session, action = self.session, binding.action
         session.release_button()
-        if action in ADDING and not structure.is_adding(session.state):
-            session.state = replace(session.state, aim=self.mouse.aim())
-        if action in EDITS:
-            before = session.state
-            session.state = apply(before, action, step if binding.fine else 1.0, session.now)
-            if action in LISTS:
-                self.choosing.begin(action, before)
-        elif action == TYPE:
+        if action == TYPE:
             self.typing.begin("=")
             return
+        if action in LISTS:
+            aim = self.mouse.aim() if action in ADDING else session.state.aim
+            self.choosing.begin(action, replace(session.state, aim=aim))
+            return
+        if action in EDITS:
+            session.state = apply(session.state, action, step if binding.fine else 1.0, session.now)
         else:
             session.say("")
             session.attempt(COMMANDS[action])

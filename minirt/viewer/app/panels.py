@@ -20,7 +20,7 @@ from minirt.viewer.editing.state import State
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 TYPE = "type value"  # the action that begins with =
 MAX_LENGTH = 40  # characters
-ADDING = ("add", "add previous")  # actions that open the list of elements
+ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
 LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
 
 
@@ -90,15 +90,18 @@ class Choosing:
     @property
     def is_open(self) -> bool:
         """Whether the list is open."""
-        return self._before is not None and structure.is_adding(self.session.state, self._group)
+        last = self.session.state.last_change
+        return self._before is not None and last is not None and last[0] == self._group
 
-    def begin(self, action: str, before: State) -> None:
-        """Show the list after an action of LISTS has added the first choice, or the next one, to `before`."""
-        group = LISTS[action]
-        if not self.is_open or self._group != group:
-            self._letters, self._group, self._before = "", group, before
-            self._choices = list(structure.choices(structure.before_adding(before, group), group))
-        self.show()
+    def begin(self, action: str, state: State) -> None:
+        """Add the first choice of an action of LISTS, or an element of the kind that was added last; show the list."""
+        self._letters, self._group, self._before = "", LISTS[action], state
+        self._choices = list(structure.choices(state, self._group))
+        if self._choices:
+            again = (each for each in self._choices if type(each.element) is state.added_kind)
+            self.choose(self._choices[0] if self._group == structure.ATTRIBUTE else next(again, self._choices[0]))
+        else:
+            self.session.show(state.with_message(f"{state.element.title} has no attribute that can be added"))
 
     def end(self) -> None:
         """Close the list; what it added stays."""
@@ -107,11 +110,13 @@ class Choosing:
             self.show()
 
     def takes(self, key: int, pressed: Binding | None) -> bool:
-        """Take a key press; False if the key means nothing to the list, or is to add the next choice."""
-        if self.goes_on(pressed) or self.session.modifiers & SIGNIFICANT:
+        """Take a key press; False if the key means nothing to the list."""
+        rows, action = self.rows(), pressed.action if pressed and not self._letters else ""
+        if LISTS.get(action) == self._group:  # again: the next choice
+            self.choose(rows[(self.chosen(rows) + ADDING.get(action, 1)) % len(rows)])
+        elif action in LISTS or self.session.modifiers & SIGNIFICANT:
             return False
-        rows = self.rows()
-        if key in ENTER:
+        elif key in ENTER:
             self.session.state = self.session.state.end_merging()
             self.end()
         elif key == Key.ESCAPE:
@@ -129,10 +134,6 @@ class Choosing:
         else:
             return False
         return True
-
-    def goes_on(self, pressed: Binding | None) -> bool:
-        """Whether a key adds the next choice, while the list stays open."""
-        return bool(pressed and pressed.action in LISTS and not self._letters)
 
     def filter(self, letters: str) -> None:
         """Show the choices that contain some letters, and choose the first of them."""

@@ -47,7 +47,7 @@ class State:
     value_index: int = 0  # of the active value in `values` of the selected element
     frame: Frame = Frame.VIEW
     message: str = ""
-    kind_index: int = 0  # of the last added element in `addable_kinds`
+    added_kind: type[Element] | None = None  # of the last added element
     aim: Aim | None = field(default=None, repr=False)  # where the next element goes; None: straight ahead
     undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
     redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # the next is the last

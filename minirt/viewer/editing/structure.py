@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from functools import partial
 
 from minirt.element import Element, fields_of
 from minirt.errors import ElementError
@@ -15,7 +15,7 @@ from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
 from minirt.viewer.editing.adding import SIZE, addable_kinds, default_element, default_value, first_lamp
-from minirt.viewer.editing.state import State, index_of, undo
+from minirt.viewer.editing.state import State, index_of
 from minirt.viewer.editing.values import nice_number, values
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
@@ -44,58 +44,33 @@ def delete(state: State, _amount: float, now: float) -> State:
     return state.select(state.selected).with_message(f"deleted the {element.title}")
 
 
-def is_adding(state: State, group: str = ELEMENT) -> bool:
-    """Whether the last change added an element or an attribute, which may still be replaced by another one."""
-    return state.last_change is not None and state.last_change[0] == group
-
-
-def before_adding(state: State, group: str) -> State:
-    """The state without the element or attribute that was just added."""
-    return undo(state) if is_adding(state, group) else state
-
-
-def candidates(state: State, group: str) -> list[Any]:
-    """The kinds of elements that can be added, or the fields of the attributes that the selected element lacks."""
-    if group == ELEMENT:
-        return addable_kinds(state.scene)
-    return [each for each in fields_of(type(state.element)) if each.keyed and getattr(state.element, each.name) is None]
-
-
-def choices(before: State, group: str, first: int = 0, step: int = 1) -> Iterator[State]:
-    """Yield the states after each candidate was added, cyclically from the one with the number `first`.
+def choices(state: State, group: str) -> Iterator[State]:
+    """Yield the states after each kind of element, or each attribute that the selected element lacks, was added.
 
     Those that need a missing file, or cannot be so small or far away, are left out.
     """
-    kinds = candidates(before, group)
-    for number in [(first + step * count) % len(kinds) for count in range(len(kinds))]:
-        with suppress(LookupError, ElementError):
-            yield (with_element if group == ELEMENT else with_attribute)(before, kinds[number], number)
-
-
-def add(group: str, step: int, state: State, _amount: float, _now: float) -> State:
-    """Add an element where the state aims, of the kind that was added last, or the first missing attribute.
-
-    Called again before another change, it replaces that by the next one (step 1) or the previous one (-1).
-    """
-    adding, before, first = is_adding(state, group), before_adding(state, group), 0
     if group == ELEMENT:
-        first = state.kind_index + step * adding
-    elif adding and state.active:
-        first = candidates(before, group).index(state.active.field) + step
-    nothing = state.with_message(f"{state.element.title} has no attribute that can be added")
-    return next(choices(before, group, first, step), nothing)
+        additions = [partial(with_element, state, kind) for kind in addable_kinds(state.scene)]
+    else:
+        keyed = (field for field in fields_of(type(state.element)) if field.keyed)
+        additions = [
+            partial(with_attribute, state, each) for each in keyed if getattr(state.element, each.name) is None
+        ]
+    for add in additions:
+        with suppress(LookupError, ElementError):
+            yield add()
 
 
-def with_element(before: State, kind: type[Element], number: int) -> State:
+def with_element(before: State, kind: type[Element]) -> State:
     """The state with a new element, which is selected. The first shape of a scene without any lamp brings one."""
     element, last = default_element(kind, before), len(before.scene.elements) - 1
     lamps = [first_lamp(before)] if isinstance(element, Shape) and not before.scene.of(Lamp) else []
     scene = before.scene.edit(last, before.scene.elements[last], element, *lamps)
-    after = replace(before, value_index=0, kind_index=number).change(scene, ELEMENT, 0.0, last + 1)
+    after = replace(before, value_index=0, added_kind=kind).change(scene, ELEMENT, 0.0, last + 1)
     return after.with_message(f"a new {element.title}{', and a light, since there was none' if lamps else ''}")
 
 
-def with_attribute(before: State, field: Field, _number: int) -> State:
+def with_attribute(before: State, field: Field) -> State:
     """The state whose selected element has a new attribute, which is active."""
     changed = before.element.replace(**{field.name: default_value(field, before, nice_number(SIZE * before.size))})
     after = before.change(before.scene.edit(before.selected, changed), ATTRIBUTE, 0.0)

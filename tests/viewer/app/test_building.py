@@ -118,6 +118,20 @@ def test_letters_are_keys_again_when_the_list_is_closed() -> None:
     assert played("press N", "text 4", "press Return").state.element.diameter == 4
 
 
+@pytest.mark.parametrize("key", ["press Left", "press +", "press Tab", "press Ctrl+Z"])
+def test_after_an_edit_another_element_of_the_same_kind_is_added(key: str) -> None:
+    before = played("press N", "press N", "press N")
+    after = played("press N", "press N", "press N", key, "press N")
+    assert type(after.state.element) is type(before.state.element)
+    assert len(after.state.scene.elements) == len(before.state.scene.elements) + (key != "press Ctrl+Z")
+
+
+def test_an_element_without_attributes_has_no_list_of_them() -> None:
+    ambient = played("press Shift+Tab", "press M")
+    assert "no attribute that can be added" in ambient.state.message
+    assert title(ambient) == ""
+
+
 def test_attributes_are_chosen_from_a_list() -> None:
     session = played(*SPHERE, "press M", "press g", "press l", "press a")
     assert session.state.element.glass is not None

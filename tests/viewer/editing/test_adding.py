@@ -18,6 +18,7 @@ from minirt.viewer.editing.adding import addable_kinds, default_element, dropped
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import SHARE, aim, looked_at_distance, projection_of
 from minirt.viewer.editing.state import State, initial_state
+from minirt.viewer.editing.structure import ELEMENT, choices
 from tests.viewer.fake import scene
 
 HEAD = "A 0.2 255,255,255\nC 0,3,10 0,-0.2,-1 60\nL 5,9,5 0.6\n"
@@ -143,7 +144,7 @@ def test_a_mesh_is_stood_on(tmp_path: Path) -> None:
 
 
 def test_a_new_element_keeps_standing_while_its_size_changes_and_until_it_is_moved() -> None:
-    state = apply(aiming(initial_state(scene(HEAD + GROUND)), 250, 240), "add")
+    state = adding(aiming(initial_state(scene(HEAD + GROUND)), 250, 240))
     for _ in range(5):
         state = apply(state, "grow").end_merging()
     ball = state.element
@@ -184,14 +185,12 @@ def test_the_camera_alone_tells_a_scale(position: Triple, direction: Triple, dis
     assert looked_at_distance(camera) == pytest.approx(distance)
 
 
-# Adding again makes the next kind.
+# The list of kinds.
 
 
-def adding(state: State, times: int, action: str = "add") -> State:
-    """The state after an action is repeated."""
-    for number in range(times):
-        state = apply(state, action, now=float(number))
-    return state
+def adding(state: State, number: int = 1) -> State:
+    """The state after an element was added: the first of the list, or the one with that number."""
+    return list(choices(state, ELEMENT))[number - 1]
 
 
 def test_shapes_come_first_and_what_a_scene_has_once_is_not_added_again() -> None:
@@ -201,26 +200,14 @@ def test_shapes_come_first_and_what_a_scene_has_once_is_not_added_again() -> Non
     assert ELEMENTS["L"] not in addable_kinds(scene())
 
 
-def test_repeated_adding_makes_the_next_kind_and_is_one_undo_step() -> None:
+def test_each_choice_adds_another_kind_and_is_one_undo_step() -> None:
     start = initial_state(scene())
-    kinds = addable_kinds(start.scene)
-    for times in range(1, len(kinds) + 2):
-        state = adding(start, times)
-        assert type(state.element) is kinds[(times - 1) % len(kinds)]
+    after = list(choices(start, ELEMENT))
+    assert [type(state.element) for state in after] == addable_kinds(start.scene)
+    for state in after:
         assert len(state.scene.elements) == len(start.scene.elements) + 1
         assert apply(state, "undo").scene.items == start.scene.items
         assert len(state.undo_stack) == 1
-    assert type(adding(adding(start, 3), 1, "add previous").element) is kinds[1]
-
-
-def test_after_an_edit_another_element_of_the_same_kind_is_added() -> None:
-    state = adding(initial_state(scene()), 3)
-    kind = type(state.element)
-    for action in ("right", "grow", "select camera", "undo"):
-        other = adding(apply(state, action), 1)
-        assert type(other.element) is kind
-        if action != "undo":
-            assert len(other.scene.elements) == len(state.scene.elements) + 1
 
 
 def test_undo_restores_the_selection() -> None:

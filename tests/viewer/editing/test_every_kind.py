@@ -31,6 +31,7 @@ from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import field_names, position_of, projection_of
 from minirt.viewer.editing.state import State, index_of, initial_state
+from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
 
@@ -62,11 +63,7 @@ def holding(kind: type[Element], path: Path) -> State:
     existing = [each for each in state.scene.elements if type(each) is kind]
     if existing:
         return state.select(index_of(state.scene, existing[0]))
-    for _ in ADDED:
-        state = apply(state, "add")
-        if type(state.element) is kind:
-            return state.end_merging()
-    raise AssertionError(f"{kind.title} cannot be added")
+    return next(each for each in choices(state, ELEMENT) if type(each.element) is kind).end_merging()
 
 
 def checked(state: State) -> State:
@@ -167,10 +164,9 @@ def test_every_number_and_colour_can_be_changed(kind: type[Element], path: Path)
 
 @pytest.mark.parametrize(("kind", "name"), KEYED, ids=lambda part: getattr(part, "code", part))
 def test_every_attribute_is_added_changed_and_removed(kind: type[Element], name: str, path: Path) -> None:
-    start = state = holding(kind, path)
+    start = holding(kind, path)
     names = [each for of, each in KEYED if of is kind]
-    for _ in range(names.index(name) + 1):
-        state = checked(apply(state, "add attribute"))
+    state = checked(list(choices(start, ATTRIBUTE))[names.index(name)])
     assert getattr(state.element, name) is not None
     assert [each for each in names if getattr(state.element, each) is not None] == [name]
     assert state.active.field.name == name
@@ -196,10 +192,9 @@ def test_every_attribute_is_added_changed_and_removed(kind: type[Element], name:
 @pytest.mark.parametrize("kind", [kind for kind in EDITABLE if issubclass(kind, Shape)], ids=lambda kind: kind.code)
 def test_all_attributes_can_be_combined(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
-    for number, _ in enumerate(name for of, name in KEYED if of is kind):
-        state = checked(apply(state, "add attribute", now=10.0 * number)).end_merging()
+    while added := next(choices(state, ATTRIBUTE), None):
+        state = checked(added).end_merging()
     assert all(getattr(state.element, name) is not None for of, name in KEYED if of is kind)
-    assert "no attribute that can be added" in apply(state, "add attribute").message
     for _ in values(state.element):
         state = checked(apply(state, "grow")).end_merging()
         state = apply(state, "next value")
@@ -208,10 +203,7 @@ def test_all_attributes_can_be_combined(kind: type[Element], path: Path) -> None
 def test_attributes_with_pictures_need_a_picture_beside_the_scene(tmp_path: Path) -> None:
     scene = parse(BARE + "sp 0,0,0 1 9,9,9\n").scene
     state = initial_state(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
-    names = set()
-    for _ in KEYED:
-        state = apply(state, "add attribute")
-        names.add(state.active.field.name)
+    names = {each.active.field.name for each in choices(state, ATTRIBUTE)}
     with_picture = {"texture", "bump", "normal_map"}
     assert names == {name for kind, name in KEYED if kind is ELEMENTS["sp"]} - with_picture
     sky = apply(state.select(3), "grow")
@@ -219,11 +211,10 @@ def test_attributes_with_pictures_need_a_picture_beside_the_scene(tmp_path: Path
     assert sky.scene is state.scene
 
 
-def test_repeating_replaces_an_attribute_only_directly_after_adding_it() -> None:
-    state = initial_state(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene)
-    state = apply(state, "select next")
-    shiny = apply(apply(state, "add attribute"), "grow")
-    both = apply(shiny, "add attribute")
+def test_an_attribute_is_removed_from_an_element_that_has_it() -> None:
+    state = apply(initial_state(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene), "select next")
+    shiny = apply(next(choices(state, ATTRIBUTE)), "grow")
+    both = next(choices(shiny, ATTRIBUTE))
     assert (both.element.specular, both.element.mirror) == (shiny.element.specular, Mirror(0.3))
     assert shiny.element.specular.share == pytest.approx(0.55)
     assert "no attribute" in apply(shiny.select(0), "remove attribute").message
