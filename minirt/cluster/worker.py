@@ -6,9 +6,7 @@ on other machines get textures, too, under the hashes of their contents.
 
 from __future__ import annotations
 
-import copyreg
 import hashlib
-import io
 import pickle
 import sys
 from collections.abc import Callable
@@ -24,11 +22,9 @@ from minirt.element import Element, Record, fields_of
 from minirt.errors import RenderError
 from minirt.helpers import file_io
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
-from minirt.meshes.triangles import Triangles
 from minirt.scene import Camera, Scene
 
 SCENES = 4  # that are kept unpacked in memory
-ARRAYS = ("points", "corners", "normals", "uvs")  # of a mesh
 
 Kind = TypeVar("Kind", bound=Record)
 
@@ -51,16 +47,7 @@ def packed(scene: Scene, with_files: bool) -> bytes:
 
     place = (scene.file or Path("scene.rt")).absolute()
     elements = tuple(renamed(each, keep) if with_files else each for each in scene.elements)
-    buffer = io.BytesIO()
-    pickler = pickle.Pickler(buffer, protocol=5)
-    pickler.dispatch_table = copyreg.dispatch_table | {Triangles: arrays_of}
-    pickler.dump((elements, files if with_files else place))
-    return buffer.getvalue()
-
-
-def arrays_of(mesh: Triangles) -> tuple[type[Triangles], tuple[Any, ...]]:
-    """Reduce a mesh to its arrays, without what was computed of them; `pickle` calls this."""
-    return Triangles, tuple(getattr(mesh, name) for name in ARRAYS)
+    return pickle.dumps((elements, files if with_files else place), protocol=5)
 
 
 def renamed(record: Kind, name: Callable[[str], str]) -> Kind:

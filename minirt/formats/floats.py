@@ -21,7 +21,7 @@ LEVEL = 4  # of compression: as OpenEXR itself
 def encode_exr(light: np.ndarray) -> bytes:
     """Return the file of light, (h, w, 3) in the order red, green, blue."""
     height, width = light.shape[:2]
-    blocks = [exr_block(top, planes_of(light[top : top + BLOCK_LINES])) for top in range(0, height, BLOCK_LINES)]
+    blocks = [exr_block(top, light[top : top + BLOCK_LINES]) for top in range(0, height, BLOCK_LINES)]
     header = exr_header(width, height)
     first = len(header) + 8 * len(blocks)
     offsets = first + np.cumsum([0, *map(len, blocks)])[:-1]
@@ -48,17 +48,12 @@ def exr_header(width: int, height: int) -> bytes:
     return struct.pack("<2i", MAGIC, VERSION) + b"".join(parts) + b"\0"
 
 
-def planes_of(light: np.ndarray) -> np.ndarray:
-    """Return scanlines (n, w, 3) as all of blue, all of green, all of red of each (n, 3, w), float32."""
-    return light[..., ::-1].astype("<f4").transpose(0, 2, 1)
-
-
-def exr_block(top: int, planes: np.ndarray) -> bytes:
-    """Return a block of scanlines, the first of which is line `top`.
+def exr_block(top: int, light: np.ndarray) -> bytes:
+    """Return a block of scanlines (n, w, 3), the first of which is line `top`: each as all of its blue, green, red.
 
     Bytes are sorted into those of even and odd places, then each is replaced by its difference to the one before.
     """
-    raw = planes.tobytes()
+    raw = light[..., ::-1].astype("<f4").transpose(0, 2, 1).tobytes()
     data = np.frombuffer(raw, np.uint8)
     data = np.concatenate([data[0::2], data[1::2]])
     data[1:] -= data[:-1] - np.uint8(128)  # numpy computes the right side first

@@ -22,6 +22,10 @@ class Triangles:
     def __len__(self) -> int:
         return len(self.corners)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Give `pickle` the arrays, without what was computed of them."""
+        return Triangles, (self.points, self.corners, self.normals, self.uvs)
+
     def some(self, indices: np.ndarray) -> Triangles:
         """Return the triangles with those indices."""
         normals = None if self.normals is None else self.normals[indices]

@@ -162,10 +162,11 @@ class Renderer:
 
         Otherwise there is a kernel that can draw it."""
         self.runner.not_finite = 0
+        has_shapes = bool(request.scene.shapes and request.pixels.size)
+        if has_shapes and not self.kernels.is_ready(request.scene):
+            self.kernels.compile(request.scene)
         light = self.tone_mapper.light_for(request, edges_only)
-        if request.scene.shapes and request.pixels.size:
-            if not self.is_ready(request.scene):
-                self.kernels.compile(request.scene)
+        if has_shapes:
             return light, False
         from minirt.rendering.queries.preview import draw_background
 
