@@ -91,7 +91,8 @@ def number_table(rows: list[list[bytes]], least: int, most: int, width: int) -> 
     sizes = np.array(list(map(len, rows)), np.int64)
     words = list(chain.from_iterable(rows))
     numbers = np.array(list(map(float, words)))
-    if not ((least <= sizes) & (sizes <= most)).all() or not (np.abs(numbers) <= FARTHEST).all() or is_foreign(words):
+    are_in_range = ((least <= sizes) & (sizes <= most)).all() and (np.abs(numbers) <= FARTHEST).all()
+    if not are_in_range or is_foreign(words, b" ".join(words)):
         raise ValueError
     return padded(numbers, sizes, width)
 
@@ -103,14 +104,14 @@ def corner_table(words: list[bytes]) -> np.ndarray:
     numbers = np.array(list(map(int, parts)), np.int64)
     sizes = np.array([word.count(b"/") for word in words], np.int64) + 1
     zeros = len(numbers) - np.count_nonzero(numbers)
-    if len(numbers) != sizes.sum() or zeros != text.count(b"//") or (sizes > 3).any() or is_foreign(parts):
+    if len(numbers) != sizes.sum() or zeros != text.count(b"//") or (sizes > 3).any() or is_foreign(parts, text):
         raise ValueError
     return padded(numbers, sizes, 3)
 
 
-def is_foreign(words: list[bytes]) -> bool:
-    """Whether a number is written as Python may, and a file may not: with underscores, or in too many digits."""
-    return b"_" in b"".join(words) or max(map(len, words), default=0) > LONGEST
+def is_foreign(words: list[bytes], text: bytes) -> bool:
+    """Whether one of the numbers in a text is written as Python alone may: with underscores, or in too many digits."""
+    return b"_" in text or max(map(len, words), default=0) > LONGEST
 
 
 def padded(values: np.ndarray, sizes: np.ndarray, width: int) -> np.ndarray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cached_property
 from typing import Any, TypeVar
 
 from minirt.element import Element
@@ -20,12 +19,8 @@ class Page:
 
     def __init__(self, items: tuple[Item, ...]) -> None:
         self.items = items
+        self.kinds = frozenset(map(type, items))
         self._cache: dict[Callable[..., Any], Any] = {}
-
-    @cached_property
-    def kinds(self) -> frozenset[type[Item]]:
-        """Types of the items."""
-        return frozenset(map(type, self.items))
 
     def of(self, sort: type[Any]) -> tuple[Any, ...]:
         """Return the items that are instances of a type, subclasses included."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from itertools import chain
 from operator import indexOf
@@ -25,18 +25,25 @@ if TYPE_CHECKING:
     from minirt.scene.lights import FurtherLight, ParallelLight, SpotLight
 
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
-Kind = TypeVar("Kind", bound=Element)
+Answer = TypeVar("Answer")
+Kind = TypeVar("Kind")
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
+
+
+def cached(find: Callable[[Scene], Answer], doc: str) -> cached_property[Answer]:
+    """Return a property of a scene that is found once."""
+    find.__doc__ = doc
+    return cached_property(find)
+
+
+def every(kind: type[Kind], doc: str) -> cached_property[tuple[Kind, ...]]:
+    """Return a property of a scene: its elements of a kind, in the order of the file."""
+    return cached(lambda scene: scene.of(kind), doc)
 
 
 def first(kind: type[Kind], doc: str) -> cached_property[Kind | None]:
     """Return a property of a scene: its first element of a kind, if it has one."""
-
-    def find(scene: Scene) -> Kind | None:
-        return next(iter(scene.of(kind)), None)
-
-    find.__doc__ = doc
-    return cached_property(find)
+    return cached(lambda scene: next(iter(scene.of(kind)), None), doc)
 
 
 class Scene(Immutable):
@@ -70,32 +77,13 @@ class Scene(Immutable):
     def __hash__(self) -> int:
         return hash((self.items, self.file))
 
-    @cached_property
-    def items(self) -> tuple[Item, ...]:
-        """The elements, comments and blank lines, in the order of the file."""
-        return self.of(object)
-
-    @cached_property
-    def elements(self) -> tuple[Element, ...]:
-        """All elements, without comments and blank lines, in the order of the file."""
-        return self.of(Element)
-
-    @cached_property
-    def shapes(self) -> tuple[Shape, ...]:
-        """All shapes, in the order of the file."""
-        return self.of(Shape)
-
-    @cached_property
-    def lights(self) -> tuple[Lamp, ...]:
-        """All light sources, in the order of the file."""
-        return self.of(Lamp)
-
-    @cached_property
-    def camera(self) -> Camera:
-        """The camera."""
-        camera: Camera = self.of(Camera)[0]
-        return camera
-
+    items: cached_property[tuple[Item, ...]] = cached(
+        lambda scene: scene.of(object), "The elements, comments and blank lines, in the order of the file."
+    )
+    elements = every(Element, "All elements, without comments and blank lines, in the order of the file.")
+    shapes = every(Shape, "All shapes, in the order of the file.")  # type: ignore[type-abstract]
+    lights = every(Lamp, "All light sources, in the order of the file.")
+    camera: cached_property[Camera] = cached(lambda scene: scene.of(Camera)[0], "The camera.")
     ambient = first(Ambient, "The ambient light, if the file has one.")
     background = first(Background, "The background of rays that hit nothing; None is black.")
     resolution = first(Resolution, "The size of the picture, if the file has one.")
