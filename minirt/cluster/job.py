@@ -60,9 +60,8 @@ class Job(NamedTuple):
     def work(self, *more: object) -> str:
         """Return what tells the job from others: a hash of all that the bits of the picture, or of `more`, depend
         on."""
-        from minirt.rendering.settings import identity
-
-        return identity(self.scene, f"{__version__} {self.size} {self.settings.replace(threads=None)} {more}")
+        settings = f"{__version__} {self.size} {self.settings.replace(threads=None)} {more}"
+        return rendering_settings.identity(self.scene, settings)
 
 
 class Strips(NamedTuple):
