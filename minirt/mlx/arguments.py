@@ -5,9 +5,10 @@ from __future__ import annotations
 import itertools
 import operator
 import sys
+import threading
 import time
 import traceback
-from abc import ABC, abstractmethod
+from abc import ABC
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -91,6 +92,7 @@ class Host(Handle, ABC):
         self.hooks: Hooks = {}  # those of the display: loop, wake and lost
         self.actions: deque[Callable[[], object]] = deque()
         self.clipboard = ""  # where the platform has none
+        self.awake = threading.Event()  # a turn is to be taken; where the loop waits for nothing else
         self.calling = 0  # hooks that are being called now, one inside another
         self.ending = False
         self.failure: BaseException | None = None  # raised by a hook
@@ -104,9 +106,9 @@ class Host(Handle, ABC):
         self.actions.append(action)
         self.wake_up()
 
-    @abstractmethod
     def wake_up(self) -> None:
         """Make the loop take a turn soon, one for calls that come together. May be called from any thread."""
+        self.awake.set()
 
     def request_turn(self) -> None:
         """Note that a window has had an event, where the loop does not know that by itself."""

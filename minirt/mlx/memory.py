@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import math
 import sys
-import threading
 import time
 from functools import partial
 from typing import TYPE_CHECKING
@@ -86,7 +85,6 @@ class Memory(Display):
         self.patience = patience
         self.after_tick: Callable[[], object] = lambda: None  # called after each step of simulated time
         self.last: NDArray[np.uint8] | None = None  # the picture that was shown last, in any window
-        self._awake = threading.Event()
         self._now = 0.0
         self._selected = 0  # number of the window that steps act on
 
@@ -178,8 +176,8 @@ class Memory(Display):
                 raise MlxError(f"the script is over and the program did not end within {self.patience} s")
             elif self.busy:
                 self._advance(TICK)
-            elif self._awake.wait(max(0.0, deadline - time.monotonic())):
-                self._awake.clear()
+            elif self.awake.wait(max(0.0, deadline - time.monotonic())):
+                self.awake.clear()
                 self.turn(tick=False)
         self.actions.clear()  # steps after the end of the loop are dropped
 
@@ -221,9 +219,6 @@ class Memory(Display):
             raise MlxError(f"{file} cannot be written: {error}") from error
 
     # --- the rest of the contract of a back end ---
-
-    def wake_up(self) -> None:
-        self._awake.set()
 
     def time(self) -> float:
         return self._now

@@ -6,7 +6,6 @@ Keys have the names of browsers (https://www.w3.org/TR/uievents-key).
 from __future__ import annotations
 
 import io
-import threading
 from collections.abc import Callable, Mapping
 from math import inf
 from typing import Any, Final
@@ -68,7 +67,6 @@ class PageDisplay(Display):
     def __init__(self, send: Callable[[Message, bytes], object]) -> None:
         super().__init__()
         self.send = send
-        self._awake = threading.Event()
         self._next_tick = 0.0
         self._sent = self._shown = 0  # numbers of the last frame that was sent, and of the last that the page has shown
         self._due = inf  # when the frame in the page is replaced by a finer one
@@ -76,15 +74,12 @@ class PageDisplay(Display):
     def run(self) -> None:
         self.turn(tick=False)
         while not self.over:
-            self._awake.wait(self.patience())
-            self._awake.clear()
+            self.awake.wait(self.patience())
+            self.awake.clear()
             self.perform_actions()
             self.turn(tick=self._is_tick_due())
             for window in self.windows:
                 self.sharpen(window.shown.pixels)
-
-    def wake_up(self) -> None:
-        self._awake.set()
 
     def screen_size(self) -> tuple[int, int]:
         return SCREEN

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.rendering.image import Image
+from minirt.rendering.tone_mapping import decode_srgb
 
 Picture = NDArray[np.float64]
 
@@ -112,11 +113,9 @@ def fit(x: np.ndarray, y: np.ndarray) -> Fit:
     x, y = x[np.isfinite(x)], y[np.isfinite(x)]
     if len(np.unique(x)) < LEAST_POINTS:
         return Fit()
-    dx, dy = x - x.mean(), y - y.mean()
-    slope, free = float(dx @ dy / (dx @ dx)), len(x) - 2
-    deviation = float(np.sqrt(((dy - slope * dx) ** 2).sum() / free / (dx @ dx)))
-    reach = STUDENT[min(free, len(STUDENT)) - 1] * deviation
-    return Fit(slope, slope - reach, slope + reach, float(y.mean() - slope * x.mean()))
+    (slope, intercept), covariance = np.polyfit(x, y, 1, cov=True)
+    reach = STUDENT[min(len(x) - 2, len(STUDENT)) - 1] * sqrt(covariance[0, 0])
+    return Fit(float(slope), float(slope - reach), float(slope + reach), float(intercept))
 
 
 # Error images: the error of each pixel as a heat map.
@@ -164,17 +163,11 @@ def flip(a: Picture, b: Picture) -> Picture:
 
 def perceived(picture: Picture) -> Picture:
     """Filter a picture as the eye does: L*a*b* colours, and the strength of edges and of points, (h, w, 5)."""
-    xyz = linear(picture) @ TO_XYZ.T
+    xyz = decode_srgb(picture) @ TO_XYZ.T
     x = np.arange(-ceil(3 * FEATURE), ceil(3 * FEATURE) + 1) / FEATURE
     bell = np.exp(-x * x / 2)
     slopes = balanced(-x * bell), balanced((x * x - 1) * bell)
     return np.dstack([colours(xyz), *(gradient_strength(xyz[..., 1], bell, slope) for slope in slopes)])
-
-
-def linear(srgb: Picture) -> Picture:
-    """Decode sRGB to linear light."""
-    low: Picture = srgb / 12.92
-    return np.where(srgb <= 0.04045, low, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
 def colours(xyz: Picture) -> Picture:

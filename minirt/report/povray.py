@@ -114,20 +114,13 @@ HEADER = re.compile(rb"P6\s(?:#[^\n]*\n)*(\d+)\s+(\d+)\s+65535\s")
 
 
 ADAPTIVE = f"{PROGRAM} adaptive"
-
-
-def grid(side: int) -> tuple[Row, str]:
-    """Return the row and the options of a grid of side x side samples in each pixel."""
-    options = f"+AM1 +A0.0 +R{side} -J" if side > 1 else "-A"
-    return Row(PROGRAM, str(side * side), PROGRAM, side * side), options
-
-
-def adaptive(threshold: float) -> tuple[Row, str]:
-    """Return the row and the options of supersampling where colours differ by more than a threshold, 81 at most."""
-    return Row(ADAPTIVE, f"A{threshold:g}", PROGRAM), f"+AM2 +A{threshold:g} +R3 -J"
-
-
-SETTINGS = (*map(grid, (1, 2, 3, 4)), *map(adaptive, (0.3, 0.1, 0.03, 0.01)))
+GRID = "+AM1 +A0.0 -J +R{}"  # options for a grid of n x n samples in each pixel
+# Rows and options: grids, and supersampling where colours differ by more than a threshold, with 81 samples at most.
+SETTINGS = (
+    (Row(PROGRAM, "1", PROGRAM, 1), "-A"),
+    *((Row(PROGRAM, str(n * n), PROGRAM, n * n), GRID.format(n)) for n in (2, 3, 4)),
+    *((Row(ADAPTIVE, f"A{limit:g}", PROGRAM), f"+AM2 +A{limit:g} +R3 -J") for limit in (0.3, 0.1, 0.03, 0.01)),
+)
 ABOUT = {
     PROGRAM: "POV-Ray with a grid of samples in each pixel; its time is what it prints as Trace Time",
     ADAPTIVE: "POV-Ray with recursive supersampling (+AM2 +R3) from a difference of colours (+A) on",
@@ -151,7 +144,7 @@ class PovRay:
 
         RenderError, before the first row, if its picture is not that of the scene.
         """
-        _, picture = self.drawn(grid(CHECKED)[1])
+        _, picture = self.drawn(GRID.format(CHECKED))
         error = rmse(picture, right.picture)
         if error > SAME:
             raise RenderError(f"{PROGRAM} shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import minirt.mlx.arguments as arguments_module
 import minirt.mlx.memory as memory_module
 from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
 from minirt.mlx.display import TICK
@@ -86,7 +87,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Replace the machine's clock by a simulated one."""
     simulated = Clock()
     monkeypatch.setattr(memory_module, "time", SimpleNamespace(monotonic=simulated.monotonic))
-    monkeypatch.setattr(memory_module, "threading", SimpleNamespace(Event=simulated.event))
+    monkeypatch.setattr(arguments_module, "threading", SimpleNamespace(Event=simulated.event))
     return simulated
 
 

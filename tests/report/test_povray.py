@@ -11,7 +11,7 @@ from minirt.errors import RenderError
 from minirt.materials import Checker, Specular
 from minirt.report import povray
 from minirt.report.pictures import Budget, reference
-from minirt.report.povray import PovRay, adaptive, grid, translated
+from minirt.report.povray import SETTINGS, PovRay, translated
 from minirt.scene import Background, FurtherLight, ParallelLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, MORE, SHAPES
 
@@ -55,7 +55,7 @@ def test_where_it_is_not_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fewer settings."""
-    monkeypatch.setattr(povray, "SETTINGS", (grid(1), grid(3), adaptive(0.03)))
+    monkeypatch.setattr(povray, "SETTINGS", (SETTINGS[0], SETTINGS[2], SETTINGS[6]))
 
 
 @installed

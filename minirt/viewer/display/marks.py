@@ -70,24 +70,12 @@ def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) ->
 
 
 def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
-    """Draw a line, two pixels wide, between two points inside or outside the picture.
-
-    The line is clipped to the picture by the algorithm of Liang and Barsky (1984).
-    """
+    """Draw a line, two pixels wide, between two points of the picture."""
     height, width = pixels.shape[:2]
     (x, y), (dx, dy) = start, (end[0] - start[0], end[1] - start[1])
-    low, high = 0.0, 1.0  # the part of the line within the picture
-    for direction, distance in ((-dx, x), (dx, width - 1 - x), (-dy, y), (dy, height - 1 - y)):
-        if direction == 0 and distance < 0:
-            return
-        if direction < 0:
-            low = max(low, distance / direction)
-        elif direction > 0:
-            high = min(high, distance / direction)
-    if low > high:
-        return
-    at = np.linspace(low, high, int((high - low) * hypot(dx, dy)) + 2)
-    columns, rows = np.round(x + at * dx).astype(np.int64), np.round(y + at * dy).astype(np.int64)
+    at = np.linspace(0.0, 1.0, int(hypot(dx, dy)) + 2)
+    columns = np.round(x + at * dx).astype(np.int64).clip(0, width - 1)
+    rows = np.round(y + at * dy).astype(np.int64).clip(0, height - 1)
     pixels[rows, columns] = bgra(colour)
     steep = abs(dy) > abs(dx)
     pixels[np.minimum(rows + (not steep), height - 1), np.minimum(columns + steep, width - 1)] = bgra(colour)

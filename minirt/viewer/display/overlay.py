@@ -114,12 +114,6 @@ def status(shown: Outcome, rate: float = 0.0) -> str:
     return f"{job.width}x{job.height}{coarse}{time}    {samples}{error}{rays}"
 
 
-def draw_message(pixels: Pixels, text: str, bottom: int, size: int) -> None:
-    """Draw a message above the text of `bottom` pixels height at the bottom."""
-    if text:
-        draw_lines(pixels, -MARGIN - bottom, wrap(text, pixels.shape[1], size), MESSAGE_COLOUR, size)
-
-
 def wrap(text: str, width: int, size: int) -> str:
     """Wrap text so that it leaves a margin in a picture of that width; lines keep at least about ten letters."""
     letters, wrapped = len(text), text

@@ -169,7 +169,8 @@ class Screen:
             bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
         if self.panel and not self.help:
             overlay.draw_panel(self.frame, self.panel, size)
-        overlay.draw_message(self.frame, message, bottom, size)
+        if message:  # above the text at the bottom
+            overlay.draw_lines(self.frame, -MARGIN - bottom, wrap(message, width, size), MESSAGE_COLOUR, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from math import dist, hypot, inf
 from statistics import median
 from typing import Any, NamedTuple
@@ -19,8 +20,7 @@ Pixel = tuple[float, float]
 Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 
 MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in front of the eye are on no picture
-NEAR = 1e-3  # of the distance to the eye: depth at which a line is clipped
-FAR = 1e3  # times that distance: length to which a line is drawn
+FAR = 1e3  # times the distance to the eye: length to which a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
 Extent = tuple[Triple, float]  # centre and radius
 UP: Triple = (0.0, 1.0, 0.0)
@@ -80,19 +80,22 @@ class Projection(NamedTuple):
         return (slant * dot(offset, ray) - dot(offset, axis)) / across if across > PARALLEL else None
 
     def visible_segment(self, point: Triple, axis: Triple) -> tuple[Pixel, Pixel] | None:
-        """Project the line through `point` along the unit vector `axis`, clipped in front of the eye, to its two ends.
+        """Project what the picture shows of the line through `point` along the unit vector `axis` to its two ends.
 
-        None if all of the line is behind the eye.
+        None if that is nothing. The line is clipped at the planes through the eye and the borders of the picture, by
+        the algorithm of Liang and Barsky (1984).
         """
-        distance = hypot(*subtract(point, self.eye))
-        depth, slope, near = self.depth(point), dot(axis, self.forward), NEAR * distance
-        low, high = -FAR * distance, FAR * distance
-        if slope > 0:
-            low = max(low, (near - depth) / slope)
-        elif slope < 0:
-            high = min(high, (near - depth) / slope)
-        elif depth < near:
-            return None
+        offset = subtract(point, self.eye)
+        low, high = -FAR * hypot(*offset), FAR * hypot(*offset)
+        for side, sign in product((self.right, self.up), (1.0, -1.0)):
+            inward = linear_combination(1.0, self.forward, -sign / dot(side, side), side)
+            inside, slope = dot(offset, inward), dot(axis, inward)
+            if slope > 0:
+                low = max(low, -inside / slope)
+            elif slope < 0:
+                high = min(high, -inside / slope)
+            elif inside < 0:
+                return None
         start, end = (self.pixel(linear_combination(1.0, point, reach, axis)) for reach in (low, high))
         return (start, end) if low < high and start and end else None
 

@@ -124,14 +124,14 @@ def test_the_movement_axis_passes_through_the_element(presses: int, frame: Frame
 
 
 @pytest.mark.parametrize(
-    ("start", "end", "some"),
-    [((5, 5), (50, 30), True), ((-1e6, 20), (1e6, 20), True), ((20, -1e9), (20, 1e9), True), ((-9, -9), (-3, 9), False),
-     ((70, 5), (99, 5), False), ((-1e5, -1e5), (1e5, 1e5), True)],
+    ("point", "axis", "ends"),
+    [((0, 0, 0), (1, 0, 0), ((0, 90), (320, 90))), ((99, 5, 0), (1, 0, 0), ((0, 10), (320, 10))),
+     ((0, -99, 0), (0, 1, 0), ((160, 180), (160, 0))), ((5, 0, 99), (0, 0, 1), ((160, 90), (320, 90))),
+     ((0, 6, 0), (1, 0, 0), None), ((0, 0, 20), (0, 1, 0), None), ((0, 0, 0), (0, 0, 1), None)],
 )  # fmt: skip
-def test_lines_are_clipped_to_the_picture(start, end, some) -> None:
-    pixels = np.zeros((40, 60, 4), np.uint8)
-    draw_line(pixels, start, end, 0xFFFFFF)
-    assert pixels.any() == some
+def test_lines_are_clipped_to_the_picture(point, axis, ends) -> None:
+    found = VIEW.visible_segment(point, axis)
+    assert found == (None if ends is None else tuple(pytest.approx(each, abs=0.1) for each in ends))
 
 
 @pytest.mark.parametrize(

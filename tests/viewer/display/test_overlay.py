@@ -13,17 +13,19 @@ from minirt.viewer.bindings import BINDINGS, FINE_NOTE
 from minirt.viewer.display import screen
 from minirt.viewer.display.overlay import (
     MARGIN,
+    MESSAGE_COLOUR,
     PADDING,
     HudLevel,
     bracketed,
     draw_hud,
-    draw_message,
+    draw_lines,
     element_line,
     fit_width,
     last_lines,
     overlay_scale,
     status,
     text_size,
+    wrap,
 )
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.screen import draw_help, width_of
@@ -122,14 +124,11 @@ def test_the_line_level_draws_one_line():
 
 def test_a_message_is_wrapped_and_drawn_above_the_status():
     pixels = blank(300, 200)
-    draw_message(pixels, "a very long message " * 10, 27, 16)
+    draw_lines(pixels, -MARGIN - 27, wrap("a very long message " * 10, 300, 16), MESSAGE_COLOUR, 16)
     changed = (pixels != 255).any(axis=2)
     assert changed[:-30].any()
     assert not changed[-30:].any()
     assert not changed[:, -5:].any()
-    pixels = blank()
-    draw_message(pixels, "", 0, 16)
-    assert (pixels == 255).all()
 
 
 def test_groups_of_words_are_dropped_from_a_line_that_is_a_pixel_too_long():
