@@ -18,13 +18,8 @@ from minirt.errors import ElementError
 from minirt.fields import Field, FieldError
 from minirt.records import Immutable, record
 
-Answer = TypeVar("Answer")
-Kind = TypeVar("Kind", bound="Record")
-
-
-def cached_per_kind(ask: Callable[[type[Kind]], Answer]) -> Callable[[type[Kind]], Answer]:
-    """Decorate a function of a kind of element: its answer is computed once for each kind."""
-    return cast("Callable[[type[Kind]], Answer]", cache(ask))
+Ask = TypeVar("Ask", bound=Callable[..., Any])
+cached_per_kind = cast("Callable[[Ask], Ask]", cache)  # type checkers take no class for hashable
 
 
 @cached_per_kind
@@ -52,8 +47,7 @@ def fields_by_key(record: type[Record]) -> dict[str, Field]:
 
 @cached_per_kind
 def pattern(element: type[Element]) -> str:
-    """The format of an element's line, without attributes shared by all of a sort: `C x,y,z dx,dy,dz fov
-    [roll:degree]`."""
+    """The format of an element's line, `C x,y,z dx,dy,dz fov [roll:degree]`, without attributes that a sort shares."""
     own = (field for field in fields_of(element) if not field.sort)
     parts = [field.notation if field.required else f"[{field.notation}]" for field in own]
     return " ".join((element.code, *parts))

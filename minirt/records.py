@@ -93,8 +93,7 @@ def record(*, kw_only: bool = False) -> Callable[[Kind], Kind]:
 
 
 class Immutable:
-    """Base class of records: the methods of a frozen dataclass, for any fields. Defaults are values, no factories, and
-    are left out of a representation."""
+    """Base class of records: the methods of a frozen dataclass. Defaults are values, and not shown by `repr`."""
 
     __signature__ = FieldSignature()
 

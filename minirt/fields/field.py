@@ -98,8 +98,7 @@ class Field(Immutable):
         return None
 
     def mend(self, text: str) -> tuple[Any, str, bool] | None:
-        """The checked value that repairs give to the wrong `text`, what they do, and whether they are certain; None
-        where they do not help."""
+        """The checked value that repairs give to a wrong `text`, what they do, whether they are certain; or None."""
         deeds, certain = [], True
         while repaired := self.repair(text):
             text = repaired.text
@@ -181,8 +180,7 @@ def file_name(text: str, also: str = "", sort: str = "picture") -> str:
 
 @record(kw_only=True)
 class Picture(Field):
-    """A picture file, its name kept as written; `heights`: read as a height map, `also`: characters it must not
-    have."""
+    """A picture file, its name kept as written; `heights`: a height map, `also`: characters that it must not have."""
 
     placeholder: str = "file"
     heights: bool = False

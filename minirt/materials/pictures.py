@@ -56,8 +56,7 @@ def cached(read: Read) -> Callable[[str | os.PathLike[str]], np.ndarray]:
 
 @cached
 def picture(path: Path) -> np.ndarray:
-    """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; read-only. FileError if
-    unreadable."""
+    """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; read-only. FileError."""
     pixels = decode(path)
     if pixels.dtype != np.uint8:
         pixels = np.rint(pixels / 257).astype(np.uint8)

@@ -127,8 +127,7 @@ def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
 
 
 def read_whole_pixels(data: bytes, at: int, pixels: np.ndarray) -> int:
-    """Read a scanline of whole pixels; one of 1, 1, 1, n repeats the last one n times, the next 256 n times, and so
-    on."""
+    """Read a scanline of whole pixels; 1, 1, 1, n repeats the last one n times, the next one 256 n times, and so on."""
     size = pixels.nbytes
     line, end = bytearray(data[at : at + size]), at + size
     if len(line) < size or REPEAT in line:  # which few files have

@@ -43,8 +43,7 @@ class Block(NamedTuple):
 
 
 def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) -> Block:
-    """Parse lines, of which the `first` has that number in the file, after so many points, uvs and normals; ObjError
-    names the first wrong line."""
+    """Parse lines from number `first` on, after so many points, uvs and normals; ObjError for the first wrong line."""
     lines = plain_lines(lines)
     rows = [line.split() for line in lines]
     places: dict[bytes, list[int]] = {key: [] for key in (*NUMBERS, b"f", *SKIPPED)}  # indices, by the first word

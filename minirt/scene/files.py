@@ -99,8 +99,7 @@ def check_name(path: str | os.PathLike[str]) -> None:
 
 
 def read(path: str | os.PathLike[str]) -> bytes:
-    """Return the bytes of a scene file, or of the scene that a PNG picture carries; SceneError when it cannot be
-    read."""
+    """Return the bytes of a scene file, or of the scene in a PNG picture; SceneError when it cannot be read."""
     if not is_picture(path):
         check_name(path)
     try:

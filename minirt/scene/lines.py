@@ -68,11 +68,7 @@ def line_from(number: int, source: str) -> Line:
 
 
 def first_unprintable(line: Line) -> int:
-    """Return the index of the first carriage return, or of the first character before the comment that cannot be seen;
-    -1 where there is none.
-
-    Tabs are seen. No loop in Python looks at each character.
-    """
+    """Return the index of the first carriage return, or of a character before the comment that is not seen, or -1."""
     body = line.text[: line.end].replace("\t", " ")
     if "\r" not in line.text and body.isprintable():
         return -1
@@ -80,8 +76,7 @@ def first_unprintable(line: Line) -> int:
 
 
 def words_of(body: str) -> list[Word]:
-    """Return the words of a line without its comment, `MAX_WORDS` at most. Those that meet at a comma are one, but for
-    the identifier, the first word."""
+    """Return at most `MAX_WORDS` words of a line without its comment; behind the first, commas join them."""
     first = WORD.match(body)
     following = JOINED.finditer(body, first.end()) if first else ()
     found = islice(chain([first] if first else [], following), MAX_WORDS)

@@ -143,8 +143,7 @@ class Scene(Immutable):
         return f"<Scene of {len(self.shapes)} shapes and {len(self.lights)} lights{where}>"
 
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
-        """Return the scene with `old` replaced by `new`, or by `old` with some fields changed; ValueError when `old` is
-        not in the scene."""
+        """Return the scene with `old` replaced by `new`, or with some of its fields changed; ValueError without it."""
         return self._edited(self.index(old), object, old.replace(**changes) if new is None else new)
 
     def add(self, *elements: Element) -> Scene:
