@@ -9,10 +9,11 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 
 from minirt.cli.arguments import FAILED, INTERRUPTED, MAX_SIDE, OK, Arguments, argument_parser
-from minirt.cli.output import hide_warnings, prepare_streams, say, tell
+from minirt.cli.output import prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
 NO_MEMORY = "not enough memory; a smaller picture, smaller files or fewer shapes need less"
@@ -23,7 +24,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the program and return its exit status."""
     prepare_streams()
     if argv is None:  # a program of its own
-        hide_warnings()
+        if not sys.warnoptions:  # nobody has asked Python for the warnings of libraries, which are for developers
+            warnings.simplefilter("ignore")
         # Threads of numpy would spin for 20 to 40 ms of the start, and the program multiplies only small matrices.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:

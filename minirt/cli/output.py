@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import sys
-import warnings
 from contextlib import suppress
 from io import TextIOWrapper
 from typing import TextIO
@@ -31,12 +30,6 @@ def prepare_streams() -> None:
             setattr(sys, name, open(unwritable, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
     if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
         sys.stdout.reconfigure(errors="backslashreplace")  # as standard error does
-
-
-def hide_warnings() -> None:
-    """Hide the warnings of libraries, which are for their developers, unless Python was asked for them."""
-    if not sys.warnoptions:
-        warnings.simplefilter("ignore")
 
 
 def say(text: object, end: str = "\n") -> None:

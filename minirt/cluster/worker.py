@@ -45,9 +45,9 @@ def packed(scene: Scene, with_files: bool) -> bytes:
         files[digest] = data
         return digest
 
-    place = (scene.file or Path("scene.rt")).absolute()
+    place = None if with_files else (scene.file or Path("scene.rt")).absolute()
     elements = tuple(renamed(each, keep) if with_files else each for each in scene.elements)
-    return pickle.dumps((elements, files if with_files else place), protocol=5)
+    return pickle.dumps((elements, files, place), protocol=5)
 
 
 def renamed(record: Kind, name: Callable[[str], str]) -> Kind:
@@ -69,14 +69,11 @@ def renamed(record: Kind, name: Callable[[str], str]) -> Kind:
 @lru_cache(SCENES)
 def unpacked(data: bytes) -> Scene:
     """Return a scene; its textures are written into this worker's folder."""
-    elements, place = pickle.loads(data)
-    if isinstance(place, Path):
-        return Scene(elements, place)
-    textures = Path(folder().name)
-    for digest, content in place.items():
-        if not (textures / digest).exists():
-            file_io.write(textures / digest, content)
-    return Scene(elements, textures / "scene.rt")
+    elements, files, place = pickle.loads(data)
+    for digest, content in files.items():
+        if not (texture := Path(folder().name, digest)).exists():
+            file_io.write(texture, content)
+    return Scene(elements, place or Path(folder().name, "scene.rt"))
 
 
 @cache

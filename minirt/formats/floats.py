@@ -106,16 +106,11 @@ def runs(line: np.ndarray) -> bytes:
     return RUN.sub(with_count, line.tobytes())
 
 
-# Portable float maps (`.pfm`): float32, the lower line first (Debevec).
-
-
-LITTLE_ENDIAN = "-1.0"  # the sign tells the order of bytes
-
-
 def encode_pfm(light: np.ndarray) -> bytes:
-    """Return the file of light, (h, w, 3)."""
+    """Return the portable float map (`.pfm`) of light, (h, w, 3): float32, the lower line first (Debevec)."""
     height, width = light.shape[:2]
-    return f"PF\n{width} {height}\n{LITTLE_ENDIAN}\n".encode() + light[::-1].astype("<f4").tobytes()
+    little_endian = "-1.0"  # the sign tells the order of bytes
+    return f"PF\n{width} {height}\n{little_endian}\n".encode() + light[::-1].astype("<f4").tobytes()
 
 
 ENCODERS = {"EXR": encode_exr, "HDR": encode_hdr, "PFM": encode_pfm}
