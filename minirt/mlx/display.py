@@ -34,7 +34,7 @@ class Display(Host):
         self.is_open = False
         self.running = False  # inside mlx_loop
         self._closing: list[Window] = []  # destroyed by the program, still on the screen
-        self._woken = threading.Event()
+        self.woken = threading.Event()  # `wake` was called since the last turn
 
     # --- what a back end does ---
 
@@ -89,7 +89,7 @@ class Display(Host):
 
     def wake(self) -> None:
         """Make a sleeping loop take a turn, which calls the wake hook. May be called from any thread."""
-        self._woken.set()
+        self.woken.set()
         if self.is_open:
             self.wake_up()
 
@@ -105,11 +105,6 @@ class Display(Host):
         """Whether the loop has to tick; otherwise it sleeps until an event or a call of `wake_up`."""
         return "loop" in self.hooks or (self.autorepeat and any(each.keyboard.repeating for each in self.windows))
 
-    @property
-    def woken(self) -> bool:
-        """Whether `wake` was called since the last turn."""
-        return self._woken.is_set()
-
     def perform_actions(self) -> None:
         """Perform the actions of `do`."""
         while self.actions:
@@ -119,8 +114,8 @@ class Display(Host):
         """Take one turn of the loop after its events, and draw changed windows. `tick`: call the loop hook, too."""
         for window in list(self.windows):
             self._deliver_pending(window)
-        if self._woken.is_set():
-            self._woken.clear()
+        if self.woken.is_set():
+            self.woken.clear()
             self.call(self.hooks, "wake")
         if tick and self.windows:
             self.call(self.hooks, "loop")

@@ -195,7 +195,7 @@ class Memory(Display):
     def _settle(self) -> None:
         """Take turns until no hook calls `mlx_wake`."""
         self.turn(tick=False)
-        while self.woken and not self.over:
+        while self.woken.is_set() and not self.over:
             self.turn(tick=False)
 
     def _advance(self, seconds: float) -> None:

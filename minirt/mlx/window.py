@@ -115,21 +115,15 @@ class Window(Handle, ABC):
 
     def __post_init__(self) -> None:
         """Open the window, and set the size that a resizable one really got. Raises MlxError."""
-        self._canvas = self._new_canvas()
+        self.shown = self._new_canvas()  # as last drawn on: after a resize of the old size, and stretched on the screen
         self.keyboard = Keyboard(self.deliver, self.display.options)
-
-    @property
-    def shown(self) -> Canvas:
-        """The canvas as it was last drawn on; after a resize it keeps its old size and is shown stretched."""
-        return self._canvas
 
     @property
     def canvas(self) -> Canvas:
         """The canvas to draw on: of the window's size, black where it is new."""
-        canvas = self._canvas
-        if canvas.width != self.width or canvas.height != self.height:
-            canvas = self._canvas = self._new_canvas()
-        return canvas
+        if (self.shown.width, self.shown.height) != (self.width, self.height):
+            self.shown = self._new_canvas()
+        return self.shown
 
     def _new_canvas(self) -> Canvas:
         return Canvas(self.width, self.height, alpha=self.display.options.alpha)

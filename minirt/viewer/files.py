@@ -147,15 +147,8 @@ def signature(path: Path) -> Signature:
 def asset_names(scene: Scene, suffixes: Set[str]) -> list[str]:
     """Return the files with these suffixes, relative to the scene's folder, those in the folder itself first."""
     top = scene.beside("")
-
-    def children(folder: Path) -> list[Path]:
-        with suppress(OSError):  # it cannot be read
-            return sorted(folder.iterdir())
-        return []
-
-    inside = [each for each in children(top) if each.is_dir() and not each.name.startswith(".")]
-    files = [each for folder in (top, *inside) for each in children(folder) if each.suffix.lower() in suffixes]
-    return [each.relative_to(top).as_posix() for each in files]
+    files = [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # which passes over what cannot be read
+    return [each.relative_to(top).as_posix() for each in files if each.suffix.lower() in suffixes]
 
 
 def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.0) -> Iterator[str | MeshFile]:

@@ -24,7 +24,6 @@ from minirt.scene import Scene, dump, files
 from minirt.viewer.files import contents_differ
 
 INTERVAL = 0.8  # seconds between two writes, which leaves a fifth of a second for the write itself
-LATEST = 1e11  # seconds since 1970: no calendar has the later times that some file systems hold
 KEPT = 30 * 24 * 3600  # seconds that changes are kept which are older than their scene
 
 
@@ -126,7 +125,7 @@ class FoundChanges(NamedTuple):
     @property
     def title(self) -> str:
         """Their name in messages: time of day, with the date unless it is today."""
-        when = datetime.fromtimestamp(min(max(self.time, 0.0), LATEST))  # in the user's own time
+        when = datetime.fromtimestamp(self.time)  # in the user's own time
         date = "" if when.date() == datetime.now().date() else f"{when:%Y-%m-%d} "
         return f"unsaved changes of {date}{when:%H:%M}{f' ({self.path.name})' if self.beside else ''}"
 

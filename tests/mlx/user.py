@@ -139,7 +139,7 @@ class MemoryUser(Typist):
 
         def wake() -> None:
             threading.Thread(target=self._harness.m.mlx_wake, args=(self._memory,)).start()
-            until(lambda: self._memory.woken, "mlx_wake")
+            until(self._memory.woken.is_set, "mlx_wake")
 
         self.do(wake)
 

@@ -258,7 +258,5 @@ def test_the_title_has_the_time_of_day_and_of_another_day_the_date(path, monkeyp
     found = FoundChanges(path, 86400 + 14 * 3600 + 3 * 60, "", is_beside)
     assert found.title == f"unsaved changes of 1970-01-02 14:03{' (scene [1].rt)' if is_beside else ''}"
     assert "-" not in found._replace(time=time.time()).title
-    for seconds in (1e12, 1e18, -1e18):  # of a year that no calendar has
-        assert found._replace(time=seconds).title.startswith("unsaved changes of ")
     monkeypatch.undo()
     time.tzset()

@@ -21,7 +21,6 @@ from minirt.viewer.app.commands import offer_found
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import BackgroundPainter
-from minirt.viewer.display.screen import use_one_heap
 from minirt.viewer.files import contents_differ, save_recovery
 from minirt.viewer.recovery import Recovery
 
@@ -63,7 +62,6 @@ def run(
 
     If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
-    use_one_heap()
     session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), **options)
     session.screen.text_scale = text_scale
     session.recovery = Recovery()

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from functools import lru_cache
 from itertools import zip_longest
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +23,6 @@ from minirt.viewer.editing.state import State
 
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
-M_ARENA_MAX = -8  # the parameter of `mallopt` for the number of heaps
 
 
 Column = tuple[str, str]  # lines of keys, titles among them, and of their help
@@ -183,22 +181,12 @@ class Screen:
         return picture.pixels.copy() if same_size else stretch(picture.pixels, width, height)
 
 
-def use_one_heap() -> None:
-    """Let all threads allocate from one heap, all of which can be given back. Call it before threads start."""
-    call_glibc("mallopt", M_ARENA_MAX, 1)
-
-
 def give_back_memory() -> None:
     """Give the unused pages of the heap back to the system, which takes some milliseconds.
 
     The frames of a large window return to glibc's heap, between smaller blocks that stay. Without this a window that
     was full screen (2560x1600) once, and is small again, keeps 70 to 110 MB that nothing uses.
     """
-    call_glibc("malloc_trim", ctypes.c_size_t(0))
-
-
-def call_glibc(function: str, *arguments: Any) -> None:
-    """Call a function that only glibc has."""
-    with suppress(OSError, AttributeError):
+    with suppress(OSError, AttributeError):  # no other library of C has it
         if sys.platform == "linux":
-            getattr(ctypes.CDLL(None), function)(*arguments)
+            ctypes.CDLL(None).malloc_trim(ctypes.c_size_t(0))

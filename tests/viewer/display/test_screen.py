@@ -32,7 +32,6 @@ def work():
     kept.extend(blocks[::10])
 
 kept = []
-screen.use_one_heap()
 thread = Thread(target=work)
 thread.start()
 thread.join()
