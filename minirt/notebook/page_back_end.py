@@ -145,7 +145,10 @@ def deliver(window: Window, message: Message, now: float) -> None:
     """Report an event of the page to the window; events of an unknown kind are ignored."""
     match message.get("kind"):
         case "key down":
-            press(window, message, now)
+            if code := code_of(message):
+                window.keyboard.press(code, now, modifiers_of(message))
+            if text := text_of(message):
+                window.on_text(text)
         case "key up":
             if code := code_of(message):
                 window.keyboard.release(code, modifiers_of(message))
@@ -164,14 +167,6 @@ def deliver(window: Window, message: Message, now: float) -> None:
             window.deliver(Event.ENTER_NOTIFY if message["kind"] == "enter" else Event.LEAVE_NOTIFY)
         case "focus" | "blur":
             window.on_focus(message["kind"] == "focus")
-
-
-def press(window: Window, message: Message, now: float) -> None:
-    """Report a key that went down, and the text that it types."""
-    if code := code_of(message):
-        window.keyboard.press(code, now, modifiers_of(message))
-    if text := text_of(message):
-        window.on_text(text)
 
 
 def point(window: Window, message: Message) -> tuple[int, int]:

@@ -132,19 +132,15 @@ class FoundChanges(NamedTuple):
 
 def find_changes(file: Path) -> FoundChanges | None:
     """Return the last unsaved changes of a scene file that are newer than the file and differ from it."""
+    found = []
     with suppress(OSError, FileError, UnicodeDecodeError):
         text, saved = file_io.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
-        newest = sorted(candidates(file, saved), key=lambda each: each.time, reverse=True)
-        return next((each for each in newest if each.time >= saved and each.text != text), None)
-    return None
-
-
-def candidates(file: Path, saved: float) -> Iterator[FoundChanges]:
-    """Yield all unsaved changes that can be read, of a scene file that was saved at a time."""
-    beside = sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt"))
-    for path in [*abandoned(file, saved), *beside]:
-        with suppress(OSError, SceneError, UnicodeDecodeError):
-            yield FoundChanges(path, path.stat().st_mtime, files.read(path).decode(), path in beside)
+        beside = sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt"))
+        for path in [*abandoned(file, saved), *beside]:
+            with suppress(OSError, SceneError, UnicodeDecodeError):
+                found.append(FoundChanges(path, path.stat().st_mtime, files.read(path).decode(), path in beside))
+        found = [each for each in found if each.time >= saved and each.text != text]
+    return max(found, key=lambda each: each.time, default=None)
 
 
 def state_folder() -> Path:

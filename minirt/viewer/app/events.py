@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from minirt.mlx import Event
@@ -41,8 +42,8 @@ class EventDispatcher:
             Event.BUTTON_PRESS: self.on_button,
             Event.BUTTON_RELEASE: lambda button, _x, _y: self.mouse.on_release(button),
             Event.MOTION_NOTIFY: self.mouse.on_motion,
-            Event.ENTER_NOTIFY: lambda: self.mouse.on_crossing(True),
-            Event.LEAVE_NOTIFY: lambda: self.mouse.on_crossing(False),
+            Event.ENTER_NOTIFY: partial(setattr, self.mouse, "inside", True),
+            Event.LEAVE_NOTIFY: partial(setattr, self.mouse, "inside", False),
             Event.FOCUS_OUT: session.release_button,
             Event.DESTROY_NOTIFY: session.quit,
         }

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError
 from minirt.mlx import Button, Cursor
-from minirt.viewer.app.session import PressedButton, Session
+from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.display.marks import SIZE, visible_icons
 from minirt.viewer.display.overlay import HudLevel
@@ -51,31 +51,25 @@ class Mouse:
             session.show(session.state)
             return
         state = session.state
-        session.pressed = PressedButton(
-            button, drag, DragStart(session.view, x, y, state.element, state.scene.camera, point)
-        )
-
-    def on_crossing(self, inside: bool) -> None:
-        """The pointer enters the window or leaves it."""
-        self.inside = inside
+        session.pressed = DragStart(session.view, x, y, state.element, state.scene.camera, point, button, drag.action)
 
     def on_motion(self, x: int, y: int) -> None:
         """The pointer moves: drag, if a button is down and the pointer has left the slack of a click."""
         session = self.session
         session.pointer = x, y
         pressed = session.pressed
-        if pressed and (pressed.dragging or max(abs(x - pressed.grip.x), abs(y - pressed.grip.y)) > CLICK_SLACK):
+        if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
                 session.mlx.mlx_set_cursor(session.window, self.cursor(pressed))
                 session.state = session.state.end_merging()
             session.say("")
-            session.show(DRAGS[pressed.drag.action](session.state, pressed.grip, x, y))
+            session.show(DRAGS[pressed.action](session.state, pressed, x, y))
 
-    def cursor(self, pressed: PressedButton) -> Cursor:
+    def cursor(self, pressed: DragStart) -> Cursor:
         """Return the shape of the pointer during a drag; a drag on nothing turns the camera."""
-        looks_around = pressed.drag.action == "move by hand" and pressed.grip.moves_camera
-        return Cursor.TURN if looks_around else CURSORS.get(pressed.drag.action, Cursor.TURN)
+        looks_around = pressed.action == "move by hand" and pressed.moves_camera
+        return Cursor.TURN if looks_around else CURSORS.get(pressed.action, Cursor.TURN)
 
     def on_release(self, button: int) -> None:
         """A button goes up: a drag ends, or a click is complete."""

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError, RenderError
 from minirt.mlx import Cursor, Mlx, Modifier
 from minirt.rendering.image import Image
 from minirt.scene import Scene
 from minirt.shapes import Shape
-from minirt.viewer.bindings import Binding, Keymap
+from minirt.viewer.bindings import Keymap
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
@@ -33,15 +33,6 @@ if TYPE_CHECKING:
 
 FINE_STEP = 0.1  # of a step, while Shift is held
 WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
-
-
-class PressedButton(NamedTuple):
-    """A mouse button that is down on the picture."""
-
-    button: int
-    drag: Binding  # its row in the table
-    grip: DragStart
-    dragging: bool = False  # whether the pointer has moved far enough since
 
 
 class Session:
@@ -80,7 +71,7 @@ class Session:
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
         self.keymap = Keymap(keys)
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
-        self.pressed: PressedButton | None = None
+        self.pressed: DragStart | None = None
         self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
         self.failures: list[MiniRTError] = []  # of commands
         self.screenshot_pending = False

@@ -27,7 +27,7 @@ TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
 
 
 class DragStart(NamedTuple):
-    """The scene at the press of the button, as far as a drag needs it."""
+    """A mouse button that is down on the picture, and the scene at its press, as far as a drag needs it."""
 
     projection: Projection
     x: int  # of the pointer, in pixels
@@ -35,6 +35,9 @@ class DragStart(NamedTuple):
     element: Element  # the selected one, as it was
     camera: Camera  # as it was
     point: Triple | None  # on the surface under the pointer; None if there is none
+    button: int = 0
+    action: str = ""  # of DRAGS
+    dragging: bool = False  # whether the pointer has moved far enough since
 
     @property
     def moves_camera(self) -> bool:

@@ -102,14 +102,9 @@ def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kin
     return state.edit_element(element, kind, now)
 
 
-def rotate_direction(direction: Triple, axis: Triple, angle: float) -> Triple:
-    """Rotate a unit vector about the unit vector `axis` by degrees, and normalise it."""
-    return unit(rodrigues(direction, axis, angle))
-
-
 def neat_rotation(direction: Triple, axis: Triple, angle: float) -> Triple:
     """Rotate a unit vector about another, and round it; a direction along the axis keeps all its digits."""
-    rotated = rotate_direction(direction, axis, angle)
+    rotated = unit(rodrigues(direction, axis, angle))
     return direction if dist(rotated, direction) < NOISE else neat_direction(rotated, keep_heading=False)
 
 

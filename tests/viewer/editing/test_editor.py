@@ -6,13 +6,13 @@ from math import cos, hypot, radians, sin
 
 import pytest
 
-from minirt.fields import FARTHEST, LEAST_LENGTH
+from minirt.fields import FARTHEST, LEAST_LENGTH, unit
 from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
-from minirt.viewer.editing.motion import rotate_direction, turn_camera
+from minirt.viewer.editing.motion import rodrigues, turn_camera
 from minirt.viewer.editing.state import STEP_SHARE, State, initial_state
 from tests.viewer.fake import scene
 
@@ -132,10 +132,10 @@ def test_many_turns_keep_unit_length():
     start, about, camera = selecting(Cylinder).element.axis, (0.6, 0.0, 0.8), scene().camera
     axis = start
     for _ in range(MANY):
-        axis, camera = rotate_direction(axis, about, 0.1), turn_camera(camera, 0.1, 0.0)
+        axis, camera = unit(rodrigues(axis, about, 0.1)), turn_camera(camera, 0.1, 0.0)
         assert max(abs(hypot(*each) - 1) for each in (axis, camera.direction)) <= 4 * U
     # 10,000 degrees are 27 whole turns and 280 degrees.
-    assert axis == pytest.approx(rotate_direction(start, about, 280), abs=1e-9)
+    assert axis == pytest.approx(rodrigues(start, about, 280), abs=1e-9)
     assert camera.direction == pytest.approx((sin(radians(280)), 0, -cos(radians(280))), abs=1e-9)
 
 

@@ -25,7 +25,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.motion import rotate, rotate_direction
+from minirt.viewer.editing.motion import rodrigues, rotate
 from minirt.viewer.editing.projection import scene_size
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.values import round_changes, values
@@ -203,7 +203,7 @@ def test_a_triangle_turns_right_handed_about_its_centre() -> None:
 
 def test_a_third_of_a_turn_about_the_diagonal_exchanges_the_axes() -> None:
     diagonal, axes = (3**-0.5,) * 3, [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
-    turned = [rotate_direction(each, diagonal, 120) for each in axes]
+    turned = [rodrigues(each, diagonal, 120) for each in axes]
     assert turned == [pytest.approx(each, abs=1e-15) for each in (axes[1], axes[2], axes[0])]
 
 
