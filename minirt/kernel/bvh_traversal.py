@@ -41,7 +41,7 @@ from minirt.kernel.bvh_nodes import (
 )
 from minirt.kernel.pixels import fetch_add
 from minirt.kernel.scene_arrays import has_rows, intersect, kind_of, occludes, read, surface
-from minirt.kernel.trace import closer_hit, for_each_kind
+from minirt.kernel.trace import closer_hit, for_each_kind, of_shape
 from minirt.lanes import (
     Mask,
     Number,
@@ -253,8 +253,7 @@ def trace_rays(
                 index = int(memory[HIT + WIDTH + ray])
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
-                    group, row = tree.slots[index, 0], tree.slots[index, 1]
-                    on, normal = for_each_kind(surface_of_kind, tree.groups, (point, point), (group, row, point))
+                    on, normal = of_shape(surface, tree.groups, tree.slots[index], (point,), (point, point))
                     distances[first + ray], owners[first + ray] = memory[HIT + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)
@@ -269,12 +268,3 @@ def rescale(v: Vec) -> Vec:
     """Scale a vector so that its largest coordinate is 1: its length then neither overflows nor underflows."""
     size = max_norm(v)
     return Vec(v.x / size, v.y / size, v.z / size)
-
-
-def surface_of_kind(group: Group, state: tuple[Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec]:
-    """Compute point and normal of the shape in a row of group `number` if it is of this kind."""
-    on, normal = state
-    number, row, point = arguments
-    if number == group.number:
-        on, normal = surface(read(group.rows, row), point)
-    return on, normal

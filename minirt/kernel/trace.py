@@ -45,6 +45,21 @@ def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: An
     return state
 
 
+def of_shape(
+    formula: Callable[..., Any], groups: tuple[Group, ...], slot: Any, arguments: tuple[Any, ...], like: Any
+) -> Any:
+    """Return `formula(shape, *arguments)` for the shape in a slot, (group, row); `like` is a value of the same type."""
+    return for_each_kind(of_shape_in_group, groups, like, (formula, slot[0], slot[1], arguments))
+
+
+def of_shape_in_group(group: Any, state: Any, arguments: tuple[Callable[..., Any], int, int, tuple[Any, ...]]) -> Any:
+    """Continue `of_shape`: compute the formula if the shape is in this group."""
+    formula, number, row, others = arguments
+    if number == group.number:
+        return formula(read(group.rows, row), *others)
+    return state
+
+
 def is_empty(scene: SceneArrays, tile: int) -> bool:
     """Whether no shape can be seen in a tile of the picture."""
     return bool(for_each_kind(count_kind, scene.groups, 0, tile) == 0)

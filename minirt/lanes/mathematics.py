@@ -95,14 +95,8 @@ START = 23.0  # moves the place about which cubes are symmetric away from the or
 GREATEST = 1.0363538  # bound of the noise: the largest blend of the corners' steepest functions, by tests/lanes
 
 
-def noise(p: Vec) -> Number:
-    """Return the noise at p, from -`GREATEST` to `GREATEST`, 0 on average."""
-    value, _ = noise_and_gradient(p)
-    return value
-
-
 def noise_and_gradient(p: Vec) -> tuple[Number, Vec]:
-    """Return the noise at p and its gradient."""
+    """Return the noise at p, from -`GREATEST` to `GREATEST` and 0 on average, and its gradient."""
     x, y, z = floor(p.x), floor(p.y), floor(p.z)
     x0, y0, z0 = remainder(x + START), remainder(y + START), remainder(z + START)
     x1, y1 = remainder(x + (START + 1.0)), remainder(y + (START + 1.0))

@@ -18,9 +18,6 @@ def direct_light(
     scene: SceneArrays,
     memory: Any,
     surface: Surface,
-    normal: Vec,
-    shading_normal: Vec,
-    base_normal: Vec,
     direction: Vec,
     owner: Number,
     extent: Number,
@@ -30,9 +27,10 @@ def direct_light(
     """Compute the light that falls onto surfaces, and the highlights that they reflect against the ray's direction.
 
     The light is ambient light and, by Lambert's cosine law, that of every light source that is not occluded. It reaches
-    the side of `normal`, which is in a `medium`; cosines are those of `shading_normal`, which bumps make of
-    `base_normal`. Rays that do not hit get no light. `owner` has the index of the shape at each hit.
+    the side from which the ray comes, which is in a `medium`; cosines are those of the shading normal. Rays that do not
+    hit get no light. `owner` has the index of the shape at each hit.
     """
+    normal, shading_normal = surface.normal, surface.shading_normal
     u = unit_roundoff(extent)
     rounding = clearance(surface.point, extent)
     start = surface.point + rounding * normal
@@ -44,7 +42,7 @@ def direct_light(
         rays, strength = aim(scene, memory, i, start)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):
-            strength = strength * bump_fading(base_normal, shading_normal, to_light)
+            strength = strength * bump_fading(surface.base_normal, shading_normal, to_light)
         cosine = dot(shading_normal, to_light) * strength
         lit = hit & (cosine > 0.0)
         if any(lit):

@@ -14,12 +14,12 @@ refraction, the index of refraction, and how far Fresnel's equations count.
 from __future__ import annotations
 
 from minirt.kernel import bvh_traversal
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, smooth_point
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, smooth_point
 from minirt.kernel.shading.surfaces import (
+    FILTER,
     absorbed,
     brightest,
     clearance,
-    filter_of,
     medium_behind,
     row_of,
     shares_at_angle,
@@ -27,7 +27,7 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shadow_rays import ShadowRays
-from minirt.kernel.trace import for_each_kind
+from minirt.kernel.trace import of_shape
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
 ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
@@ -47,19 +47,10 @@ def smooth_points(scene: SceneArrays, owner: Number, point: Vec, normal: Vec, ra
         index = int(lane(owner, first(remaining)))
         owned = remaining & (owner == index)
         if scene.smooth[index] != 0:
-            slot = scene.slots[index]
-            moved = for_each_kind(smooth_point_of_kind, scene.groups, point, (slot[0], slot[1], point, normal))
+            moved = of_shape(smooth_point, scene.groups, scene.slots[index], (point, normal), point)
             result = where(owned, moved, result)
         remaining = remaining & ~owned
     return result
-
-
-def smooth_point_of_kind(group: Group, state: Vec, arguments: tuple[int, int, Vec, Vec]) -> Vec:
-    """Move points onto the smooth surface of the shape in row i of group `number` if it is of this kind."""
-    number, i, point, normal = arguments
-    if number == group.number:
-        return smooth_point(read(group.rows, i), point, normal)
-    return state
 
 
 def bump_fading(base: Vec, bumped: Vec, to_light: Vec) -> Number:
@@ -144,10 +135,10 @@ def behind_surface(
     on, normal, shading_normal = surface_of(scene, index, point)
     cosine = fabs(dot(shading_normal, direction))
     reflective, fresnel = row_of(scene.transparent, index, extent), splat(scene.transparent[index, 3], extent)
-    light = shares_at_angle(reflective, fresnel, cosine, cosine).y * light
+    light = shares_at_angle(reflective, fresnel, cosine, cosine < 0.0).y * light
     leaves = dot(normal, direction) > 0.0
     start = on + where(leaves, clearance(on, extent), -clearance(on, extent)) * normal
     if has_rows(scene.media):
-        light = tint(light, filter_of(scene.media, index, extent))
+        light = tint(light, row_of(scene.media, index, extent, FILTER))
         medium = medium_behind(medium, row_of(scene.media, index, extent), leaves)
     return start, light, medium

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, shading, surface, vector
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, shading, surface, vector
 from minirt.kernel.shading.patterns import apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
-from minirt.kernel.trace import ROUNDING, for_each_kind
+from minirt.kernel.trace import ROUNDING, of_shape
 from minirt.lanes import (
     Mask,
     Number,
     Vec,
     any,
+    dot,
     first,
     lane,
     max_norm,
@@ -32,6 +33,7 @@ from minirt.lanes.mathematics import LOWEST, exp2
 
 MIN_WEIGHT = 2.0**-10  # rays that would add less than this share of their light to a pixel are not traced
 VANISHING = 2.0**-40  # what is left of an absorption after a subtraction, relative to it, that rounding may have left
+FILTER = 3  # column of `SceneArrays.media` from which the shares are that a surface lets through
 TINY = 2.0**-500  # keeps the quotients finite where a ray grazes a surface between two equal indices
 
 
@@ -48,16 +50,16 @@ def reflectance(cosine: Number, ratio: Number) -> Number:
     return where(squared < 0.0, 1.0, 0.5 * (across * across + along * along))
 
 
-def shares_at_angle(reflective: Vec, fresnel: Number, cosine: Number, against: Number) -> Vec:
+def shares_at_angle(reflective: Vec, fresnel: Number, cosine: Number, leaves: Mask) -> Vec:
     """Return a row of `SceneArrays.reflective` with the shares of reflection and refraction for the angle of a ray.
 
     Glass divides both shares together by Fresnel's equations; the share of a mirror that is no glass grows as that of a
-    varnish. `fresnel`, from 0 to 1, mixes these shares with the constant ones. A ray that leaves glass has
-    `against` < 0; a mirror is alike on both sides.
+    varnish. `fresnel`, from 0 to 1, mixes these shares with the constant ones. Whether a ray `leaves` a shape matters
+    for glass; a mirror is alike on both sides.
     """
     constant, refracted, ior = reflective.x, reflective.y, reflective.z
     is_glass = refracted > 0.0
-    share = reflectance(cosine, where(is_glass & (against < 0.0), ior, 1.0 / ior))
+    share = reflectance(cosine, where(is_glass & leaves, ior, 1.0 / ior))
     reflected = constant + fresnel * (share * where(is_glass, constant + refracted, 1.0) - constant)
     return Vec(reflected, where(is_glass, constant + refracted - reflected, 0.0), where(is_glass, ior, 1.0))
 
@@ -94,11 +96,6 @@ def rate_behind(rate: Number, change: Number, leaves: Mask) -> Number:
     return where(leaves, where(rest > VANISHING * change, rest, 0.0), rate + change)
 
 
-def filter_of(media: Any, index: int, like: Number) -> Vec:
-    """Return the shares of light that the surface of a shape lets through, the same for all rays."""
-    return splat(vector(media[index], 3), like) if has_rows(media) else splat(Vec(0.0, 0.0, 0.0), like)
-
-
 def brightest(light: Vec) -> Number:
     """Return the largest channel."""
     return maximum(maximum(light.x, light.y), light.z)
@@ -108,14 +105,14 @@ class Surface(NamedTuple):
     """The surface that each ray hits."""
 
     point: Vec  # the hit, put onto the surface
-    normal: Vec  # geometric normal, outward where the shape has an outside
+    side: Number  # 1 where the ray comes from outside, -1 where it leaves the shape
+    normal: Vec  # geometric normal, on the side from which the ray comes
     shading_normal: Vec  # the normal for lighting: smooth, bump mapped or normal mapped
     base_normal: Vec  # the same without bump map and normal map
     colour: Vec  # red, green, blue in [0, 1]
     specular: Vec  # the shape's row of `SceneArrays.specular`
-    reflective: Vec  # the shape's row of `SceneArrays.reflective`
+    reflective: Vec  # shares of reflection and refraction of the ray, and the index of refraction
     glow: Number  # the shape's row of `SceneArrays.glow`
-    fresnel: Number  # the shape's row of `SceneArrays.fresnel`
     fades: Vec  # the shape's row of `SceneArrays.fades`, and 0
     absorption: Vec  # inside the shape, see `minirt.kernel.shading.surfaces`
     filter: Vec  # shares of the light that the surface lets through, likewise
@@ -146,6 +143,7 @@ def surfaces(
         other = surface_at(scene, index, point, t, direction)
         result = Surface(
             where(owned, other.point, result.point),
+            where(owned, other.side, result.side),
             where(owned, other.normal, result.normal),
             where(owned, other.shading_normal, result.shading_normal),
             where(owned, other.base_normal, result.base_normal),
@@ -153,7 +151,6 @@ def surfaces(
             where(owned, other.specular, result.specular),
             where(owned, other.reflective, result.reflective),
             where(owned, other.glow, result.glow),
-            where(owned, other.fresnel, result.fresnel),
             where(owned, other.fades, result.fades),
             where(owned, other.absorption, result.absorption),
             where(owned, other.filter, result.filter),
@@ -175,51 +172,61 @@ def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction:
     if scene.patterns is not None:
         footprint = pixel_footprint(scene.camera, on, t, direction, normal)
         shading_normal, colour = apply_patterns(scene.patterns, index, on, footprint, shading_normal, colour)
+    side = where(dot(normal, direction) > 0.0, splat(-1.0, point.x), 1.0)
+    behind = side < 0.0
+    if rarely(behind):  # both sides of a surface are shaded alike
+        normal = where(behind, -normal, normal)
+        shading_normal = where(behind, -shading_normal, shading_normal)
+        base_normal = where(behind, -base_normal, base_normal)
+    reflective = row_of(scene.reflective, index, point.x)
+    if has_rows(scene.fresnel):
+        cosine = -dot(reflecting_normal(shading_normal, normal, direction), direction)
+        fresnel = splat(scene.fresnel[index], point.x)
+        reflective = shares_at_angle(reflective, fresnel, maximum(cosine, 0.0), behind)
     fades = splat(Vec(0.0, 0.0, 0.0), point.x)
     if has_rows(scene.fades):
         fades = splat(Vec(scene.fades[index, 0], scene.fades[index, 1], 0.0), point.x)
     return Surface(
         on,
+        side,
         normal,
         shading_normal,
         base_normal,
         colour,
         row_of(scene.specular, index, point.x),
-        row_of(scene.reflective, index, point.x),
-        number_of(scene.glow, index, point.x),
-        number_of(scene.fresnel, index, point.x),
+        reflective,
+        splat(scene.glow[index], point.x) if has_rows(scene.glow) else splat(0.0, point.x),
         fades,
         row_of(scene.media, index, point.x),
-        filter_of(scene.media, index, point.x),
+        row_of(scene.media, index, point.x, FILTER),
     )
 
 
 def surface_of(scene: SceneArrays, index: int, point: Vec) -> tuple[Vec, Vec, Vec]:
     """Compute points on the surface of a shape, near some points, its normals and its shading normals there."""
-    slot = scene.slots[index]
-    return for_each_kind(surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point))
+    return of_shape(surface_and_shading, scene.groups, scene.slots[index], (point,), (point, point, point))
 
 
-def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, Vec]:
-    """Compute point and normals of the shape in row i of group `number` if it is of this kind."""
-    on, normal, shading_normal = state
-    number, i, point = arguments
-    if number == group.number:
-        shape = read(group.rows, i)
-        on, out = surface(shape, point)
-        normal = splat(out, point.x)
-        shading_normal = shading(shape, on, normal)
-    return on, normal, shading_normal
+def surface_and_shading(shape: Any, point: Vec) -> tuple[Vec, Vec, Vec]:
+    """Compute the points on the surface of a packed shape, its normals and its shading normals."""
+    on, out = surface(shape, point)
+    normal = splat(out, point.x)
+    return on, normal, shading(shape, on, normal)
 
 
-def row_of(table: Any, index: int, like: Number) -> Vec:
-    """Return the first three numbers of a row of a table, the same for all rays; zeros without the table."""
-    return splat(vector(table[index], 0), like) if has_rows(table) else splat(Vec(0.0, 0.0, 0.0), like)
+def row_of(table: Any, index: int, like: Number, at: int = 0) -> Vec:
+    """Return three numbers of a row of a table, from column `at` on, the same for all rays; zeros without the table."""
+    return splat(vector(table[index], at), like) if has_rows(table) else splat(Vec(0.0, 0.0, 0.0), like)
 
 
-def number_of(table: Any, index: int, like: Number) -> Number:
-    """Return a number of a table, the same for all rays; 0 where a scene lacks the table."""
-    return splat(table[index], like) if has_rows(table) else splat(0.0, like)
+def reflecting_normal(shading_normal: Vec, facing: Vec, direction: Vec) -> Vec:
+    """Return the normal for reflection and refraction: the shading normal, if that reflects the ray off the surface.
+
+    Otherwise it is the geometric normal on the ray's side, `facing`.
+    """
+    cosine = -dot(shading_normal, direction)
+    height = dot(direction, facing) + 2.0 * cosine * dot(shading_normal, facing)
+    return where((cosine > 0.0) & (height > 0.0), shading_normal, facing)
 
 
 def tint(light: Vec, colour: Vec) -> Vec:

@@ -8,8 +8,8 @@ from __future__ import annotations
 from math import pi
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, mapping, read, vector
-from minirt.kernel.trace import for_each_kind
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, mapping, vector
+from minirt.kernel.trace import of_shape
 from minirt.lanes import (
     Mask,
     Number,
@@ -105,8 +105,8 @@ def apply_maps(
     """Apply the maps of shape `index`, in `slot` (group, row), to its shading normals and colours at some points."""
     if has_rows(maps.used) and maps.used[index] != 0:
         zero = splat(0.0, point.x)
-        arguments = slot[0], slot[1], point, in_own_frame(maps.placements, index, normal)
-        u, v, along_u, along_v = for_each_kind(mapping_of_kind, groups, (zero, zero, point, point), arguments)
+        arguments = point, in_own_frame(maps.placements, index, normal)
+        u, v, along_u, along_v = of_shape(mapping_on_lanes, groups, slot, arguments, (zero, zero, point, point))
         u, v, along_u, along_v = placed(maps.placements, index, u, v, along_u, along_v)
         colour = checkered(maps.checks, index, u, v, textured(maps.textures, maps, index, u, v, colour))
         normal = bump_mapped(maps.bumps, maps, index, u, v, along_u, along_v, normal)
@@ -114,15 +114,10 @@ def apply_maps(
     return normal, colour
 
 
-def mapping_of_kind(group: Group, state: Mapped, arguments: tuple[int, int, Vec, Vec]) -> Mapped:
-    """Compute u, v and tangents of the shape in row i of group `number` if it is of this kind."""
-    u, v, along_u, along_v = state
-    number, i, point, normal = arguments
-    if number == group.number:
-        u, v, dp_du, dp_dv = mapping(read(group.rows, i), point, normal)
-        along_u = splat(dp_du, point.x)
-        along_v = splat(dp_dv, point.x)
-    return u, v, along_u, along_v
+def mapping_on_lanes(shape: Any, point: Vec, normal: Vec) -> Mapped:
+    """Compute u, v and tangents of a packed shape; a tangent that is the same everywhere becomes lanes, too."""
+    u, v, along_u, along_v = mapping(shape, point, normal)
+    return u, v, splat(along_u, point.x), splat(along_v, point.x)
 
 
 def in_own_frame(placements: Any, index: int, normal: Vec) -> Vec:

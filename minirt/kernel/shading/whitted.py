@@ -24,7 +24,7 @@ from minirt.kernel.shading.surfaces import (
     brightest,
     clearance,
     medium_behind,
-    shares_at_angle,
+    reflecting_normal,
     surfaces,
     tint,
 )
@@ -41,7 +41,6 @@ from minirt.lanes import (
     load,
     load_vec,
     maximum,
-    rarely,
     save,
     save_vec,
     splat,
@@ -131,17 +130,7 @@ def shade(
 ) -> tuple[Vec, Surface]:
     """Shade the hits of rays in a medium without following reflections; returns their radiance and their surfaces."""
     surface = surfaces(scene, memory, owner, origin + t * direction, t, direction, hit)
-    normal, shading_normal, base_normal = surface.normal, surface.shading_normal, surface.base_normal
-    back_side = hit & (dot(normal, direction) > 0.0)
-    if rarely(back_side):  # both sides of a surface are shaded alike
-        normal = where(back_side, -normal, normal)
-        shading_normal = where(back_side, -shading_normal, shading_normal)
-        base_normal = where(back_side, -base_normal, base_normal)
-    if has_rows(scene.fresnel):
-        surface = with_fresnel(surface, reflecting_normal(shading_normal, normal, direction), direction)
-    light, highlight = direct_light(
-        scene, memory, surface, normal, shading_normal, base_normal, direction, owner, extent, medium, hit
-    )
+    light, highlight = direct_light(scene, memory, surface, direction, owner, extent, medium, hit)
     radiance = tint(light, surface.colour)
     if scene.reflective is not None:
         radiance = radiance * own_share(surface)
@@ -150,25 +139,6 @@ def shade(
     if has_rows(scene.glow):
         radiance = radiance + where(hit, surface.glow, 0.0) * surface.colour
     return radiance, surface
-
-
-def with_fresnel(surface: Surface, normal: Vec, direction: Vec) -> Surface:
-    """Return a surface with the shares of reflection and refraction of rays that are reflected by a `normal`."""
-    cosine, against = -dot(normal, direction), -dot(surface.normal, direction)
-    return Surface(
-        surface.point,
-        surface.normal,
-        surface.shading_normal,
-        surface.base_normal,
-        surface.colour,
-        surface.specular,
-        shares_at_angle(surface.reflective, surface.fresnel, maximum(cosine, 0.0), against),
-        surface.glow,
-        surface.fresnel,
-        surface.fades,
-        surface.absorption,
-        surface.filter,
-    )
 
 
 def whitted(
@@ -188,18 +158,16 @@ def whitted(
         hit = active & (t < inf)
         if any(hit):
             own, surface = shade(scene, memory, t, owner, extent, origin, direction, medium, hit)
-            point, normal, reflective = surface.point, surface.normal, surface.reflective
+            point, facing, reflective = surface.point, surface.normal, surface.reflective
             # `own` may be NaN for rays that do not hit
             radiance = where(hit, radiance + weight * coloured(scene, own, colour), radiance)
             if level < scene.depth and has_rows(scene.reflective):
                 rounding = clearance(point, extent)
-                against = -dot(normal, direction)
-                facing = where(against < 0.0, -normal, normal)
-                shading_normal = where(against < 0.0, -surface.shading_normal, surface.shading_normal)
-                mirror_normal = reflecting_normal(shading_normal, facing, direction)
+                leaves = surface.side < 0.0
+                mirror_normal = reflecting_normal(surface.shading_normal, facing, direction)
                 cosine = -dot(mirror_normal, direction)
                 # Snell's law, with the ratio of the indices of refraction in front of the surface and behind it.
-                ratio = where(against < 0.0, reflective.z, 1.0 / reflective.z)
+                ratio = where(leaves, reflective.z, 1.0 / reflective.z)
                 squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine)
                 total = squared < 0.0  # total internal reflection
                 refracted = where(hit & ~total, weight * reflective.y, 0.0)
@@ -210,7 +178,7 @@ def whitted(
                     fade = where(total, surface.fades.y, surface.fades.x)
                     mirrored = Ray(point + rounding * facing, onward, kept, fade, colour, medium)
                     waiting = push_rays(scene, stack, waiting, mirrored, level)
-                left, inside = behind_surface(scene, surface, colour, medium, against < 0.0)
+                left, inside = behind_surface(scene, surface, colour, medium, leaves)
                 kept = worth_tracing(scene, refracted, left)
                 if any(kept > 0.0):
                     onward = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirror_normal)
@@ -265,13 +233,3 @@ def behind_surface(scene: SceneArrays, surface: Surface, colour: Vec, medium: Ve
         colour = tint(colour, surface.filter)
         medium = medium_behind(medium, surface.absorption, leaves)
     return colour, medium
-
-
-def reflecting_normal(shading_normal: Vec, facing: Vec, direction: Vec) -> Vec:
-    """Return the normal for reflection and refraction: the shading normal, if that reflects the ray off the surface.
-
-    Otherwise it is the geometric normal on the ray's side, `facing`.
-    """
-    cosine = -dot(shading_normal, direction)
-    height = dot(direction, facing) + 2.0 * cosine * dot(shading_normal, facing)
-    return where((cosine > 0.0) & (height > 0.0), shading_normal, facing)
