@@ -6,6 +6,7 @@ the title of the kind: the dtype of an array tells which formulas belong to it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple, get_type_hints
 
@@ -137,6 +138,15 @@ def kind_of_packed(packed: type[Any]) -> Kind:
     return next(kind for kind in ALL_KINDS if kind.packed is packed)
 
 
+def of_kind(name: str) -> Callable[..., Any]:
+    """Return the function that calls the formula of this name, see `minirt.shapes.shape`, of a packed shape's kind."""
+    return lambda shape, *arguments: getattr(kind_of_packed(type(shape)), name)(shape, *arguments)
+
+
+formula, may_meet, surface = of_kind("intersect"), of_kind("may_meet"), of_kind("surface")
+mapping, shading, smooth_point = of_kind("mapping"), of_kind("shading"), of_kind("smooth_point")
+
+
 def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
     """Intersect rays, which may start anywhere, with a packed shape."""
     return formula(shape, origin, direction, True)
@@ -147,36 +157,6 @@ def occludes(shape: Any, origin: Vec, direction: Vec) -> Any:
     return formula(shape, origin, direction, None)
 
 
-def formula(shape: Any, origin: Vec, direction: Vec, anywhere: bool | None) -> Any:
-    """Intersect rays with a packed shape by the formula of its kind: `intersect` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).intersect(shape, origin, direction, anywhere)
-
-
-def mapping(shape: Any, point: Vec, normal: Vec) -> Any:
-    """Compute texture coordinates and tangents by the formula of its kind: `mapping` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).mapping(shape, point, normal)
-
-
-def shading(shape: Any, point: Vec, normal: Vec) -> Any:
-    """Compute the shading normal by the formula of its kind: `shading` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).shading(shape, point, normal)
-
-
-def smooth_point(shape: Any, point: Vec, normal: Vec) -> Any:
-    """Move a point onto the smooth surface by the formula of its kind: `smooth_point` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).smooth_point(shape, point, normal)
-
-
 def is_batched(rows: Rows) -> bool:
     """Whether the shapes of these rows are culled in batches, as the triangles of meshes are."""
-    return kind_of(rows.dtype.names).batched
-
-
-def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, active: Any) -> Any:
-    """Cull rays of a packet by the test of its kind: `may_meet` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).may_meet(shape, apex, start, direction, active)
-
-
-def surface(shape: Any, point: Vec) -> Any:
-    """Compute surface point and normal by the formula of its kind: `surface` of `minirt.shapes.shape`."""
-    return kind_of_packed(type(shape)).surface(shape, point)
+    return kind_of(rows.dtype.names).element.batched

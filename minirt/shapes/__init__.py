@@ -33,5 +33,5 @@ PUBLIC: dict[str, type] = {
 }
 
 ALL_KINDS = tuple(map(kind_of, PUBLIC.values()))
-KINDS = tuple(kind for kind in ALL_KINDS if not kind.batched)  # each shape a formula
-(MESH,) = (kind for kind in ALL_KINDS if kind.batched)  # each shape many triangles
+KINDS = tuple(kind for kind in ALL_KINDS if not kind.element.batched)  # each shape a formula
+(MESH,) = (kind for kind in ALL_KINDS if kind.element.batched)  # each shape many triangles

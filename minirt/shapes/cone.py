@@ -30,24 +30,17 @@ from minirt.lanes import (
     where,
 )
 from minirt.records import record
+from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.compensated import axis_low, minus, quotient_low, times, value
 from minirt.shapes.frames import in_scene, own_direction, own_point, revolved_mapping, to_basis
 from minirt.shapes.shape import Ball, Capped, Position, point_along
-from minirt.shapes.start import (
-    axial,
-    beside_side,
-    between_caps,
-    clamped_minimum,
-    error_of_start,
-    negative_interval,
-    position_error,
-    starts_close,
-    zero_within,
-)
 
 PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a generator differs
-SHELL = 2.0**13  # unit roundoffs of the size of a cone, a shell of that thickness at the apex is close to it
+# Unit roundoffs of the size of a cone: within that distance of the axis a ray starts close to the apex, wherever its
+# side is. In a shell of 64 roundings around the side the square of the distance exceeds that of the side by much of
+# itself.
+SHELL = 2.0**13
 BLUNT = 2.0**-14  # share of the height within which the apex is blunt; its square for rays beside generators
 BLUR = 16.0  # unit roundoffs of the distance from the apex by which the cone is thinner there
 
@@ -109,7 +102,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | No
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
     parallel = fabs(a) <= PARALLEL * steepness
-    start = clamped_minimum(per_a, b, first, last)
+    start = quadrics.clamped_minimum(per_a, b, first, last)
     if rarely(parallel):
         start = where(parallel, tip, start)
     q = p + start * d
@@ -120,14 +113,14 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | No
         squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
-        shell = squared + apex_shell(cone.slope, size, a)
-        close = starts_close(a, b, level, shell, over, size, (p.z - half) * d.z)
+        shell = SHELL * unit_roundoff(a) * (1.0 + cone.slope) * size
+        close = quadrics.starts_close(a, b, level, squared + shell * shell, over, size, (p.z - half) * d.z)
         if rarely(close):
             low, high, start, half_b, c, product = close_start(
                 cone, origin, p, d, close, parallel, a, per_a, b, level, over, per_height, start, half_b, c
             )
             first, last = where(close, low, first), where(close, high, last)
-    met, below, above = negative_interval(a, per_a, half_b, c, product)
+    met, below, above = quadrics.negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
     if any(hit):
@@ -179,7 +172,7 @@ def boundary(cone: Any, point: Vec) -> Boundary:
 
 
 # Rays that start on a cone, or close to it on the scale of the cone: their quadratic equation, without cancellation.
-# Three places need care, besides that of all quadrics (`minirt.shapes.start`).
+# Three places need care, besides that of all quadrics (`minirt.shapes.quadrics`).
 #
 # A ray beside a generator. From a start at the side nearly everything cancels in a and b, and in the farther end, about
 # -2 b / a. From the height of the apex that end is exact, and b follows from both ends, of which the nearer one is
@@ -194,15 +187,6 @@ def boundary(cone: Any, point: Vec) -> Boundary:
 # than the side, and any other ray touches the side there and misses. So does one from the side towards the apex with
 # a = 0: the level, which is linear then, is 0 at its start and not negative at the height of the apex, hence nowhere
 # between; rounding alone may deny that.
-
-
-def apex_shell(slope: float, size: float, like: Number) -> float:
-    """Return the square of a distance from the axis below which a ray starts close to the apex, wherever its side is.
-
-    In a shell of 64 roundings around the side the square of the distance exceeds that of the side by much of itself.
-    """
-    thick = SHELL * unit_roundoff(like) * (1.0 + slope) * size
-    return thick * thick
 
 
 def close_start(
@@ -228,21 +212,21 @@ def close_start(
     """
     reach, rise = cone.slope * p.z, cone.slope * d.z
     squared = reach * reach
-    height, power = axial(cone, origin, a)
+    height, power = quadrics.axial(cone, origin, a)
     side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
     exact_level = value(minus(power, times(side, side)))
     slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
-    away, position = max_norm(p), position_error(origin, p)
+    away, position = max_norm(p), quadrics.position_error(origin, p)
     on_apex = close & (away <= position)
-    error = where(on_apex, position, error_of_start(origin, p, level, slope, over))
+    error = where(on_apex, position, quadrics.error_of_start(origin, p, level, slope, over))
     rounding = 2.0 * slope * error
-    first, last = between_caps(height, 0.0, cone.height, per_height, error)
-    clear = zero_within(exact_level, minimum(rounding, BLUNT * squared))
+    first, last = quadrics.between_caps(height, 0.0, cone.height, per_height, error)
+    clear = quadrics.zero_within(exact_level, minimum(rounding, BLUNT * squared))
     alike = fabs(a * clear) > 4.0 * PARALLEL * (b * b)  # both ends are about as far away
     distant = fabs(clear) > PARALLEL * fabs(b) * away  # the nearer end is about as far away as the apex, or farther
-    beside = close & beside_side(level, squared, over, 0.5 * cone.height) & ~(parallel & (alike | distant))
+    beside = close & quadrics.beside_side(level, squared, over, 0.5 * cone.height) & ~(parallel & (alike | distant))
     far = farther_end(a, per_a, start, tip_b, tip_c)
-    start = where(beside, 0.0, where(close & ~parallel, clamped_minimum(per_a, b, first, last), start))
+    start = where(beside, 0.0, where(close & ~parallel, quadrics.clamped_minimum(per_a, b, first, last), start))
     q = p + start * d
     reach_q = cone.slope * where(beside, height[0], q.z)
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
@@ -254,7 +238,7 @@ def close_start(
     blunt = close & (away <= where(parallel, BLUNT * BLUNT, BLUNT) * cone.height)
     blur = where(blunt, BLUR * unit_roundoff(a) * (1.0 + cone.slope) * away, 0.0)
     c = c + blur * (2.0 * fabs(where(parallel, reach, reach_q)) + blur)
-    half_b = zero_within(half_b, maximum(blur * fabs(rise), where(on_side, fabs(a) * error, 0.0)))
+    half_b = quadrics.zero_within(half_b, maximum(blur * fabs(rise), where(on_side, fabs(a) * error, 0.0)))
     on_both = on_apex | (on_side & ((half_b == 0.0) | ((a == 0.0) & (d.z < 0.0))))
     start, half_b = where(on_apex, 0.0, start), where(on_both, 0.0, half_b)
     return first, last, start, half_b, where(on_both, where(a < 0.0, 0.0, 1.0), c), where(on_both, 0.0, product)

@@ -13,20 +13,11 @@ from typing import Any, NamedTuple
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, sqrt, where
 from minirt.records import record
+from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import axis_low, minus, two_product, value
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import Ball, Capped, Position, point_along
-from minirt.shapes.start import (
-    axial,
-    beside_side,
-    between_caps,
-    clamped_minimum,
-    error_of_start,
-    first_overlap,
-    starts_close,
-    zero_within,
-)
 
 
 @record()
@@ -77,28 +68,28 @@ def intersect(
     bottom = (-cylinder.half - p.z) * per_height
     top = (cylinder.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
-    start = clamped_minimum(per_a, b, first, last)
+    start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
     half_b = q.x * d.x + q.y * d.y
     product = c = q.x * q.x + q.y * q.y - squared
     if anywhere is not None:
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - cylinder.half
-        close = starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)
+        close = quadrics.starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)
         if rarely(close):
-            height, power = axial(cylinder, origin, a)
+            height, power = quadrics.axial(cylinder, origin, a)
             radius = splat(cylinder.radius, a)
             exact_level = value(minus(power, two_product(radius, radius)))
-            error = error_of_start(origin, p, level, cylinder.radius, over)
-            low, high = between_caps(height, -cylinder.half, cylinder.half, per_height, error)
+            error = quadrics.error_of_start(origin, p, level, cylinder.radius, over)
+            low, high = quadrics.between_caps(height, -cylinder.half, cylinder.half, per_height, error)
             first, last = where(close, low, first), where(close, high, last)
-            beside = close & beside_side(level, squared, over, cylinder.half)
-            start = where(beside, 0.0, where(close, clamped_minimum(per_a, b, low, high), start))
+            beside = close & quadrics.beside_side(level, squared, over, cylinder.half)
+            start = where(beside, 0.0, where(close, quadrics.clamped_minimum(per_a, b, low, high), start))
             q = p + start * d
             half_b = q.x * d.x + q.y * d.y
             c = where(beside, exact_level, q.x * q.x + q.y * q.y - squared)
-            product = where(beside, zero_within(c, 2.0 * cylinder.radius * error), c)
-    return first_overlap(a, per_a, half_b, c, product, start, first, last)
+            product = where(beside, quadrics.zero_within(c, 2.0 * cylinder.radius * error), c)
+    return quadrics.first_overlap(a, per_a, half_b, c, product, start, first, last)
 
 
 def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:

@@ -19,9 +19,9 @@ from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt,
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import along, basis_low, divided, minus, offset, plus, times, value
-from minirt.shapes.frames import TWO_PI, angle_in_turns, from_basis, own_direction, own_point, to_basis
+from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, own_direction, own_point, scene_direction
+from minirt.shapes.quadrics import CLOSE, ROUNDING, negative_interval, position_error, zero_within
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, point_along
-from minirt.shapes.start import CLOSE, ROUNDING, negative_interval, position_error, splat_vec, zero_within
 
 SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
 
@@ -118,11 +118,11 @@ def intersect(
 
 def level_of(ellipsoid: PackedEllipsoid, point: Vec, like: Number) -> Number:
     """Return |p|^2 - 1 of the point p on the scale of the unit sphere, to nearly full precision next to it too."""
-    f = offset(splat_vec(point, like), splat_vec(ellipsoid.centre, like))
-    semi, scale = splat_vec(ellipsoid.semi, like), splat_vec(ellipsoid.scale, like)
-    x = divided(along(f, splat_vec(ellipsoid.u, like), splat_vec(ellipsoid.u_low, like)), semi.x, scale.x)
-    y = divided(along(f, splat_vec(ellipsoid.v, like), splat_vec(ellipsoid.v_low, like)), semi.y, scale.y)
-    z = divided(along(f, splat_vec(ellipsoid.w, like), splat_vec(ellipsoid.w_low, like)), semi.z, scale.z)
+    f = offset(splat(point, like), splat(ellipsoid.centre, like))
+    semi, scale = splat(ellipsoid.semi, like), splat(ellipsoid.scale, like)
+    x = divided(along(f, splat(ellipsoid.u, like), splat(ellipsoid.u_low, like)), semi.x, scale.x)
+    y = divided(along(f, splat(ellipsoid.v, like), splat(ellipsoid.v_low, like)), semi.y, scale.y)
+    z = divided(along(f, splat(ellipsoid.w, like), splat(ellipsoid.w_low, like)), semi.z, scale.z)
     zero = splat(0.0, like)
     return value(plus(minus(plus(times(x, x), times(y, y)), (zero + 1.0, zero)), times(z, z)))
 
@@ -134,16 +134,12 @@ def surface(ellipsoid: PackedEllipsoid, point: Vec) -> tuple[Vec, Vec]:
     slope = scaled(q, ellipsoid.scale)  # half of the gradient of |q|^2
     above = 0.5 * (dot(q, q) - 1.0) / dot(slope, slope)
     q = unit(scaled(p - above * slope, ellipsoid.scale))
-    return (
-        ellipsoid.centre + from_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, scaled(q, ellipsoid.semi)),
-        from_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, unit(scaled(q, ellipsoid.scale))),
-    )
+    return in_scene(ellipsoid, scaled(q, ellipsoid.semi), unit(scaled(q, ellipsoid.scale)))
 
 
 def mapping(ellipsoid: PackedEllipsoid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
     """Longitude as u and latitude as v on the unit sphere, each from 0 to 1. At the poles the tangents are zero."""
-    u, v, w = ellipsoid.u, ellipsoid.v, ellipsoid.w
-    q = unit(scaled(to_basis(u, v, w, normal), ellipsoid.semi))
+    q = unit(scaled(own_direction(ellipsoid, normal), ellipsoid.semi))
     rho = sqrt(q.x * q.x + q.z * q.z)
     fall = -q.y / where(rho == 0.0, 1.0, rho)
     around = TWO_PI * Vec(q.z, 0.0, -q.x)
@@ -151,8 +147,8 @@ def mapping(ellipsoid: PackedEllipsoid, point: Vec, normal: Vec) -> tuple[Number
     return (
         0.5 + angle_in_turns(-q.x, -q.z),
         0.5 + 2.0 * angle_in_turns(q.y, rho),
-        from_basis(u, v, w, scaled(around, ellipsoid.semi)),
-        from_basis(u, v, w, scaled(upwards, ellipsoid.semi)),
+        scene_direction(ellipsoid, scaled(around, ellipsoid.semi)),
+        scene_direction(ellipsoid, scaled(upwards, ellipsoid.semi)),
     )
 
 

@@ -31,20 +31,11 @@ from minirt.lanes import (
     where,
 )
 from minirt.records import record
+from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import axis_low, minus, root_low, times, two_product, value
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import Ball, Capped, Position, point_along
-from minirt.shapes.start import (
-    axial,
-    beside_side,
-    between_caps,
-    clamped_minimum,
-    error_of_start,
-    negative_interval,
-    starts_close,
-    zero_within,
-)
 
 
 @record()
@@ -111,7 +102,7 @@ def intersect(
     top = (hyperboloid.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
     # From here on t is counted from the plane of the waist or, for a flat ray, from the deepest point in the solid.
-    start = where(steep, -p.z * per_height, clamped_minimum(per_a, b, first, last))
+    start = where(steep, -p.z * per_height, quadrics.clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = hyperboloid.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
@@ -121,25 +112,25 @@ def intersect(
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - hyperboloid.half
         size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
-        close = starts_close(a, b, level, squared, over, size, p.z * d.z)
+        close = quadrics.starts_close(a, b, level, squared, over, size, p.z * d.z)
         if rarely(close):
-            height, power = axial(hyperboloid, origin, a)
+            height, power = quadrics.axial(hyperboloid, origin, a)
             side = times((splat(hyperboloid.slope, a), splat(hyperboloid.slope_low, a)), height)
             at_waist = splat(hyperboloid.waist, a)
             exact_level = value(minus(minus(power, times(side, side)), two_product(at_waist, at_waist)))
             slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
-            error = error_of_start(origin, p, level, slope, over)
-            low, high = between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
+            error = quadrics.error_of_start(origin, p, level, slope, over)
+            low, high = quadrics.between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
             first, last = where(close, low, first), where(close, high, last)
-            beside = close & beside_side(level, squared, over, hyperboloid.half)
-            between = where(close & ~steep, clamped_minimum(per_a, b, low, high), start)
+            beside = close & quadrics.beside_side(level, squared, over, hyperboloid.half)
+            between = where(close & ~steep, quadrics.clamped_minimum(per_a, b, low, high), start)
             start = where(beside, 0.0, between)
             q = p + start * d
             reach_q = hyperboloid.slope * where(beside, height[0], q.z)
             half_b = q.x * d.x + q.y * d.y - reach_q * rise
             c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q - waist)
-            product = where(beside, zero_within(c, 2.0 * slope * error), c)
-    met, below, above = negative_interval(a, per_a, half_b, c, product)
+            product = where(beside, quadrics.zero_within(c, 2.0 * slope * error), c)
+    met, below, above = quadrics.negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
     if any(hit):

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, unit, where
 from minirt.records import record
+from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import axis_low, minus, quotient_low, times, value
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
@@ -27,16 +28,6 @@ from minirt.shapes.shape import (
     disc_extents,
     point_along,
     union_of_bounds,
-)
-from minirt.shapes.start import (
-    axial,
-    beside_side,
-    between_caps,
-    clamped_minimum,
-    error_of_start,
-    first_overlap,
-    starts_close,
-    zero_within,
 )
 
 
@@ -104,7 +95,7 @@ def intersect(
     vertex = -p.z * per_height
     cap = (paraboloid.height - p.z) * per_height
     first, last = minimum(vertex, cap), maximum(vertex, cap)
-    start = clamped_minimum(per_a, b, first, last)
+    start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
     half_b = q.x * d.x + q.y * d.y - slant
     product = c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
@@ -114,22 +105,22 @@ def intersect(
         level = across - 2.0 * paraboloid.focal * p.z
         half = 0.5 * paraboloid.height
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
-        close = starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
+        close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
         if rarely(close):
-            height, power = axial(paraboloid, origin, a)
+            height, power = quadrics.axial(paraboloid, origin, a)
             double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
             exact_level = value(minus(power, times(double, height)))
             slope = sqrt(squared)
-            error = error_of_start(origin, p, level, slope, over)
-            low, high = between_caps(height, 0.0, paraboloid.height, per_height, error)
+            error = quadrics.error_of_start(origin, p, level, slope, over)
+            low, high = quadrics.between_caps(height, 0.0, paraboloid.height, per_height, error)
             first, last = where(close, low, first), where(close, high, last)
-            beside = close & beside_side(level, squared, over, half)
-            start = where(beside, 0.0, where(close, clamped_minimum(per_a, b, low, high), start))
+            beside = close & quadrics.beside_side(level, squared, over, half)
+            start = where(beside, 0.0, where(close, quadrics.clamped_minimum(per_a, b, low, high), start))
             q = p + start * d
             half_b = q.x * d.x + q.y * d.y - slant
             c = where(beside, exact_level, q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z)
-            product = where(beside, zero_within(c, 2.0 * slope * error), c)
-    return first_overlap(a, per_a, half_b, c, product, start, first, last)
+            product = where(beside, quadrics.zero_within(c, 2.0 * slope * error), c)
+    return quadrics.first_overlap(a, per_a, half_b, c, product, start, first, last)
 
 
 def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:

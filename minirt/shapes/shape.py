@@ -130,15 +130,13 @@ class Kind(NamedTuple):
     shading: Callable[..., Any] = geometric_normal
     smooth_point: Callable[..., Any] = same_point
     may_meet: Callable[..., Any] = all_rays
-    batched: bool = False  # whether one element is many small primitives side by side
-    infinite: bool = False  # whether the shapes have no bounding box
 
 
 def kind_of(element: type[Shape]) -> Kind:
     """Make the entry of the registry for a shape from the names in its file; TypeError where one is missing."""
     formulas = {name: found for name, found in vars(sys.modules[element.__module__]).items() if name in Kind._fields}
     packed = get_type_hints(element.pack)["return"]
-    return Kind(element, packed, **formulas, batched=element.batched, infinite=element.infinite)
+    return Kind(element, packed, **formulas)
 
 
 def point_along(point: Triple, axis: Triple, distance: float) -> Triple:

@@ -17,8 +17,8 @@ from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.compensated import power_of_point
 from minirt.shapes.frames import TWO_PI, angle_in_turns
+from minirt.shapes.quadrics import position_error, zero_within
 from minirt.shapes.shape import Ball, Bounds, Frame, Position, Turnable
-from minirt.shapes.start import position_error, zero_within
 
 CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
 ROUNDING = 16  # unit roundoffs by which |f|^2 / radius^2 - 1 may be off, and more

@@ -17,8 +17,8 @@ from minirt.lanes import Mask, Number, Vec, any, dot, fabs, maximum, minimum, ra
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, longitude, own_direction, own_point, scene_direction
+from minirt.shapes.quadrics import position_error
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along
-from minirt.shapes.start import position_error
 
 PAD = 16.0  # unit roundoffs of a torus' outer radius by which a computed height may be off, and more
 STEPS = 100  # of Newton's method at most; most roots take less than ten

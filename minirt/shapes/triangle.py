@@ -35,7 +35,7 @@ from minirt.lanes import (
 from minirt.meshes.triangles import unit as unit_rows
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, triangle_boundary
-from minirt.shapes.compensated import Pair, offset, two_product, two_sum
+from minirt.shapes.compensated import Pair, minus, offset, times, value
 from minirt.shapes.plane import start_error
 from minirt.shapes.shape import Ball, Position, Shape
 
@@ -253,10 +253,7 @@ def plane_normal(a: Vec, b: Vec, c: Vec) -> Vec:
 
 def cross_component(y: Pair, z: Pair, v: Pair, w: Pair) -> Number:
     """y w - z v."""
-    yw, yw_low = two_product(y[0], w[0])
-    zv, zv_low = two_product(z[0], v[0])
-    total, low = two_sum(yw, -zv)
-    return total + (low + (yw_low - zv_low) + ((y[0] * w[1] + y[1] * w[0]) - (z[0] * v[1] + z[1] * v[0])))
+    return value(minus(times(y, w), times(z, v)))
 
 
 def plane_normals(corners: np.ndarray, approximate: np.ndarray) -> np.ndarray:

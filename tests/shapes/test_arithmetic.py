@@ -31,7 +31,7 @@ from minirt.shapes.compensated import (
     two_sum,
 )
 from minirt.shapes.frames import basis
-from minirt.shapes.start import negative_interval
+from minirt.shapes.quadrics import negative_interval
 from tests.oracle.body import BITS, own_axes
 from tests.oracle.body import unit as exact_unit
 from tests.shapes.execution_modes import U

@@ -84,7 +84,7 @@ def test_the_hull_of_its_balls_contains_it(kind: Kind, size: float, offset: floa
     directions = random_directions(np.random.default_rng(4), 500)
     for shape, points, hit in zip(seen.shapes, seen.points, seen.hit, strict=True):
         balls = shape.balls()
-        assert (shape.bounds() is None) == (not balls) == kind.infinite
+        assert (shape.bounds() is None) == (not balls) == kind.element.infinite
         if balls:  # no point lies farther in any direction than the farthest ball
             reach = np.max([directions @ np.array(centre) + radius for centre, radius in balls], axis=0)
             assert ((points[hit] @ directions.T).max(axis=0) <= reach + 64 * U * (10 * size + offset)).all()

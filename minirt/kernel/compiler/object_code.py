@@ -55,8 +55,8 @@ def by_kind(function: Any, choose: Callable[[Any], Any]) -> None:
 for _name in ("surface", "shading", "smooth_point", "may_meet", "mapping"):
     by_kind(getattr(scene_arrays, _name), attrgetter(_name))
 by_kind(scene_arrays.formula, lambda kind: kind.intersect)
-by_kind(trace.closest_of_kind, lambda kind: (trace.closest_one_by_one, trace.closest_batched)[kind.batched])
-by_kind(unoccluded_by_kind, lambda kind: (unoccluded_one_by_one, unoccluded_batched)[kind.batched])
+by_kind(trace.closest_of_kind, lambda kind: (trace.closest_one_by_one, trace.closest_batched)[kind.element.batched])
+by_kind(unoccluded_by_kind, lambda kind: (unoccluded_one_by_one, unoccluded_batched)[kind.element.batched])
 
 for _package in (lanes, shapes, kernel, shading):
     inline_functions_of(_package)

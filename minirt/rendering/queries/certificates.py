@@ -66,7 +66,7 @@ class ExactFields(NamedTuple):
 
 def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
     """Collect the fields of shapes of a kind; for a batched kind, the points and directions of the packed form."""
-    if kind.batched:
+    if kind.element.batched:
         points, lengths, directions = packed_columns(kind, shapes)
     else:
         points, lengths, directions = (
@@ -80,7 +80,7 @@ def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
     turns = {
         each.name: np.array([cos_and_sin(getattr(shape, each.name)) for shape in shapes])
         for each in fields_of(kind.element)
-        if isinstance(each, Angle) and not kind.batched
+        if isinstance(each, Angle) and not kind.element.batched
     }
     first, *others = points.values()
     sizes = np.zeros(len(first))

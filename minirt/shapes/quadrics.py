@@ -139,8 +139,8 @@ def axial(shape: Any, origin: Vec, like: Number) -> tuple[Pair, Pair]:
 
     All numbers become lanes as `like` is, so that kernels compile these operations once.
     """
-    f = offset(splat_vec(origin, like), splat_vec(shape.centre, like))
-    height = along(f, splat_vec(shape.w, like), splat_vec(shape.w_low, like))
+    f = offset(splat(origin, like), splat(shape.centre, like))
+    height = along(f, splat(shape.w, like), splat(shape.w_low, like))
     return height, minus(squared_length(f), times(height, height))
 
 
@@ -149,8 +149,3 @@ def between_caps(height: Pair, bottom: Number, top: Number, per_height: Number, 
     one = zero_within((bottom - height[0]) - height[1], error) * per_height
     other = zero_within((top - height[0]) - height[1], error) * per_height
     return minimum(one, other), maximum(one, other)
-
-
-def splat_vec(v: Vec, like: Number) -> Vec:
-    """Return the same vector for each ray."""
-    return Vec(splat(v.x, like), splat(v.y, like), splat(v.z, like))
