@@ -68,7 +68,9 @@ def dot(a: Vec, b: Vec) -> Number:
 
 
 def where(mask: Mask, a: Any, b: Any) -> Any:
-    """Select `a` for rays where the mask is true and `b` for the others; select Vecs component by component."""
+    """Select `a` for rays where the mask is true and `b` for the others; Vecs and NamedTuples part by part."""
+    if isinstance(a, tuple):
+        return type(a)(*(where(mask, *parts) for parts in zip(a, b, strict=True)))
     if isinstance(a, Vec):
         return Vec(where(mask, a.x, b.x), where(mask, a.y, b.y), where(mask, a.z, b.z))
     return np.where(mask, a, b)[()]

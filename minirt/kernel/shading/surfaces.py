@@ -140,21 +140,7 @@ def surfaces(
     while rarely(remaining):
         index = int(lane(owner, first(remaining)))
         owned = remaining & (owner == index)
-        other = surface_at(scene, index, point, t, direction)
-        result = Surface(
-            where(owned, other.point, result.point),
-            where(owned, other.side, result.side),
-            where(owned, other.normal, result.normal),
-            where(owned, other.shading_normal, result.shading_normal),
-            where(owned, other.base_normal, result.base_normal),
-            where(owned, other.colour, result.colour),
-            where(owned, other.specular, result.specular),
-            where(owned, other.reflective, result.reflective),
-            where(owned, other.glow, result.glow),
-            where(owned, other.fades, result.fades),
-            where(owned, other.absorption, result.absorption),
-            where(owned, other.filter, result.filter),
-        )
+        result = where(owned, surface_at(scene, index, point, t, direction), result)
         remaining = remaining & ~owned
     memory[scene.lights.shape[0], 0] = index
     return result
