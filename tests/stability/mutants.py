@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from minirt.lanes import Vec, dot, where
-from minirt.shapes import KINDS, Shape, start, torus
+from minirt.shapes import KINDS, Shape, quadrics, torus
 from minirt.shapes.cone import PackedCone, close_start, intersect
 from minirt.shapes.sphere import Sphere
 from tests.shapes.execution_modes import Intersect, kind_of, on_arrays, vec
@@ -59,7 +59,7 @@ def as_of_a_shadow_ray(shapes: list[Shape], origins: Array, directions: Array) -
 def hits_its_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """The real formula of a torus, which trusts the rounded place where a ray starts."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(start, "POSITION", 0.0)
+        patch.setattr(quadrics, "POSITION", 0.0)
         patch.setattr(torus, "PAD", 0.0)
         return on_arrays(shapes, origins, directions)
 
