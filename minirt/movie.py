@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
 FPS = 25.0  # frames per second
 INLINE = 32 * 2**20  # bytes of the largest film that a notebook shows: it becomes a part of the notebook
-PICTURES = {".gif": "gif", ".webp": "webp", ".apng": "png"}  # films that browsers take for pictures
-VIDEOS = (".mp4", ".webm")
+MEDIA = {".gif": "image/gif", ".webp": "image/webp", ".apng": "image/png", ".mp4": "video/mp4", ".webm": "video/webm"}
 QUALITY = 80  # of 100
 COLOURS = 255  # of each picture of a GIF; Pillow uses one more for pixels that stay as they are
 LONGEST = {"GIF": 655_350, "APNG": 65_535, "WEBP": 2**24 - 1}  # milliseconds that a picture can last
@@ -38,9 +37,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "APNG": {},
     "WEBP": {"method": 0},  # of compression: the fastest
 }
-CODECS = {"MP4": ("mp4", "libx264"), "WEBM": ("webm", "libvpx-vp9")}
-WORST = {"MP4": 45, "WEBM": 58}  # constant rate factors of quality 0; that of quality 100 is 4
-BEST = 4
+CODECS = {"MP4": ("mp4", "libx264", 45), "WEBM": ("webm", "libvpx-vp9", 58)}  # and constant rate factors of quality 0
+BEST = 4  # constant rate factor of quality 100
 BT709, STUDIO_RANGE = 1, 1  # FFmpeg's numbers of the matrix from RGB, and of levels from 16 to 235
 
 
@@ -50,13 +48,13 @@ class SavedMovie(list[Path]):
     def _repr_html_(self) -> str | None:
         """Return the film as HTML; None, for its names alone, where a notebook cannot play it."""
         (path, *others) = self
-        suffix = path.suffix.lower()
-        if others or suffix not in (*PICTURES, *VIDEOS) or path.stat().st_size > INLINE:
+        media = MEDIA.get(path.suffix.lower())
+        if others or not media or path.stat().st_size > INLINE:
             return None
-        data = b64encode(path.read_bytes()).decode()
-        if suffix in PICTURES:
-            return f'<img alt="{escape(path.name)}" src="data:image/{PICTURES[suffix]};base64,{data}">'
-        return f'<video controls autoplay loop muted src="data:video/{suffix[1:]};base64,{data}"></video>'
+        source = f"data:{media};base64,{b64encode(path.read_bytes()).decode()}"
+        if media.startswith("image"):
+            return f'<img alt="{escape(path.name)}" src="{source}">'
+        return f'<video controls autoplay loop muted src="{source}"></video>'
 
 
 def save_movie(
@@ -158,11 +156,10 @@ class LoopFilm:
         """Return the bytes of the file."""
         first, *others = self.pictures
         durations = [min(each, LONGEST[self.name]) for each in self.durations]
-        options = OPTIONS[self.name] | ({"quality": self.quality} if self.name == "WEBP" else {})
         buffer = io.BytesIO()
         first.save(
             buffer, "PNG" if self.name == "APNG" else self.name, save_all=True, append_images=others,
-            duration=durations, loop=0, **options,
+            duration=durations, loop=0, quality=self.quality, **OPTIONS[self.name],
         )  # fmt: skip
         return buffer.getvalue()
 
@@ -195,11 +192,12 @@ class VideoFilm:
 
     def new_stream(self, height: int, width: int) -> Any:
         """Return a stream of pictures of that size."""
-        options = {"crf": str(round(WORST[self.name] + self.quality / 100 * (BEST - WORST[self.name])))}
+        _, codec, worst = CODECS[self.name]
+        options = {"crf": str(round(worst + self.quality / 100 * (BEST - worst)))}
         if self.name == "WEBM":
             options |= {"b": "0", "row-mt": "1", "cpu-used": "4"}
         rate = Fraction(self.fps).limit_denominator(1000)
-        stream: Any = self.film.add_stream(CODECS[self.name][1], rate=rate, options=options)
+        stream: Any = self.film.add_stream(codec, rate=rate, options=options)
         stream.height, stream.width = height, width
         stream.pix_fmt = "yuv420p"
         stream.codec_context.colorspace = stream.codec_context.color_primaries = BT709

@@ -109,13 +109,11 @@ class Log:
     def tolerate(
         self, line: Line, column: int, message: str, remedy: str, certain: bool = False, length: int = 1
     ) -> bool:
-        """Add a notice if the reader is lenient, an error if it is strict; return whether it is lenient.
+        """Add a notice if the reader is lenient, an error if it is strict; return whether it tolerates the mistake.
 
         `remedy` says what a lenient reader does: "rounds it to 10,0,255". A `certain` one is that of every reader.
         """
-        if certain:
-            self.notice(line, column, f"{message} (miniRT {remedy})", length)
-            return True
-        add = self.notice if self.lenient else self.error
-        add(line, column, f"{message} (--lenient {remedy})", length)
-        return self.lenient
+        is_tolerated = certain or self.lenient
+        add = self.notice if is_tolerated else self.error
+        add(line, column, f"{message} ({'miniRT' if certain else '--lenient'} {remedy})", length)
+        return is_tolerated
