@@ -59,20 +59,20 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
         message = "a carriage return ends a line only together with a line feed"
         if line.text[hidden] != "\r":
             message = f"only spaces and tabs separate fields, got {code_point_name(line.text[hidden])}"
-        log.error(line, hidden + 1, message)
+        log.error(line, message, hidden + 1)
         return None
     body = line.text[: line.end]
     slashes = SLASHES.search(body) if "//" in body else None
     if slashes:
         message = "a comment begins with '#', got '//'"
-        if not log.tolerate(line, slashes.start() + 1, message, "takes '//', too", length=2):
+        if not log.tolerate(line, message, "takes '//', too", slashes.start() + 1, 2):
             return None
         body = body[: slashes.start()]
     words = words_of(body)
     spread = next((word for word in words if word.text != word.raw), None)
     blank = COMMA_AND_BLANK.search(body, spread.column - 1) if spread else None
     message = "no blanks may stand around a comma"
-    if blank and not log.tolerate(line, blank.start() + 1, message, "leaves them out", length=2):
+    if blank and not log.tolerate(line, message, "leaves them out", blank.start() + 1, 2):
         return None
     return words
 
@@ -84,12 +84,12 @@ def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
         return SPELLINGS[code]
     glued = GLUED.match(code)
     if glued and glued[1] in SPELLINGS:
-        log.error(line, word.column + len(glued[1]), f"a blank is missing after '{glued[1]}'")
+        log.error(line, f"a blank is missing after '{glued[1]}'", word.column + len(glued[1]))
         return None
     message = f"unknown element {quoted(code)}{hint(nearest_element(code))}"
     if NUMERIC.match(code):
         message = f"a line begins with one of {', '.join(ELEMENTS)}, got {quoted(code)}"
-    log.error(line, word.column, message, len(code))
+    log.error(line, message, word.column, len(code))
     return None
 
 
@@ -103,12 +103,12 @@ def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: L
     if len(values) < len(positional) and isinstance(positional[len(values)], Colour) and hex_colour:
         name = f"{kind.title} {positional[len(values)].title}"
         message = f"{name} must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
-        log.error(line, line.end + 1, message, len(hex_colour[0]))
+        log.error(line, message, line.end + 1, len(hex_colour[0]))
         return []
     missing = [field.title for field in positional[len(values) :] if field.required]
     if missing:
         names = f"{kind.title} {' and '.join(missing)} {'is' if len(missing) == 1 else 'are'}"
-        log.error(line, line_words[len(values)].end, f"{names} missing: expected '{pattern(kind)}'")
+        log.error(line, f"{names} missing: expected '{pattern(kind)}'", line_words[len(values)].end)
         return []
     slots = [Slot(kind, field, word) for field, word in zip(positional, values, strict=False)]
     if len(values) > len(positional):
@@ -124,7 +124,7 @@ def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line:
     del log.errors[before + 1 :]  # later fields may be off by one
     if len(log.errors) == before:
         why = " (one element a line)" if extra.raw in SPELLINGS else expectation(kind, extra.raw)
-        log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
+        log.error(line, f"{kind.title} has no further field {quoted(extra.raw)}{why}", *extra.span(None))
 
 
 def expectation(kind: type[Element], word: str) -> str:
@@ -143,11 +143,11 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
         key = match[1] if match else word.raw
         field = keyed.get(key)
         if not is_attribute(word.raw, keyed):
-            log.error(line, word.column, f"only attributes 'name:value' follow an attribute, got {quoted(word.raw)}")
+            log.error(line, f"only attributes 'name:value' follow an attribute, got {quoted(word.raw)}", word.column)
         elif field is None:
-            log.error(line, word.column, unknown_key_message(kind, key), len(key))
+            log.error(line, unknown_key_message(kind, key), word.column, len(key))
         elif field.name in slots:
-            log.error(line, word.column, f"{kind.title} has '{field.keys[0]}' twice", len(key))
+            log.error(line, f"{kind.title} has '{field.keys[0]}' twice", word.column, len(key))
         else:
             slots[field.name] = Slot(kind, field, word, match.end() if match else 0, bare=match is None)
     return list(slots.values())
@@ -178,17 +178,16 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
         checked = field.check(value)
         remark = field.remark(value)
     except FieldError as error:
-        column, length = slot.span(error.part)
-        message = f"{slot.title} {error}"
+        message, span = f"{slot.title} {error}", slot.span(error.part)
         # The last of four components with blanks between them may be the next field.
         tolerated = field.mend(text) if word.raw == word.text or text.count(",") == 2 else None
         if tolerated is None:
-            log.error(line, column, message, length)
+            log.error(line, message, *span)
             return None
-        return tolerated[0] if log.tolerate(line, column, message, *tolerated[1:], length=length) else None
+        checked, remedy, certain = tolerated
+        return checked if log.tolerate(line, message, remedy, *span, certain=certain) else None
     if remark:
-        column, length = slot.span(None)
-        log.notice(line, column, f"{slot.title} {remark}", length)
+        log.notice(line, f"{slot.title} {remark}", *slot.span(None))
     return value_with_files(slot, checked, line, log) if log.folder else checked
 
 
@@ -210,7 +209,6 @@ def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: S
     try:
         return read((log.folder or Path()) / file.name)
     except FileError as error:
-        column, length = slot.span(file.part)
         message = f"{slot.title} must be a {sort} file, got {quoted(file.name)}: {error.reason}"
-        log.error(line, column, message, length)
+        log.error(line, message, *slot.span(file.part))
         return None

@@ -95,11 +95,11 @@ class Log:
         self.errors: list[Problem] = []
         self.notices: list[Problem] = []
 
-    def error(self, line: Line, column: int, message: str, length: int = 1) -> None:
+    def error(self, line: Line, message: str, column: int, length: int = 1) -> None:
         """Add an error; a file with errors is refused."""
         self.errors.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
-    def notice(self, line: Line, column: int, message: str, length: int = 1) -> None:
+    def notice(self, line: Line, message: str, column: int, length: int = 1) -> None:
         """Add a notice about a file that is accepted. The last of too many says that there are more."""
         if len(self.notices) == MAX_NOTICES:
             message = "too many notices: those from here on are left out"
@@ -107,7 +107,7 @@ class Log:
             self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def tolerate(
-        self, line: Line, column: int, message: str, remedy: str, certain: bool = False, length: int = 1
+        self, line: Line, message: str, remedy: str, column: int, length: int = 1, certain: bool = False
     ) -> bool:
         """Add a notice if the reader is lenient, an error if it is strict; return whether it tolerates the mistake.
 
@@ -115,5 +115,5 @@ class Log:
         """
         is_tolerated = certain or self.lenient
         add = self.notice if is_tolerated else self.error
-        add(line, column, f"{message} ({'miniRT' if certain else '--lenient'} {remedy})", length)
+        add(line, f"{message} ({'miniRT' if certain else '--lenient'} {remedy})", column, length)
         return is_tolerated

@@ -83,7 +83,7 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
             if item is not None:
                 items.append(item)
             elif len(log.errors) >= MAX_ERRORS:
-                log.error(line_from(number, source), 1, "too many errors: the rest of the file is not read")
+                log.error(line_from(number, source), "too many errors: the rest of the file is not read", 1)
                 return items
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
@@ -107,10 +107,9 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     errors = len(log.errors)
     if kind.once and first != line.number:
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
-        column, length = words[0].span(None)
         if kind is not Light:
-            log.error(line, column, message, length)
-        elif log.tolerate(line, column, message, f"reads it as '{FurtherLight.code}'", length=length):
+            log.error(line, message, *words[0].span(None))
+        elif log.tolerate(line, message, f"reads it as '{FurtherLight.code}'", *words[0].span(None)):
             kind = FurtherLight
     slots = assign_words(kind, words, line, log)
     values = parse_slots(slots, line, log)
@@ -121,8 +120,8 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     if conflict is None:
         return element
     name, message = conflict
-    column, length = next(slot for slot in slots if slot.field.name == name).span(None)
-    log.error(line, column, f"{kind.title} {name} {message}", length)
+    slot = next(slot for slot in slots if slot.field.name == name)
+    log.error(line, f"{kind.title} {name} {message}", *slot.span(None))
     return None
 
 
@@ -134,6 +133,6 @@ def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
         if kind.required and kind.code not in seen:
             message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"
             if kind is Ambient:
-                log.tolerate(line, 1, message, "renders without")
+                log.tolerate(line, message, "renders without", 1)
             else:
-                log.error(line, 1, message)
+                log.error(line, message, 1)
