@@ -16,7 +16,7 @@ from minirt.element import Element, fields_of, pattern
 from minirt.fields import Field
 from minirt.materials import Compound
 from minirt.scene.registry import ELEMENTS
-from minirt.viewer import keys_markdown
+from minirt.viewer.bindings import BINDINGS, FINE_NOTE
 from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT
 from tests.test_imports import MAY
@@ -98,6 +98,16 @@ def description(field: Field) -> str:
     left_out = f"{field.format(field.default)} when left out" if has_default else ""
     doc = "" if field.doc == field.name == field.notation else field.doc
     return ", ".join(filter(None, (doc, limits, unit, left_out)))
+
+
+def keys_markdown() -> str:
+    """Return the table of keys, in Markdown."""
+    lines = ["| action | keys | AZERTY |", "|---|---|---|"]
+    for binding in BINDINGS:
+        azerty = f"`{binding.azerty}`" if binding.azerty else ""
+        lines.append(f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} | {azerty} |")
+    lines.append(f"| {FINE_NOTE[1]} | `{FINE_NOTE[0]}` | |")
+    return "\n".join(lines) + "\n"
 
 
 TABLES: dict[str, Callable[[], str]] = {"keys": keys_markdown, "elements": format_table, "diagram": diagram}

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from minirt.mlx.memory import Memory
 
 WORD = re.compile(r"\S+")
-PIXEL = re.compile(r"([0-9]{1,5}),([0-9]{1,5})")
-SIZE = re.compile(r"([0-9]{1,5})x([0-9]{1,5})")
+NUMBER = "([0-9]{1,5})"
 MAX_PIXELS = 32767
 MAX_SECONDS = 100_000
 MAX_COUNT = 1000  # steps of the wheel, windows
@@ -124,19 +123,13 @@ class Line:
             self.fail(index, f"expected seconds from 0 to {MAX_SECONDS}, got {quoted(self.words[index])}")
         return value
 
-    def count(self, index: int) -> int:
-        """Parse a number of steps or of a window."""
-        word = self.words[index]
-        if not (word.isascii() and word.isdigit() and 1 <= int(word[:5]) <= MAX_COUNT):
-            self.fail(index, f"expected a count from 1 to {MAX_COUNT}, got {quoted(word)}")
-        return int(word)
-
-    def pair(self, pattern: re.Pattern[str], low: int, form: str, index: int) -> tuple[int, int]:
-        """Parse two numbers of pixels."""
-        match = pattern.fullmatch(self.words[index])
-        if not match or not all(low <= int(part) <= MAX_PIXELS for part in match.groups()):
-            self.fail(index, f"expected {form}, each from {low} to {MAX_PIXELS}, got {quoted(self.words[index])}")
-        return int(match[1]), int(match[2])
+    def numbers(self, index: int, pattern: str, low: int, high: int, expected: str) -> tuple[int, ...]:
+        """Parse the numbers that are the groups of a pattern."""
+        match = re.fullmatch(pattern, self.words[index])
+        found = tuple(map(int, match.groups())) if match else ()
+        if not found or not all(low <= each <= high for each in found):
+            self.fail(index, f"expected {expected} from {low} to {high}, got {quoted(self.words[index])}")
+        return found
 
 
 def press(user: Memory, keys: Keys | str) -> None:
@@ -180,12 +173,12 @@ def drag(user: Memory, start: tuple[int, int], end: tuple[int, int], button: int
 READERS: dict[str, Callable[[Line, int], Any]] = {  # of the arguments of a usage
     "KEY": lambda line, index: line.keys(index),
     "seconds": lambda line, index: line.seconds(index),
-    "x,y": lambda line, index: line.pair(PIXEL, 0, "x,y", index),
-    "WxH": lambda line, index: line.pair(SIZE, 1, "WxH", index),
+    "x,y": lambda line, index: line.numbers(index, f"{NUMBER},{NUMBER}", 0, MAX_PIXELS, "x,y, each"),
+    "WxH": lambda line, index: line.numbers(index, f"{NUMBER}x{NUMBER}", 1, MAX_PIXELS, "WxH, each"),
     "left|middle|right": lambda line, index: BUTTONS[line.choice(index, BUTTONS, "button")],
     "up|down": lambda line, index: DIRECTIONS[line.choice(index, DIRECTIONS, "direction")],
-    "count": lambda line, index: line.count(index),
-    "NUMBER": lambda line, index: line.count(index),
+    "count": lambda line, index: line.numbers(index, NUMBER, 1, MAX_COUNT, "a count")[0],
+    "NUMBER": lambda line, index: line.numbers(index, NUMBER, 1, MAX_COUNT, "a count")[0],
     "CHARACTERS": lambda line, index: " ".join(line.words[index:]),
     "FILE": lambda line, index: " ".join(line.words[index:]),
 }

@@ -6,7 +6,7 @@ Keys have the names of browsers (https://www.w3.org/TR/uievents-key).
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import inf
 from typing import Any, Final
 
@@ -25,6 +25,8 @@ FINE = 95  # quality of the last one
 FULL_COLOUR = 0  # Pillow's number for colour at the resolution of brightness
 QUIET = 0.15  # seconds after which a frame was the last one
 Message = dict[str, Any]
+# That of a key has what it prints or its name (`key`), its place on an American keyboard (`code`), its `location`, and
+# the modifiers `shift`, `ctrl`, `alt` and `command`, the Command key of a Mac.
 
 
 class PageWindow(Window):
@@ -92,7 +94,7 @@ class PageDisplay(Display):
 
     def acknowledge(self, number: int) -> None:
         """Note that the page has shown a frame."""
-        self._shown = max(self._shown, min(number, self._sent))
+        self._shown = max(self._shown, number)
 
     def offer(self, pixels: NDArray[np.uint8]) -> bool:
         """Send a frame, (h, w, 4) BGRA, unless too many are under way; return whether it was sent."""
@@ -183,12 +185,7 @@ MODIFIERS: Final = {  # Command is the modifier of shortcuts, wherever the kerne
 }
 
 
-# A key that went down or up in the page: what it prints or its name (`key`), its place on an American keyboard
-# (`code`), its `location`, and the modifiers `shift`, `ctrl`, `alt` and `command`, the Command key of a Mac.
-KeyEvent = Mapping[str, Any]
-
-
-def code_of(event: KeyEvent) -> int | None:
+def code_of(event: Message) -> int | None:
     """Return the code of the symbol that a key prints, lower case for letters; None for a key without a code.
 
     A key that prints no Latin letter stands for the letter that American keyboards have in its place.
@@ -207,12 +204,12 @@ def code_of(event: KeyEvent) -> int | None:
     return ord(key.lower())
 
 
-def modifiers_of(event: KeyEvent) -> Modifier:
+def modifiers_of(event: Message) -> Modifier:
     """Return the modifiers that are held."""
     return Modifier(sum({modifier for name, modifier in MODIFIERS.items() if event[name]}))
 
 
-def text_of(event: KeyEvent) -> str:
+def text_of(event: Message) -> str:
     """Return the text that a key types, an empty string for none. AltGr, which types symbols, is Ctrl and Alt."""
     is_shortcut = event["command"] or event["ctrl"] != event["alt"]
     key: str = event["key"]

@@ -5,6 +5,6 @@ Importing this package loads neither the window library nor the compiler.
 
 from minirt.viewer.app.desktop import run
 from minirt.viewer.app.replay import replay
-from minirt.viewer.bindings import keys_markdown, keys_text
+from minirt.viewer.bindings import keys_text
 
-__all__ = ["keys_markdown", "keys_text", "replay", "run"]
+__all__ = ["keys_text", "replay", "run"]

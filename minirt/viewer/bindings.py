@@ -173,16 +173,6 @@ def keys_text(layout: str = "auto") -> str:
     return "\n\n".join(f"{title}\n{text}" if title else text for (title, _), text in zip(listed, texts, strict=True))
 
 
-def keys_markdown() -> str:
-    """Table of the documentation, in Markdown."""
-    lines = ["| action | keys | AZERTY |", "|---|---|---|"]
-    for binding in BINDINGS:
-        azerty = f"`{binding.azerty}`" if binding.azerty else ""
-        lines.append(f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} | {azerty} |")
-    lines.append(f"| {FINE_NOTE[1]} | `{FINE_NOTE[0]}` | |")
-    return "\n".join(lines) + "\n"
-
-
 def chords_of(binding: Binding, layout: str) -> list[Chord]:
     """All chords that trigger a binding."""
     plain = [parse_chord(spelling) for spelling in binding.spellings(layout)]

@@ -152,12 +152,6 @@ def test_frames_wait_for_a_page_that_shows_none() -> None:
     assert page.offer(GRADIENT)
 
 
-def test_a_page_cannot_acknowledge_what_was_not_sent() -> None:
-    page = PageOfFrames()
-    page.acknowledge(1000)
-    assert [page.offer(GRADIENT) for _ in range(3)] == [True, True, False]
-
-
 def test_the_last_frame_is_sent_again_in_finer_quality_once() -> None:
     page = PageOfFrames()
     page.offer(GRADIENT)

@@ -26,7 +26,6 @@ from minirt.viewer.bindings import (
     Chord,
     Keymap,
     chords_of,
-    keys_markdown,
     keys_text,
     parse_chord,
     platform_spelling,
@@ -65,11 +64,10 @@ def test_every_chord_of_the_table_is_found(layout):
 
 @pytest.mark.parametrize("layout", ["qwerty", "azerty"])
 def test_texts_list_every_binding(layout):
-    text, table = keys_text(layout), keys_markdown()
+    text = keys_text(layout)
     for binding in BINDINGS:
         keys = " / ".join(map(platform_spelling, binding.spellings(layout)))
         assert any(line.split("  ")[1:2] == [keys] and line.endswith(binding.help) for line in text.splitlines())
-        assert f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} |" in table
 
 
 def test_shift_is_ignored_by_fine_bindings_only():
