@@ -58,7 +58,11 @@ def view(
     check_scene(scene, "view")
     if not notebook:
         try:
-            return desktop.view(desktop.open_view(scene, size, mlx or Mlx(), **settings))
+            session = desktop.open_view(scene, size, mlx or Mlx(), **settings)
+            status, _ = desktop.run_event_loop(session)
+            if status == desktop.INTERRUPTED:
+                raise KeyboardInterrupt
+            return session.state.scene
         except MlxError:
             if notebook is False or not in_notebook():
                 raise

@@ -160,14 +160,15 @@ BINDINGS = (
 
 
 def key_groups(layout: str) -> Iterator[KeyGroup]:
-    """Yield the rows of the table by group, with the keys of a layout."""
+    """Yield the rows of the table by group, with the keys of a layout, and then a note without a title."""
     for title, rows in groupby(BINDINGS, key=lambda binding: binding.group):
         yield title, [(" / ".join(map(platform_spelling, binding.spellings(layout))), binding.help) for binding in rows]
+    yield "", [FINE_NOTE]
 
 
 def keys_text(layout: str = "auto") -> str:
     """Text that `--list-keys` prints."""
-    listed = [*key_groups(resolve_layout(layout)), ("", [FINE_NOTE])]
+    listed = list(key_groups(resolve_layout(layout)))
     width = max(len(keys) for _, rows in listed for keys, _ in rows)
     texts = ("\n".join(f"  {keys:{width}}  {help}" for keys, help in rows) for _, rows in listed)
     return "\n\n".join(f"{title}\n{text}" if title else text for (title, _), text in zip(listed, texts, strict=True))

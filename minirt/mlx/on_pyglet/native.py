@@ -168,7 +168,8 @@ class NativeWindow(Window):
         self.on_visibility(False)
 
     def on_resize(self, _width: int, _height: int) -> None:
-        self.scale = self._scale()
+        ratio = self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0]  # pixels per unit of the platform
+        self.scale = max(1.0, float(ratio), float(self.pyglet.scale))
         super().on_resize(*self._framebuffer_size())
         if sys.platform in ("win32", "darwin") and self.announced:
             self.blit()  # the loop stands still on these platforms while a border is dragged
@@ -219,11 +220,6 @@ class NativeWindow(Window):
     def _framebuffer_size(self) -> tuple[int, int]:
         width, height = self.pyglet.get_framebuffer_size()
         return max(int(width), 1), max(int(height), 1)
-
-    def _scale(self) -> float:
-        """Scale factor of the screen: pixels per unit of the platform, or the scale that the platform reports."""
-        ratio = self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0]
-        return max(1.0, float(ratio), float(self.pyglet.scale))
 
     def _forget_keys(self, keys: list[int] | None = None) -> None:
         """Clear pyglet's pressed keys: on X11 it swallows the press of a key whose release it did not see."""

@@ -76,14 +76,6 @@ def run(
     return status
 
 
-def view(session: Session) -> Scene:
-    """Show a session in its window until it is closed; return the scene as it was edited there."""
-    status, _ = run_event_loop(session)
-    if status == INTERRUPTED:
-        raise KeyboardInterrupt
-    return session.state.scene
-
-
 def open_view(
     scene: Scene,
     size: tuple[int, int] | None,

@@ -14,7 +14,7 @@ import numpy as np
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
-from minirt.viewer.bindings import FINE_NOTE, key_groups
+from minirt.viewer.bindings import key_groups
 from minirt.viewer.display import overlay
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, Panel, wrap
@@ -74,7 +74,7 @@ def arrange(layout: str, width: int, height: int, size: int) -> list[list[Column
 def filled_columns(layout: str, width: int, size: int, capacity: int) -> Iterator[Column]:
     """Yield columns of at most `capacity` lines, but at least 3; no title is the last line of one."""
     lines: list[tuple[str, str]] = []
-    for title, rows in [*key_groups(layout), ("", [FINE_NOTE])]:
+    for title, rows in key_groups(layout):
         for index, row in enumerate(rows):
             block = wrapped(row, width, size)
             if index == 0:
