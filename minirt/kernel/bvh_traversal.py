@@ -41,7 +41,7 @@ from minirt.kernel.bvh_nodes import (
 )
 from minirt.kernel.pixels import fetch_add
 from minirt.kernel.scene_arrays import has_rows, intersect, kind_of, occludes, read, surface
-from minirt.kernel.trace import closer_hit, for_each_kind, of_shape
+from minirt.kernel.trace import Hit, closer_hit, for_each_kind, of_shape
 from minirt.lanes import (
     Mask,
     Number,
@@ -60,7 +60,6 @@ from minirt.lanes import (
 )
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
-Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
 
 
 def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:

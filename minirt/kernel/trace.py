@@ -33,6 +33,7 @@ COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to 
 # Bounding cones of meshes are tested in batches, so that no branch waits for a single test: saves a tenth of the time
 # of a mesh, but with few shapes costs more than it saves.
 BATCH = 16
+Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
 
 
 def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, arguments: Any) -> Any:
@@ -71,27 +72,26 @@ def count_kind(group: Group, count: int, tile: int) -> int:
     return count + end - start
 
 
-def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
+def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> Hit:
     """Find the closest hit of each primary ray in a tile: distance, index and extent of the shape that is hit.
 
     A ray that hits nothing gets infinity, -1 and 0. Where two surfaces coincide within rounding, the shape with the
     lower index is hit on the whole overlap, and the extent is the larger of the two.
     """
     no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = for_each_kind(closest_of_kind, scene.groups, no_hit, (scene, tile, origin, direction))
-    return best, owner, extent
+    found: Hit = for_each_kind(closest_of_kind, scene.groups, no_hit, (scene, tile, origin, direction))
+    return found
 
 
-def closest_of_kind(
-    group: Group, state: tuple[Number, Number, Number], arguments: tuple[SceneArrays, int, Vec, Vec]
-) -> tuple[Number, Number, Number]:
+Arguments = tuple[SceneArrays, int, Vec, Vec]  # and the tile, the eye and the directions of its rays
+
+
+def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
     """Continue `closest_hit` over the shapes of one kind; `state` has the closest hits of the kinds before."""
     return (closest_batched if is_batched(group.rows) else closest_one_by_one)(group, state, arguments)
 
 
-def closest_one_by_one(
-    group: Group, state: tuple[Number, Number, Number], arguments: tuple[SceneArrays, int, Vec, Vec]
-) -> tuple[Number, Number, Number]:
+def closest_one_by_one(group: Group, state: Hit, arguments: Arguments) -> Hit:
     """Continue `closest_hit` over the shapes of one kind, one shape after the other."""
     scene, tile, origin, direction = arguments
     start, end = range_in_tile(group, tile)
@@ -109,9 +109,7 @@ def closest_one_by_one(
     return state
 
 
-def closest_batched(
-    group: Group, state: tuple[Number, Number, Number], arguments: tuple[SceneArrays, int, Vec, Vec]
-) -> tuple[Number, Number, Number]:
+def closest_batched(group: Group, state: Hit, arguments: Arguments) -> Hit:
     """Continue `closest_hit` over the shapes of one kind, testing the bounding cones of a whole batch first."""
     scene, tile, origin, direction = arguments
     start, end = range_in_tile(group, tile)
@@ -140,15 +138,8 @@ def closest_batched(
 
 
 def closer_hit(
-    shape: Any,
-    index: int,
-    shape_extent: float,
-    hit: Mask,
-    t: Number,
-    origin: Vec,
-    direction: Vec,
-    state: tuple[Number, Number, Number],
-) -> tuple[Number, Number, Number]:
+    shape: Any, index: int, shape_extent: float, hit: Mask, t: Number, origin: Vec, direction: Vec, state: Hit
+) -> Hit:
     """Update the closest hits, `state`, by the hits of one shape at distance t.
 
     The nearer hit wins. Where both lie within rounding of each other, the shape with the lower index wins.
