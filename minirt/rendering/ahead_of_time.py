@@ -6,7 +6,6 @@ are there already are not compiled again.
 
 from __future__ import annotations
 
-import argparse
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
@@ -47,14 +46,10 @@ def build(folder: Path, target: str) -> int:
 
 
 def main() -> int:
-    """Compile for this machine, or for the processors that are named."""
-    parser = argparse.ArgumentParser(description="Compile the generic kernels of miniRT ahead of time.")
-    parser.add_argument("processors", nargs="*", default=[processor()], help="such as x86-64-v3; default: this one")
-    parser.add_argument("--folder", type=Path, default=SHIPPED, help="default: the one in the package")
-    chosen = parser.parse_args()
+    """Compile for this machine."""
+    target = processor()
     try:
-        for target in chosen.processors:
-            build(chosen.folder / target, target)
+        build(SHIPPED / target, target)
     except (MiniRTError, OSError) as error:
         print(f"Error\n{error}", file=sys.stderr)
         return 1

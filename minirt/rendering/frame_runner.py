@@ -12,14 +12,12 @@ from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width
-from minirt.rendering.frame import Frame, frame_arguments, sum_buffer, thread_memory
+from minirt.rendering.frame import Frame, frame_arguments, plan_of, sum_buffer, thread_memory
 from minirt.rendering.kernels import Choice, Kernels
-from minirt.rendering.outcome import ROUNDING_DECIDES, Outcome
-from minirt.rendering.packing.camera import Request, has_apertures, packet_pixels, with_apertures
-from minirt.rendering.sampling.auto import AutoSampler, Sweep
-from minirt.rendering.sampling.contrast import EDGE, contrast_classes
-from minirt.rendering.sampling.packets import Packets
-from minirt.rendering.sampling.sample_table import table_rays
+from minirt.rendering.outcome import Outcome
+from minirt.rendering.packing.camera import Request, has_apertures, packet_rays, with_apertures
+from minirt.rendering.sampling.auto import AutoSampler, CancelledError
+from minirt.rendering.sampling.packets import EDGE, Packets, contrast_classes
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.threads import Job, ThreadPool
 
@@ -32,13 +30,8 @@ class FrameRunner:
         self.kernels = kernels
         self.next_row = np.zeros(1, np.int64)  # counters of the frames that are being rendered
         self.choice: Choice | None = None  # the kernel of the last frame
-        self.scene_words: list[int] = []  # of its argument block
         self.cancellations = 0
         self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
-
-    def after_fork(self) -> None:
-        """In a child process: drop the pool, whose threads are the parent's. The next picture starts new ones."""
-        self.__dict__.pop("pool", None)
 
     @cached_property
     def pool(self) -> ThreadPool:
@@ -61,10 +54,8 @@ class FrameRunner:
         A thread that finds no more rows of a frame goes on with the next one. The caller's thread only waits, so that
         Ctrl+C reaches it.
         """
-        choice = self.kernels.choose(frames[0])
-        if not self.choice or self.choice.scene is not choice.scene:
-            self.scene_words = words_of(choice.scene)  # which holds for all frames of a scene
-        self.choice, scene = choice, self.scene_words
+        choice = self.choice = self.kernels.choose(frames[0])
+        scene = words_of(choice.scene)  # which holds for all frames
         memories = [(thread_memory(frames[0].scene), sum_buffer(frames[0].scene)) for _ in range(threads)]
         start = perf_counter()
         jobs: list[Job] = []
@@ -80,75 +71,57 @@ class FrameRunner:
         self.cancellations += 1  # for a picture between two frames
         self.next_row[:] = CANCELLED
 
-
-def render_samples(
-    runner: FrameRunner,
-    packing: Packing,
-    request: Request,
-    light: np.ndarray,
-    samples: int,
-    is_wanted: Callable[[], bool],
-    edges_only: bool,
-) -> bool:
-    """Render a scene that has shapes, and its light into `light`, if it has rows; with `edges_only` only packets in
-    which neighbouring pixels differ, unless a lens or a light with a size blurs others, too. False where it was
-    cancelled or `is_wanted` said no."""
-    scene, pixels, _, crop = request
-    counter = runner.new_counters(1)
-    if not is_wanted():
-        return False
-    arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
-    frame = frame_arguments(arrays, pixels, samples, light, counter, crop)
-    if edges_only and not has_apertures(arrays):
-        classes, _ = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, runner.run_jobs, runner.threads)
-        frame = frame.with_samples_where(classes >= EDGE)
-    runner.run([frame], runner.threads)
-    return bool(counter[0] < CANCELLED)
-
-
-def render_to_error(
-    runner: FrameRunner,
-    packing: Packing,
-    request: Request,
-    light: np.ndarray,
-    error: float,
-    seconds: float,
-    least: float | None = None,
-) -> Outcome | None:
-    """Render a scene that has shapes, as `minirt.rendering.sampling.auto` tells, and its light, if `light` has rows.
-
-    Both are incomplete where `cancel` ended it early, which returns None. `least` is the error below which more samples
-    are useless: where it is not given, that at which rounding to 8 bits decides, and 0 with light.
-    """
-    scene, pixels, _, crop = request
-    start, cancellations = perf_counter(), runner.cancellations
-    height, across, _ = pixels.shape
-    arrays = packing.pack(scene, across, height, crop)
-    frame = frame_arguments(arrays, pixels, linear=light)
-    with_places = has_apertures(arrays)
-    packet_width = width(arrays.camera) // PACKET_HEIGHT
-    offsets = packet_pixels(width(arrays.camera))
-
-    def draw(sweep: Sweep) -> bool:
-        counters = runner.new_counters(1 + sweep.is_first)
-        if runner.cancellations != cancellations:
+    def render_samples(
+        self, packing: Packing, request: Request, samples: int, is_wanted: Callable[[], bool], edges_only: bool
+    ) -> bool:
+        """Render a scene that has shapes; with `edges_only` only packets in which neighbouring pixels differ, unless a
+        lens or a light with a size blurs others, too. False where it was cancelled or `is_wanted` said no."""
+        scene, pixels, light, crop = request
+        counter = self.new_counters(1)
+        if not is_wanted():
             return False
-        rays = table_rays(arrays.camera, sweep.positions, offsets)
-        if with_places:
-            rays = with_apertures(rays, sweep.positions[..., 2:], arrays.lens)
-        planned = frame._replace(next_row=counters[-1:], rays=rays, plan=sweep.plan, errors=sweep.errors)
-        whole = [frame._replace(next_row=counters[:1], rays=rays[:1])] if sweep.is_first else []
-        runner.run([*whole, planned], runner.threads)
-        return bool((counters < CANCELLED).all())
+        arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
+        frame = frame_arguments(arrays, pixels, samples, light, counter, crop)
+        if edges_only and not has_apertures(arrays):
+            classes, _ = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_jobs, self.threads)
+            packets = np.flatnonzero(classes >= EDGE)
+            drawn = np.tile(np.array([0, samples, 0], np.int32), (len(packets), 1))
+            frame = frame._replace(plan=plan_of(packets, classes.shape[1], drawn))
+        self.run([frame], self.threads)
+        return bool(counter[0] < CANCELLED)
 
-    def classify() -> tuple[np.ndarray, np.ndarray]:
-        return contrast_classes(pixels, packet_width, runner.run_jobs, runner.threads)
+    def render_to_error(
+        self, packing: Packing, request: Request, error: float, seconds: float, least: float
+    ) -> Outcome | None:
+        """Render a scene that has shapes, see `minirt.rendering.sampling.auto`; None where `cancel` ended it early.
+        `least` is the error below which more samples are useless."""
+        scene, pixels, light, crop = request
+        start, cancellations = perf_counter(), self.cancellations
+        height, across, _ = pixels.shape
+        arrays = packing.pack(scene, across, height, crop)
+        frame = frame_arguments(arrays, pixels, linear=light)
+        with_places = has_apertures(arrays)
+        lanes = width(arrays.camera)
+        packet_width = lanes // PACKET_HEIGHT
 
-    if least is None:  # rounding to 8 bits, where nobody wants the light itself, makes less error useless
-        least = 0.0 if len(light) else ROUNDING_DECIDES
-    packets = Packets(height, across, packet_width)
-    auto = AutoSampler(draw, classify, packets, 3 * height * across, len(offsets[0]), with_places)
-    outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))
-    return outcome and outcome._replace(
-        seconds=perf_counter() - start, goal=error, rounded=error < outcome.error <= least
-    )
+        def draw(positions: np.ndarray, plan: np.ndarray, errors: np.ndarray, is_first: bool) -> None:
+            counters = self.new_counters(1 + is_first)
+            if self.cancellations != cancellations:
+                raise CancelledError
+            rays = packet_rays(arrays.camera, positions[..., :2])
+            if with_places:
+                rays = with_apertures(rays, positions[..., 2:], arrays.lens)
+            planned = frame._replace(next_row=counters[-1:], rays=rays, plan=plan, errors=errors)
+            whole = [frame._replace(next_row=counters[:1], rays=rays[:1])] if is_first else []
+            self.run([*whole, planned], self.threads)
+            if (counters >= CANCELLED).any():
+                raise CancelledError
+
+        classify = partial(contrast_classes, pixels, packet_width, self.run_jobs, self.threads)
+        packets = Packets(height, across, packet_width)
+        auto = AutoSampler(draw, classify, packets, 3 * height * across, lanes, with_places)
+        try:
+            outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))
+        except CancelledError:
+            return None
+        return outcome._replace(seconds=perf_counter() - start, goal=error, rounded=error < outcome.error <= least)

@@ -16,20 +16,14 @@ from minirt.errors import RenderError
 from minirt.kernel import interpreted
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.library import LIBRARY, REMEMBERED, Call, Entry
+from minirt.kernel.machine_code.library import LIBRARY, Call, Entry
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame import Frame, frame_arguments
+from minirt.rendering.packing import generic_kernels
 from minirt.rendering.packing.features import DEPTH, SPREAD, features, primitive_count, shape_features
-from minirt.rendering.packing.generic_kernels import (
-    FULL_DOUBLE,
-    GENERIC_KERNELS,
-    GenericKernel,
-    empty_arrays,
-    fitting,
-    generalised,
-)
+from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.visibility import SMALL
-from minirt.rendering.sampling.contrast import classify_call
+from minirt.rendering.sampling.packets import classify_call
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, parse
 
@@ -42,37 +36,29 @@ class BackgroundCompiler:
         self.lock = Lock()
         self.wanted: list[str] = []
         self.asked: set[str] = set()  # identities, once and for all
-        self.thread: Thread | None = None
-
-    @property
-    def busy(self) -> bool:
-        """Whether a kernel is being compiled."""
-        return self.thread is not None
+        self.busy = False  # whether a kernel is being compiled
 
     def compile(self, *identities: str) -> None:
         """Ask for kernels, unless that was done before; callable from any thread."""
         with self.lock:
             self.wanted += [each for each in identities if each not in self.asked]
             self.asked.update(identities)
-            if self.wanted and not self.thread:
-                self.thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
-                self.thread.start()
+            if self.wanted and not self.busy:
+                self.busy = True
+                Thread(target=self.work, name="minirt-compiler", daemon=True).start()
 
     def work(self) -> None:
         """Compile what is wanted until nothing is: the body of the thread."""
-        while identity := self.next():
+        while True:
+            with self.lock:
+                self.busy = bool(self.wanted)
+                if not self.busy:
+                    return
+                identity = self.wanted.pop()
             try:
                 LIBRARY.compile([identity], self.process)
             except RenderError as error:
                 logging.getLogger(__name__).info("a generic kernel stays in use: %s", error)
-
-    def next(self) -> str | None:
-        """Return the identity of the next kernel; None, which ends the thread, where there is none."""
-        with self.lock:
-            if self.wanted:
-                return self.wanted.pop()
-            self.thread = None
-            return None
 
     def stop(self) -> None:
         """End compiling; callable from any thread."""
@@ -107,10 +93,6 @@ class Kernels:
         self.specialised_after = SPECIALISED_AFTER
         self.specialised_kernels: dict[frozenset[Hashable], list[str]] = {}  # identities, for each set of features
         self.generic_seconds: dict[str, float] = {}  # of generic kernels, by specialised one
-        self.after_fork()
-
-    def after_fork(self) -> None:
-        """Begin without compiling processes; in a child process those, if there are any, are the parent's."""
         self.compile_process, self.packing_process = CompileProcess(), CompileProcess()
         self.background = BackgroundCompiler()
 
@@ -121,17 +103,15 @@ class Kernels:
         entry = LIBRARY.find(specialised)
         if entry:
             return Choice(entry, frame.scene, None, specialised)
-        for generic in fitting(frame.scene):
+        for generic in generic_kernels.fitting(frame.scene):
             entry = LIBRARY.find(generic_identity(generic))
             if entry:
-                return Choice(entry, generalised(frame.scene, generic), generic, specialised)
+                return Choice(entry, generic_kernels.generalised(frame.scene, generic), generic, specialised)
         return Choice(LIBRARY.get(call), frame.scene, None, specialised)
 
     def count(self, choice: Choice, seconds: float) -> None:
         """Count the time of rendering with a kernel; where a generic one took long compile the specialised one."""
         if choice.generic:
-            if len(self.generic_seconds) >= REMEMBERED:
-                self.generic_seconds.clear()
             total = self.generic_seconds.get(choice.specialised, 0.0) + seconds
             self.generic_seconds[choice.specialised] = total
             if total >= self.specialised_after:
@@ -156,7 +136,9 @@ class Kernels:
     def for_all_scenes(self) -> list[str]:
         """The identities of kernels that are enough for all scenes, some of which single precision cannot draw."""
         generic = [
-            each for each in GENERIC_KERNELS if each.name == "full" and each.precision in ("double", self.precision)
+            each
+            for each in generic_kernels.GENERIC_KERNELS
+            if each.name == "full" and each.precision in ("double", self.precision)
         ]
         return [*map(LIBRARY.identity, packing_calls()), *map(generic_identity, generic)]
 
@@ -165,8 +147,6 @@ class Kernels:
         features = kernel_features(scene)
         if features not in self.specialised_kernels:
             calls = calls_for(scene, self.precision, self.depth)
-            if len(self.specialised_kernels) >= REMEMBERED:
-                self.specialised_kernels.clear()
             self.specialised_kernels[features] = list(map(LIBRARY.identity, calls))
         return self.specialised_kernels[features]
 
@@ -225,7 +205,7 @@ def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
 
 def generic_call(generic: GenericKernel) -> Call:
     """Return a call of a generic kernel."""
-    return functions.frame.call(*frame_arguments(empty_arrays(generic), PIXEL))
+    return functions.frame.call(*frame_arguments(generic_kernels.empty_arrays(generic), PIXEL))
 
 
 @cache
@@ -243,7 +223,7 @@ def packing_calls() -> list[Call]:
 def ray_query() -> Call:
     """Return a call of the query for single rays, for all kinds of shapes."""
     vectors, numbers, integers = np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64)
-    tree = empty_arrays(FULL_DOUBLE).bvh
+    tree = generic_kernels.empty_arrays(generic_kernels.FULL_DOUBLE).bvh
     return functions.trace_rays.call(integers, tree, vectors, vectors, numbers, integers, vectors, vectors)
 
 

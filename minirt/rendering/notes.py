@@ -9,7 +9,7 @@ import numpy as np
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.packing.generic_kernels import GenericKernel
-from minirt.rendering.packing.planes import never_occludes
+from minirt.rendering.packing.lights import never_occludes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape

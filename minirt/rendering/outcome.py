@@ -6,8 +6,6 @@ from math import sqrt
 from typing import NamedTuple
 
 ROUNDING = 1 / sqrt(12) / 255  # RMSE of rounding light to 8 bits, where all fractions of a level are as likely
-# Below this error rounding decides: it makes up nine tenths of the RMSE of a picture of 8 bits, and more.
-ROUNDING_DECIDES = ROUNDING / 2
 ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
 MOST_SAMPLES = 2**16  # of a pixel
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property, partial
+from functools import partial
 from math import inf
 from threading import Lock
 from time import perf_counter
@@ -14,7 +14,7 @@ from minirt.errors import RenderError, check_whole
 from minirt.helpers.system import ForkSafeLock, renewables
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.shading.whitted import MAX_DEPTH
-from minirt.rendering.frame_runner import FrameRunner, render_samples, render_to_error
+from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.notes import NO_GENERIC_KERNEL, kernel_notes
 from minirt.rendering.outcome import Outcome
@@ -27,7 +27,7 @@ from minirt.scene import Scene
 from minirt.shapes import Shape
 
 PRECISIONS = ("double", "single")
-PATIENCE, TRIES = 0.05, 4  # seconds that a click waits for the picture being made to end, and how often
+PATIENCE = 0.2  # seconds that a click waits for the picture being made to end
 
 
 class Renderer:
@@ -44,23 +44,17 @@ class Renderer:
         self.threads = usable_cores() if threads is None else check_whole("threads", threads, 1)
         self.precision = precision
         self.depth = DEPTH if depth is None else check_whole("depth", depth, 0, MAX_DEPTH)
-        self.busy = Lock()
-        self.kernels = Kernels(precision, self.depth)
-        self.runner = FrameRunner(self.threads, self.kernels)
-        self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, dither)
+        self.dither = dither
+        self.after_fork()
         renewables.add(self)
 
     def after_fork(self) -> None:
-        """In a child process: replace the lock, and drop the parent's threads and what they may have been packing."""
+        """Begin without a picture, in a child process anew: locks, threads and processes are the parent's."""
         self.busy = Lock()
-        self.__dict__.pop("packing", None)
-        self.kernels.after_fork()
-        self.runner.after_fork()
-
-    @cached_property
-    def packing(self) -> Packing:
-        """The packed arrays of the last scene."""
-        return Packing(precision=self.precision, depth=self.depth)
+        self.packing = Packing(precision=self.precision, depth=self.depth)
+        self.kernels = Kernels(self.precision, self.depth)
+        self.runner = FrameRunner(self.threads, self.kernels)
+        self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, self.dither)
 
     @property
     def not_finite(self) -> int:
@@ -119,59 +113,45 @@ class Renderer:
         linear: np.ndarray | None = None,
         is_wanted: Callable[[], bool] = lambda: True,
         crop: Crop | None = None,
+        edges_only: bool = False,
     ) -> bool:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and the unclamped
         light into `linear`, float64 (h, w, 3), if given: the whole picture, or the rectangle at `crop` of a larger one.
 
         False where `cancel` ended it early. `is_wanted` is asked once, as soon as `cancel` has an effect: whoever first
-        stops wanting the picture and then cancels is heard at any time.
+        stops wanting the picture and then cancels is heard at any time. With `edges_only` the pixels hold a picture of
+        the scene, which is rendered again only where neighbours differ; elsewhere the light stays as it is, too.
         """
         with self.busy:
-            return self._draw(Request(scene, pixels, linear, crop), samples, is_wanted)
-
-    def refine(
-        self,
-        scene: Scene,
-        pixels: np.ndarray,
-        samples: int,
-        is_wanted: Callable[[], bool] = lambda: True,
-        linear: np.ndarray | None = None,
-    ) -> bool:
-        """Render again, with more samples, where neighbouring pixels of a picture of the scene differ.
-
-        The result, `is_wanted` and `linear` are as for `render`; light stays as it is where no pixel differs.
-        """
-        with self.busy:
-            return self._draw(Request(scene, pixels, linear), samples, is_wanted, edges_only=True)
+            return self._draw(Request(scene, pixels, linear, crop), samples, is_wanted, edges_only)
 
     def _draw(
         self, request: Request, samples: int, is_wanted: Callable[[], bool] = lambda: True, edges_only: bool = False
     ) -> bool:
         """Render a picture with a number of samples. The caller holds `busy`."""
         check_whole("samples", samples, 1)
-        light, is_done = self._begin(request, edges_only)
+        request, is_done = self._begin(request, edges_only)
         if not is_done:
-            arguments = self.runner, self.packing, request, light, samples, is_wanted, edges_only
-            is_done = render_samples(*arguments)
+            is_done = self.runner.render_samples(self.packing, request, samples, is_wanted, edges_only)
         if is_done:
-            self.tone_mapper.apply(request, light)
+            self.tone_mapper.apply(request)
         return is_done
 
-    def _begin(self, request: Request, edges_only: bool = False) -> tuple[np.ndarray, bool]:
-        """Return the array for the light of a picture, and whether it is done, as it shows the background alone.
+    def _begin(self, request: Request, edges_only: bool = False) -> tuple[Request, bool]:
+        """Return the request with an array for its light, and whether it is done, as it shows the background alone.
 
         Otherwise there is a kernel that can draw it."""
         self.runner.not_finite = 0
         has_shapes = bool(request.scene.shapes and request.pixels.size)
         if has_shapes and not self.kernels.is_ready(request.scene):
             self.kernels.compile(request.scene)
-        light = self.tone_mapper.light_for(request, edges_only)
+        request = request._replace(linear=self.tone_mapper.light_for(request, edges_only))
         if has_shapes:
-            return light, False
+            return request, False
         from minirt.rendering.queries.preview import draw_background
 
-        draw_background(request, light)
-        return light, True
+        draw_background(request)
+        return request, True
 
     def reach(
         self,
@@ -187,17 +167,15 @@ class Renderer:
         bits decides. None where `cancel` ended it early; then the picture is incomplete."""
         request, start = Request(scene, pixels, linear, crop), perf_counter()
         with self.busy:
-            light, is_done = self._begin(request)
+            request, is_done = self._begin(request)
             outcome: Outcome | None = Outcome(1.0, 1, 0.0, perf_counter() - start, error)
-            is_mapped = self.tone_mapper.needed(scene)
             if not is_done:
-                least = None
-                if linear is None and is_mapped:
-                    least = self.tone_mapper.floor(request, partial(self._draw, request, 1))
+                draw = partial(self._draw, request, 1)
+                least = 0.0 if linear is not None else self.tone_mapper.floor(request, draw)
                 left = seconds - (perf_counter() - start)
-                outcome = render_to_error(self.runner, self.packing, request, light, error, left, least)
-            if outcome and is_mapped:
-                self.tone_mapper.apply(request, light)
+                outcome = self.runner.render_to_error(self.packing, request, error, left, least)
+            if outcome and self.tone_mapper.needed(scene):
+                self.tone_mapper.apply(request)
                 outcome = outcome._replace(rounding=self.tone_mapper.rounding(request))
             return outcome
 
@@ -209,14 +187,13 @@ class Renderer:
         """
         from minirt.rendering.queries import pick
 
-        for _ in range(TRIES):
-            if self.busy.acquire(timeout=PATIENCE):
-                try:
-                    return pick.pick(scene, width, height, x, y, self.packing.shape_arrays_for(scene.shapes))
-                finally:
-                    self.busy.release()
-            self.cancel()
-        return pick.pick(scene, width, height, x, y)
+        self.cancel()
+        if not self.busy.acquire(timeout=PATIENCE):
+            return pick.pick(scene, width, height, x, y)
+        try:
+            return pick.pick(scene, width, height, x, y, self.packing.shape_arrays_for(scene.shapes))
+        finally:
+            self.busy.release()
 
     def rows_done(self, height: int) -> float:
         """Return the share of the rows of the picture being rendered, of `height` pixels, that threads have taken."""

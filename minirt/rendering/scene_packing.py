@@ -13,37 +13,14 @@ from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.notes import notes
+from minirt.rendering.packing import camera, lights, materials, visibility
 from minirt.rendering.packing.bvh import build_bvh
-from minirt.rendering.packing.camera import (
-    Crop,
-    camera_numbers,
-    lens_numbers,
-    placed_rays,
-    radius_and_focus,
-)
+from minirt.rendering.packing.camera import Crop
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.generic_kernels import in_single
-from minirt.rendering.packing.lights import (
-    colours_of,
-    emitting_lights,
-    intensity,
-    positions_and_intensities,
-    radius_of,
-    sizes,
-    spot_parameters,
-)
-from minirt.rendering.packing.materials import medium_at, pack_environment, pack_materials, without_unseen
-from minirt.rendering.packing.planes import never_occludes
 from minirt.rendering.packing.ray_casting import distance_in_the_middle
-from minirt.rendering.packing.shape_arrays import ShapeArrays, smooth_primitives
-from minirt.rendering.packing.visibility import (
-    COARSEST,
-    BinnedShapes,
-    light_buffer_cells,
-    seen_by_eye,
-    seen_by_light,
-    seen_by_parallel_light,
-)
+from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.visibility import BinnedShapes
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
 
@@ -100,42 +77,42 @@ class Packing:
             self.cache[key] = before[key] if key in before else compute(*arguments)
             return self.cache[key]
 
-        camera, sources = camera_numbers(scene.camera, crop.width, crop.height), emitting_lights(scene)
+        numbers, sources = camera.camera_numbers(scene.camera, crop.width, crop.height), lights.emitting_lights(scene)
         used = features(scene) - (set() if self.depth else SECONDARY)
-        colours = colours_of(scene.camera)
-        lights = positions_and_intensities(sources, colours)
-        lens = self.lens(scene, camera, cached) if "lens" in used else None
-        radius, per_focus = radius_and_focus(lens)
-        view = camera, width, height, crop, radius, per_focus
+        colours = lights.colours_of(scene.camera)
+        lens = None
+        if "lens" in used:
+            key = "middle", numbers.tobytes()
+            focus = scene.camera.focus or cached(key, distance_in_the_middle, shapes, numbers)
+            lens = camera.lens_numbers(scene.camera, focus)
+        radius, per_focus = camera.radius_and_focus(lens)
+        view = numbers, width, height, crop, radius, per_focus
         if self.culls:
-            eye = cached((camera.tobytes(), *view[1:]), seen_by_eye, self.kernel, shapes, *view)
+            eye = cached((numbers.tobytes(), *view[1:]), visibility.seen_by_eye, self.kernel, shapes, *view)
         else:
-            eye = seen_by_light(self.kernel, shapes, camera[:3], 1, np.zeros(len(shapes.planes), bool))
-        cells = self.cells_that_fit.get(len(sources), light_buffer_cells(shapes)) if self.culls else 1
+            eye = visibility.seen_by_light(self.kernel, shapes, numbers[:3], 1, np.zeros(len(shapes.planes), bool))
+        cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes)) if self.culls else 1
         while True:
             try:
-                binned, keys = self.seen_by_lights(sources, lights[:, :3], camera[:3], cells, cached, radius)
+                binned, keys = self.seen_by_lights(sources, numbers[:3], cells, cached, radius)
                 break
             except TooLargeError:
-                if cells <= COARSEST:
+                if cells <= visibility.COARSEST:
                     raise
                 cells //= 2
                 self.cells_that_fit[len(sources)] = cells
-        light_starts, light_shapes, light_cones, light_tolerances = cached(keys, joined_light_buffers, binned, eye)
-        materials = cached(
-            ("materials", used, colours.decodes, colours.gain if "glow" in used else 1.0),
-            pack_materials,
-            scene,
-            shapes.owner,
-            used,
-        )
-        materials = without_unseen(materials, eye.members)
+        light_starts, light_buffers = cached(keys, joined_light_buffers, binned, eye)
+        look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
+        packed = cached(look, materials.pack_materials, scene, shapes.owner, used)
         needs_bvh = "reflective" in used or (cells > 1 and not SPREAD.isdisjoint(used))
         paint: Any = scene.background and scene.background.paint
+        environment = None
+        if "environment" in used:
+            environment = cached(("environment", paint, colours), materials.pack_environment, scene, paint)
         return SceneArrays(
-            camera=placed_rays(camera, crop),
-            ambient=intensity(scene.ambient, colours) if scene.ambient else np.zeros(3),
-            lights=lights,
+            camera=np.append(camera.pixel_rays(numbers, crop.width, crop.height), (crop.left, crop.top)),
+            ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
+            lights=lights.positions_and_intensities(sources, colours),
             colours_and_extents=cached(
                 ("colours", colours.decodes), colours.surface_colours, shapes.colours_and_extents
             ),
@@ -143,32 +120,22 @@ class Packing:
             tile_shapes=eye.members,
             cones=eye.cones,
             light_buffer_cells=cells,
-            light_tolerances=light_tolerances,
-            light_shapes=light_shapes,
-            light_cones=light_cones,
+            **light_buffers,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
-            spots=spot_parameters(sources) if "spots" in used else None,
-            soft=sizes(sources) if "soft" in used else None,
+            spots=lights.spot_parameters(sources) if "spots" in used else None,
+            soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,
-            eye_medium=medium_at(camera[:3], scene.shapes, colours) if "media" in used else None,
-            smooth=cached("smooth", smooth_primitives, shapes) if "smooth" in used else None,
+            eye_medium=materials.medium_at(numbers[:3], scene.shapes, colours) if "media" in used else None,
+            smooth=cached("smooth", shapes.smooth) if "smooth" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
-            environment=cached(("environment", paint, colours), pack_environment, scene, paint)
-            if "environment" in used
-            else None,
+            environment=environment,
             bvh=self.bvh_of(scene.shapes) if needs_bvh else None,
-            **materials,
+            **materials.without_unseen(packed, eye.members),
         )
 
     def seen_by_lights(
-        self,
-        sources: list[Lamp],
-        positions: np.ndarray,
-        eye: np.ndarray,
-        cells: int,
-        cached: Callable[..., Any],
-        radius: float,
+        self, sources: list[Lamp], eye: np.ndarray, cells: int, cached: Callable[..., Any], radius: float
     ) -> tuple[list[BinnedShapes], Hashable]:
         """Bin the shapes into the light buffers of all lights, and return also what they depend on.
 
@@ -177,25 +144,18 @@ class Packing:
         shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
-        for light, position in zip(sources, positions, strict=True):
-            skipped = never_occludes(shapes, eye, light, radius)
+        for light in sources:
+            skipped = lights.never_occludes(shapes, eye, light, radius)
             if not light.place or (light.size and cells > 1):  # by the BVH
                 keys.append(("spread", cells, skipped.tobytes()))
-                binned.append(cached(keys[-1], seen_by_parallel_light, shapes, cells, skipped))
+                binned.append(cached(keys[-1], visibility.seen_by_parallel_light, shapes, cells, skipped))
             else:
-                size = radius_of(light)
+                position, size = lights.light_position(light), lights.radius_of(light)
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
                 at = position, cells, skipped, size, alike
-                binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, *at))
+                binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at))
         return binned, tuple(keys)
-
-    def lens(self, scene: Scene, camera: np.ndarray, cached: Callable[..., Any]) -> np.ndarray:
-        """Return the lens of a scene's camera."""
-        focus = scene.camera.focus or cached(
-            ("middle", camera.tobytes()), distance_in_the_middle, self.shape_arrays, camera
-        )
-        return lens_numbers(scene.camera, focus)
 
     @property
     def notes(self) -> list[str]:
@@ -218,21 +178,15 @@ def fits_single(arrays: SceneArrays) -> bool:
     )
 
 
-def joined_light_buffers(
-    lights: list[BinnedShapes], eye: BinnedShapes
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Join the bins of m lights: starts (kinds, m, cells + 1), members, cones (m, n, 5), tolerances (m,)."""
-    tolerances = np.array([each.tolerance for each in lights])
-    if len(lights) == 1:
-        return lights[0].starts[:, None], lights[0].members, lights[0].cones[None], tolerances
-    if not lights:
-        return (
-            np.zeros((len(eye.starts), 0, 1), np.int64),
-            eye.members[:0],
-            np.zeros((0, *eye.cones.shape)),
-            np.zeros(0),
-        )
-    offsets = np.cumsum([0, *(len(each.members) for each in lights[:-1])])
-    starts = np.stack([each.starts + offset for each, offset in zip(lights, offsets, strict=True)], axis=1)
-    cones = np.stack([each.cones for each in lights])
-    return starts, np.concatenate([each.members for each in lights]), cones, tolerances
+def joined_light_buffers(binned: list[BinnedShapes], eye: BinnedShapes) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
+    starts, cones = np.zeros((len(eye.starts), 0, 1), np.int64), np.zeros((0, *eye.cones.shape))
+    if binned:
+        offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])])
+        starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
+        cones = np.stack([each.cones for each in binned])
+    return starts, {
+        "light_shapes": np.concatenate([eye.members[:0], *(each.members for each in binned)]),
+        "light_cones": cones,
+        "light_tolerances": np.array([each.tolerance for each in binned]),
+    }

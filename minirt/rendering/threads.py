@@ -32,7 +32,7 @@ class ThreadPool:
         for _ in range(number):
             self.threads.append(Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True))
             self.threads[-1].start()
-        finalize(self, stop_threads, self.tasks, number)
+        finalize(self, self.tasks.put, None)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
         """Run jobs on the threads, and wait for all of them; an error of one is raised.
@@ -58,7 +58,7 @@ class ThreadPool:
 
 
 def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
-    """Run one task after the other, in a thread of the pool, until the queue holds None."""
+    """Run one task after the other, in a thread of the pool, until the queue holds None, which ends all threads."""
     while task := tasks.get():
         job, ended = task
         try:
@@ -67,12 +67,7 @@ def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
         except BaseException as error:
             ended.put(error)
         del task, job, ended
-
-
-def stop_threads(tasks: SimpleQueue[Task | None], number: int) -> None:
-    """End the threads of a pool, once they have run the tasks in the queue."""
-    for _ in range(number):
-        tasks.put(None)
+    tasks.put(None)
 
 
 # Of a container: microseconds of processor time per period, and the period in microseconds.

@@ -11,8 +11,7 @@ shares of light; with plain they are shares of light as they are.
 Dithering replaces rounding. A channel whose light lies between those of two levels takes the upper one where its share
 of the way between them is above a threshold of blue noise. So the mean light of an even area stays as it is.
 
-The kernel rounds light in proportion to levels. What other tones and dithering cost is spent here, after it: the kernel
-stays as it is, and so does sampling, whose contrast and errors are those of light clamped to [0, 1].
+The kernel itself rounds light in proportion to levels; other tones and dithering come after it.
 """
 
 from __future__ import annotations
@@ -27,6 +26,7 @@ import numpy as np
 
 from minirt.rendering.outcome import ROUNDING
 from minirt.rendering.packing.camera import Crop, Request
+from minirt.rendering.threads import Job
 from minirt.scene import Scene
 
 LEVELS = 256
@@ -56,19 +56,14 @@ def tone_named(name: str, levels: int = LEVELS) -> Tone:
 
 def light_of(levels: np.ndarray, name: str) -> np.ndarray:
     """Return the light that levels in [0, 1] stand for on a tone curve."""
-    return {PLAIN: levels, SRGB: decode_srgb(levels), FILMIC: uncompressed(decode_srgb(levels))}[name]
+    shown = decode_srgb(levels)
+    a, b, c = A - C * shown, B - D * shown, -E * shown
+    return {PLAIN: levels, SRGB: shown, FILMIC: (np.sqrt(b * b - 4 * a * c) - b) / (2 * a)}[name]
 
 
 def decode_srgb(levels: np.ndarray) -> np.ndarray:
     """Return the light of levels in [0, 1] of sRGB."""
     light: np.ndarray = np.where(levels <= TOE, levels / SLOPE, ((levels + OFFSET) / (1 + OFFSET)) ** GAMMA)
-    return light
-
-
-def uncompressed(shown: np.ndarray) -> np.ndarray:
-    """Return the light that Narkowicz's curve maps to some light in [0, 1]."""
-    a, b, c = A - C * shown, B - D * shown, -E * shown
-    light: np.ndarray = (np.sqrt(b * b - 4 * a * c) - b) / (2 * a)
     return light
 
 
@@ -91,8 +86,6 @@ NO_LINEAR = np.zeros((0, 0, 3))
 DITHERING = sqrt(2)  # ratio of the RMSE of dithering to that of rounding, where all fractions of a level are as likely
 STRIP = 64  # lines at once: their data fits a processor's cache
 CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
-
-Job = Callable[[], object]
 
 
 def map_tones(
@@ -179,9 +172,9 @@ class ToneMapper:
             self.scratch[...] = nan
         return self.scratch
 
-    def apply(self, request: Request, light: np.ndarray) -> None:
+    def apply(self, request: Request) -> None:
         """Write the levels of a picture, if the kernel has not."""
-        scene, pixels, _, crop = request
+        scene, pixels, light, crop = request
         if self.needed(scene):
             arguments = light, pixels, scene.camera.tone, self.dither, crop
             self.run([partial(map_tones, *arguments, part, self.threads) for part in range(self.threads)])
@@ -193,7 +186,8 @@ class ToneMapper:
         return rounding_error(request.pixels, request.scene.camera.tone, self.dither)
 
     def floor(self, request: Request, draw: Callable[[], object]) -> float:
-        """Return the error below which rounding decides; `draw` draws a first picture, which tells it for a curve."""
+        """Return the error below which rounding decides: it makes up nine tenths of the RMSE of a picture, and more.
+        `draw` draws a first picture, which tells it for a curve."""
         if request.scene.camera.tone != PLAIN:
             draw()
         return self.rounding(request) / 2

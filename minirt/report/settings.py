@@ -112,7 +112,7 @@ def adaptive_samples(renderer: Renderer, scene: Scene, pixels: np.ndarray, sampl
     """Render one sample per pixel, then `samples` where neighbouring pixels differ."""
     renderer.render(scene, pixels, 1, linear)
     before = renderer.not_finite
-    renderer.refine(scene, pixels, int(samples), linear=linear)
+    renderer.render(scene, pixels, int(samples), linear, edges_only=True)
     return {"samples": samples, "not_finite": before + renderer.not_finite}
 
 

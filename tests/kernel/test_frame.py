@@ -7,7 +7,8 @@ import pytest
 
 from minirt.kernel import frame
 from minirt.lanes import Vec
-from minirt.rendering import Renderer, scene_packing
+from minirt.rendering import Renderer
+from minirt.rendering.packing import lights
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, interpreted, linear, picture
 
@@ -82,11 +83,9 @@ def test_a_renderer_counts_rays_whose_light_is_not_finite(monkeypatch: pytest.Mo
     renderer, pixels = Renderer(2), np.zeros((32, 32, 4), np.uint8)
     assert renderer.render(ALL, pixels)
     assert renderer.not_finite == 0
-    rows = scene_packing.positions_and_intensities
+    rows = lights.positions_and_intensities
     factors = [1, 1, 1, np.nan, 1, 1]
-    monkeypatch.setattr(
-        scene_packing, "positions_and_intensities", lambda lights, colours: rows(lights, colours) * factors
-    )
+    monkeypatch.setattr(lights, "positions_and_intensities", lambda some, colours: rows(some, colours) * factors)
     spoiled = Renderer(2)
     assert spoiled.render(ALL, pixels)
     assert 100 < spoiled.not_finite <= 32 * 32

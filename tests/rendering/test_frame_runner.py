@@ -104,7 +104,7 @@ def test_an_error_in_one_thread_reaches_the_caller() -> None:
 def refined(pixels: Pixels, *passes: int) -> Pixels:
     made = pixels.copy()
     for samples in passes:
-        assert TWO.refine(ALL, made, samples)
+        assert TWO.render(ALL, made, samples, edges_only=True)
     return made
 
 
@@ -154,24 +154,24 @@ def test_refining_leaves_a_picture_without_edges_alone() -> None:
     pixels = np.full((40, 50, 4), 77, np.uint8)
     pixels[20:, :, 1] += EDGE - 1
     before = pixels.copy()
-    assert TWO.refine(ALL, pixels, 4)
+    assert TWO.render(ALL, pixels, 4, edges_only=True)
     assert np.array_equal(pixels, before)
     pixels[20:, :, 1] += 1
-    assert TWO.refine(ALL, pixels, 4)
+    assert TWO.render(ALL, pixels, 4, edges_only=True)
     assert not np.array_equal(pixels[16:24], before[16:24])
 
 
 def test_pictures_without_shapes_or_pixels_are_refined_at_once() -> None:
     pixels = np.full((5, 7, 4), 100, np.uint8)
-    assert TWO.refine(Scene((AMBIENT, EYE)), pixels, 4)
+    assert TWO.render(Scene((AMBIENT, EYE)), pixels, 4, edges_only=True)
     assert (pixels == (0, 0, 0, 255)).all()
-    assert TWO.refine(ALL, np.zeros((0, 7, 4), np.uint8), 4)
+    assert TWO.render(ALL, np.zeros((0, 7, 4), np.uint8), 4, edges_only=True)
 
 
 def test_a_picture_that_is_not_wanted_is_not_begun() -> None:
     pixels = picture(ALL, 30, 20)[0]
     before = pixels.copy()
-    assert not TWO.refine(ALL, pixels, 4, is_wanted=lambda: False)
+    assert not TWO.render(ALL, pixels, 4, is_wanted=lambda: False, edges_only=True)
     assert not TWO.render(ALL, pixels, 4, is_wanted=lambda: False)
     assert np.array_equal(pixels, before)
 
@@ -186,9 +186,9 @@ def test_a_cancel_before_the_first_packet_is_heard() -> None:
         renderer.cancel()
         return True
 
-    assert not renderer.refine(ALL, pixels, 4, is_wanted)
+    assert not renderer.render(ALL, pixels, 4, is_wanted=is_wanted, edges_only=True)
     assert np.array_equal(pixels, before)
-    assert renderer.refine(ALL, pixels, 4)
+    assert renderer.render(ALL, pixels, 4, edges_only=True)
     assert not np.array_equal(pixels, before)
 
 
@@ -196,7 +196,7 @@ def test_cancelling_ends_a_long_pass() -> None:
     renderer = Renderer(2)
     renderer.prepare(ALL)
     pixels = np.random.default_rng(1).integers(0, 256, (*ENDLESS, 4), np.uint8)  # all of its pixels differ
-    assert not cancelled(renderer, lambda: renderer.refine(ALL, pixels, SAMPLES))
+    assert not cancelled(renderer, lambda: renderer.render(ALL, pixels, SAMPLES, edges_only=True))
 
 
 # Positions of the samples in a pixel.

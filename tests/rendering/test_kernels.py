@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -299,7 +298,7 @@ def test_an_error_is_told_and_leaves_no_file(
         raise RenderError("no compiler")
 
     monkeypatch.setattr(CompileProcess, "compile", fail)
-    monkeypatch.setattr(sys, "argv", ["ahead_of_time", PROCESSOR, "--folder", str(tmp_path)])
+    monkeypatch.setattr(ahead_of_time, "SHIPPED", tmp_path)
     assert ahead_of_time.main() == 1
     assert capsys.readouterr().err == "Error\nno compiler\n"
     assert list(tmp_path.rglob("*.kernel")) == []

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from minirt.rendering import Renderer
 from minirt.rendering.outcome import ROUNDING, Outcome
 from minirt.rendering.queries.preview import render_interpreted
-from minirt.rendering.sampling.contrast import estimated_error
+from minirt.rendering.sampling.packets import estimated_error
 from minirt.rendering.tone_mapping import (
     NOISE,
     blue_noise,
@@ -214,8 +214,8 @@ def test_files_windows_and_refined_pictures_agree(tone: str, dither: bool) -> No
     shown = replay(scene, [], renderer=renderer, size=size, path="scene.rt", samples=1, hud=False)
     assert np.array_equal(shown, expected)
     light, refined, alone = linear(scene, WIDTH, HEIGHT), expected.copy(), expected.copy()
-    assert renderer.refine(scene, refined, 16, linear=light)
-    assert renderer.refine(scene, alone, 16)
+    assert renderer.render(scene, refined, 16, linear=light, edges_only=True)
+    assert renderer.render(scene, alone, 16, edges_only=True)
     map_tones(light, expected, tone, dither)
     assert np.array_equal(refined, expected)
     assert np.array_equal(alone, expected)
@@ -277,7 +277,7 @@ def test_the_estimate_of_the_window_is_that_of_light() -> None:
     scene = toned(ALL, "srgb")
     before = pixels_of(scene)
     after = before.copy()
-    assert TWO.refine(scene, after, 16)
+    assert TWO.render(scene, after, 16, edges_only=True)
     truth = np.minimum(linear(scene, WIDTH, HEIGHT, 1500), 1.0)
     true = np.sqrt(np.square(tone_named("srgb").light[after[..., 2::-1]] - truth).mean())
     estimate = estimated_error(before, after, 1, 16, tone="srgb")

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from minirt import load
-from minirt.rendering import Renderer, scene_packing
+from minirt.rendering import Renderer
+from minirt.rendering.packing import visibility
 from minirt.report import bench
 from minirt.report.bench import Run, is_disturbed, runs
 from minirt.scene import Scene
@@ -24,7 +25,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Log each frame and, before it, the making of the lists that it needs."""
     log: list[str] = []
 
-    lists, render = scene_packing.seen_by_eye, Renderer.render
+    lists, render = visibility.seen_by_eye, Renderer.render
 
     def logged_lists(*arguments: Any) -> Any:
         log.append("lists")
@@ -35,7 +36,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         if pixels.shape[:2] == SIZE[::-1]:  # not the pixel for which the kernel is prepared
             log.append("frame")
 
-    monkeypatch.setattr(scene_packing, "seen_by_eye", logged_lists)
+    monkeypatch.setattr(visibility, "seen_by_eye", logged_lists)
     monkeypatch.setattr(Renderer, "render", logged_render)
     monkeypatch.setattr(bench, "LEAST_SECONDS", 0.0)
     return log

@@ -86,8 +86,15 @@ class FakeRenderer:
         return np.full((2, 3, 4), colour_of(scene), np.uint8)
 
     def render(
-        self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1, is_wanted: IsWanted = lambda: True
+        self,
+        scene: Scene,
+        pixels: NDArray[np.uint8],
+        samples: int = 1,
+        is_wanted: IsWanted = lambda: True,
+        edges_only: bool = False,
     ) -> bool:
+        if edges_only:
+            return self.refine(scene, pixels, samples, is_wanted)
         self.samples.append(samples)
         if not self.may_finish(is_wanted):
             return False

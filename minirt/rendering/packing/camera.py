@@ -50,7 +50,7 @@ class Request(NamedTuple):
 
     scene: Scene
     pixels: np.ndarray  # C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha
-    linear: np.ndarray | None = None  # float64 (h, w, 3), if its light is wanted
+    linear: Any = None  # float64 (h, w, 3), if its light is wanted; without rows where nobody wants it
     crop: Crop | None = None  # None: the whole picture
 
 
@@ -113,17 +113,12 @@ def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
     return np.concatenate([eye, forward - right + up, right * (2 / width), up * (-2 / height)])
 
 
-def placed_rays(camera: np.ndarray, crop: Crop) -> np.ndarray:
-    """Return `pixel_rays` of a picture, and the pixel at which a rectangle of it begins, (14,)."""
-    return np.append(pixel_rays(camera, crop.width, crop.height), (crop.left, crop.top))
-
-
 def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """The directions of the rays of a packet for each sample, (k, 3 * width), as differences from the direction through
     the upper left corner of the packet.
 
-    `rays` are `pixel_rays` or `placed_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where each
-    pixel of a packet has its own.
+    `rays` begin with `pixel_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where each pixel of a
+    packet has its own.
     """
     across_and_down = rays[6:12].reshape(2, 3)
     positions = packet_pixels(width(rays)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)

@@ -4,9 +4,7 @@ float32 is less precise, with twice as many rays per SIMD register. Everything i
 before it is rounded, so that whatever is near the eye is precise. Bounds used for culling are rounded to the safe side.
 
 A generic kernel is the same function as a specialised one, compiled for all kinds of shapes and for a fixed set of
-features. What a scene lacks is an array without rows, which the kernel skips. To draw a packed scene with it, take
-`generic = fitting(arrays)[0]`, and call the kernel for the types of `empty_arrays(generic)` with
-`generalised(arrays, generic)` in place of the scene.
+features. What a scene lacks is an array without rows, which the kernel skips.
 """
 
 from __future__ import annotations
@@ -31,27 +29,24 @@ MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit ve
 
 def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
     """Return a scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
-    eye = arrays.camera[:3]
+    eye, patterns = arrays.camera[:3], arrays.patterns
+    if patterns:
+        patterns = patterns._replace(rows=patterns.rows.copy())
+        patterns.rows[:, ORIGIN : ORIGIN + 3] -= eye
     moved = arrays._replace(
         camera=np.concatenate([np.zeros(3), arrays.camera[3:]]),
         lights=arrays.lights - np.concatenate([eye, np.zeros(3)]),
         colours_and_extents=np.column_stack([arrays.colours_and_extents[:, :3], extents_from(eye, boxes)]),
-        patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
+        patterns=patterns,
+        # Narrowed by rounding errors, so that fewer directions count as close to another.
+        light_tolerances=np.maximum(np.sqrt(arrays.light_tolerances) - MARGIN, 0.0) ** 2,
     )
     single: SceneArrays = as_single(moved)
     return single._replace(
         cones=widened_cones(arrays.cones),
-        light_tolerances=narrowed(arrays.light_tolerances),
         light_cones=widened_cones(arrays.light_cones),
         groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
     )
-
-
-def patterns_relative_to(patterns: Patterns, eye: np.ndarray) -> Patterns:
-    """Move the frames of patterns so that the eye is the origin."""
-    rows = patterns.rows.copy()
-    rows[:, ORIGIN : ORIGIN + 3] -= eye
-    return patterns._replace(rows=rows)
 
 
 def as_single(part: Any) -> Any:
@@ -73,12 +68,6 @@ def widened_cones(cones: np.ndarray) -> np.ndarray:
     wider[..., 3] -= MARGIN
     wider[..., 4] = np.nextafter(wider[..., 4], np.float32(-np.inf))
     return wider
-
-
-def narrowed(tolerances: np.ndarray) -> np.ndarray:
-    """Round the tolerances of light buffers to float32 so that fewer directions count as close to another."""
-    narrower: np.ndarray = as_single(np.maximum(np.sqrt(tolerances) - MARGIN, 0.0) ** 2)
-    return narrower
 
 
 def rows_relative_to(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
@@ -137,44 +126,36 @@ def precision_of(arrays: SceneArrays) -> str:
 
 def generalised(arrays: SceneArrays, generic: GenericKernel) -> SceneArrays:
     """Return a packed scene as the argument of a generic kernel that fits it. Its arrays are shared, not copied."""
-    empty = empty_arrays(generic)
-    whole: SceneArrays = filled(arrays, empty)
-    if empty.surface_maps is not None:
-        whole = whole._replace(surface_maps=filled(whole.surface_maps, empty.surface_maps))
-    if empty.patterns is not None:
-        whole = whole._replace(patterns=filled(whole.patterns, empty.patterns))
-    if empty.bvh is not None:
-        whole = whole._replace(bvh=generalised_tree(whole.bvh))
-    return whole._replace(groups=all_groups(arrays.groups, empty.groups))
+    whole: SceneArrays = filled(arrays, empty_arrays(generic))
+    return whole
 
 
 def generalised_tree(tree: Tree) -> Tree:
     """Return a BVH with a group for each kind of shape, those that a scene lacks without shapes."""
-    empty = empty_arrays(FULL_DOUBLE).bvh
-    return tree._replace(groups=all_groups(tree.groups, empty.groups))
+    whole: Tree = filled(tree, empty_arrays(FULL_DOUBLE).bvh)
+    return whole
 
 
 def filled(arrays: Any, empty: Any) -> Any:
-    """Return a NamedTuple of arrays, with the fields of `empty` in place of those that are None."""
-    return arrays._replace(**{name: getattr(empty, name) for name in arrays._fields if getattr(arrays, name) is None})
+    """Return a NamedTuple of arrays, or of such tuples, with the fields of `empty` in place of those that are None.
 
-
-def all_groups(groups: tuple[Any, ...], empty: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Return the groups of a scene in the order of the registry, with an `empty` one for each kind that it lacks."""
-    present = {group.rows.dtype.names: group for group in groups}
-    return tuple(present.get(group.rows.dtype.names, group) for group in empty)
+    Groups are in the order of the registry, with an `empty` one for each kind of shape that is missing.
+    """
+    if arrays is None or not hasattr(empty, "_fields"):
+        return empty if arrays is None else arrays
+    whole = arrays._replace(**{name: filled(getattr(arrays, name), getattr(empty, name)) for name in arrays._fields})
+    if not hasattr(arrays, "groups"):
+        return whole
+    present = {group.rows.dtype.names: group for group in arrays.groups}
+    return whole._replace(groups=tuple(present.get(group.rows.dtype.names, group) for group in empty.groups))
 
 
 @cache
 def empty_arrays(generic: GenericKernel) -> SceneArrays:
     """Return the argument of a generic kernel for a scene without lights and shapes: all scenes have its types."""
     number: Any = np.float32 if generic.precision == "single" else np.float64
-    numbers, integers, indices = (
-        partial(np.zeros, dtype=number),
-        partial(np.zeros, dtype=np.int64),
-        np.zeros(0, np.int32),
-    )
-    rows = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS]
+    numbers, integers = partial(np.zeros, dtype=number), partial(np.zeros, dtype=np.int64)
+    rows, indices = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS], np.zeros(0, np.int32)
     maps = {name: FEATURES[name].rows(0, number) for name in MAPS if name in generic.features}
     features: dict[str, Any] = {name: FEATURES[name].rows(0, number) for name in ROWS if name != "background"}
     lacking: dict[str, Any] = dict.fromkeys(set(OPTIONAL) - generic.features)

@@ -12,9 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from minirt.kernel.binning import MARGIN
 from minirt.materials import pictures
+from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.visibility import signed_heights
 from minirt.rendering.tone_mapping import decode_srgb, tone_named
-from minirt.scene import Ambient, Camera, Lamp, Scene
+from minirt.scene import Camera, Lamp, Scene
 
 BYTES = np.arange(256, dtype=np.float32) * np.float32(1 / 255)  # as the kernel reads bytes that are shares of light
 
@@ -30,7 +33,7 @@ class Colours(NamedTuple):
         return self.decoded(np.divide(colour, 255))
 
     def light(self, colour: tuple[float, ...], brightness: float = 1.0) -> np.ndarray:
-        """Return the light of a source of that colour."""
+        """Return the light of a source of that colour at full incidence."""
         return self.shares(colour) * (brightness * self.gain)
 
     def decoded(self, colours: np.ndarray) -> np.ndarray:
@@ -77,11 +80,6 @@ def colours_of(camera: Camera) -> Colours:
 TURN = 2.4  # radians, from the samples of one light to those of the next: the golden angle, rounded
 
 
-def intensity(source: Ambient | Lamp, colours: Colours) -> np.ndarray:
-    """The light of a source at full incidence: red, green, blue."""
-    return colours.light(source.colour, source.brightness)
-
-
 def emitting_lights(scene: Scene) -> list[Lamp]:
     """The lights of a scene that are neither off nor black."""
     return [light for light in scene.lights if light.brightness and any(light.colour)]
@@ -89,13 +87,13 @@ def emitting_lights(scene: Scene) -> list[Lamp]:
 
 def positions_and_intensities(lights: list[Lamp], colours: Colours) -> np.ndarray:
     """A row for each of m lights, (m, 6): position and intensity."""
-    rows = [(*light_position(light), *intensity(light, colours)) for light in lights]
+    rows = [(*light_position(light), *colours.light(light.colour, light.brightness)) for light in lights]
     return np.array(rows, np.float64).reshape(len(lights), 6)
 
 
 def light_position(light: Lamp) -> np.ndarray:
     """The position of a light; the origin for parallel light, which has none."""
-    return np.array(light.place or (0.0, 0.0, 0.0))
+    return np.array(light.place or (0.0, 0.0, 0.0), np.float64)
 
 
 def radius_of(light: Lamp) -> float:
@@ -118,3 +116,23 @@ def spot_parameters(lights: list[Lamp]) -> np.ndarray:
     """A row for each of m lights, (m, 7): cone, fading, and 1 if it is parallel, else 0."""
     rows = [(*light.cone(), light.fading(), not light.place) for light in lights]
     return np.array(rows, np.float64).reshape(len(lights), 7)
+
+
+def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radius: float = 0.0) -> np.ndarray:
+    """Whether each plane hides nothing that an eye in a lens of some radius sees from a light; False for transparent
+    planes.
+
+    Whatever an eye sees lies on its side of every plane, because the plane hides the rest. So a plane occludes nothing
+    if the light is on that side, too, or if parallel light comes from there, whatever the rounding.
+    """
+    planes = shape_arrays.planes
+    heights = signed_heights(planes, eye, radius)
+    if light.place:
+        harmless = heights * signed_heights(planes, light_position(light), radius_of(light)) > 0
+    else:
+        slopes = planes[:, :3] @ -np.array(light.cone()[:3])
+        harmless = (heights * slopes > 0) & (np.abs(slopes) > MARGIN + tangent_of(light))
+    owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
+    glass = [shape_arrays.shapes[owner].glass for owner in owners]
+    skipped: np.ndarray = harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
+    return skipped

@@ -21,6 +21,7 @@ from minirt.materials import Placement, pictures
 from minirt.materials.pictures import check_textures
 from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, PLAIN
 from minirt.rendering.packing.lights import Colours, colours_of
+from minirt.rendering.packing.ray_casting import cast
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
@@ -139,8 +140,7 @@ class Reader:
         self.scene = scene
         self.colours = colours_of(scene.camera)
         self.shares, self.gain = self.colours.shares, self.colours.gain
-        self.numbers: dict[tuple[PictureReader, str], int] = {}
-        self.numbers_of_files: dict[tuple[PictureReader, int, int], int] = {}  # by device and inode
+        self.numbers: dict[tuple[PictureReader, int, int], int] = {}  # by device and inode
         self.images: list[np.ndarray] = []
 
     def texture(self, file: str) -> int:
@@ -157,31 +157,25 @@ class Reader:
 
     def number(self, file: str, read: PictureReader) -> int:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
-        if (read, file) not in self.numbers:
-            path = self.scene.beside(file)
-            key = read, *pictures.identity(path)
-            if key not in self.numbers_of_files:
-                self.images.append(read(path))
-                check_textures(self.images)
-                self.numbers_of_files[key] = len(self.images)
-            self.numbers[read, file] = self.numbers_of_files[key]
-        return self.numbers[read, file]
+        path = self.scene.beside(file)
+        key = read, *pictures.identity(path)
+        if key not in self.numbers:
+            self.images.append(read(path))
+            check_textures(self.images)
+            self.numbers[key] = len(self.images)
+        return self.numbers[key]
 
     def arrays(self) -> dict[str, np.ndarray]:
         """Join the images into the arrays `texels` and `pictures` of `SurfaceMaps`."""
-        ends = np.cumsum([image.size for image in self.images])
-        texels = np.empty(int(ends[-1]) if len(ends) else 0, np.float32)
-        for end, image in zip(ends, self.images, strict=True):
+        texels, start = np.empty(sum(image.size for image in self.images), np.float32), 0
+        rows = []
+        for image in self.images:
             share = np.float32(1 / 255 if image.dtype == np.uint8 else 1)
-            np.multiply(image.ravel(), share, out=texels[end - image.size : end], dtype=np.float32)
-        rows = [
-            (end - image.size, image.shape[1], image.shape[0], image.size // (image.shape[0] * image.shape[1]))
-            for end, image in zip(ends, self.images, strict=True)
-        ]
-        return {
-            "texels": texels,
-            "pictures": np.array(rows, np.int64).reshape(-1, 4),
-        }
+            np.multiply(image.ravel(), share, out=texels[start : start + image.size], dtype=np.float32)
+            height, width = image.shape[:2]
+            rows.append((start, width, height, image.size // (height * width)))
+            start += image.size
+        return {"texels": texels, "pictures": np.array(rows, np.int64).reshape(-1, 4)}
 
 
 TOWARDS = Vec(*np.array([0.5773, 0.2113, 0.7887]) / np.linalg.norm([0.5773, 0.2113, 0.7887]))  # any direction will do
@@ -203,17 +197,14 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
     plane = shape.flat()
     if plane:
         return bool(np.dot(np.subtract(point, plane[0]), plane[1]) < 0.0)
-    low, high = shape.bounds() or ((-np.inf,) * 3, (np.inf,) * 3)
-    if not (np.greater(point, low) & np.less(point, high)).all():
-        return False
     packed, origin = shape.pack(), Vec(*point)
     kind = kind_of_packed(type(packed))
+    distances = np.atleast_1d(cast(packed, origin, TOWARDS))
+    first = np.argmin(distances)
     with np.errstate(all="ignore"):
-        hit, t = kind.intersect(packed, origin, TOWARDS)
-        nearest = np.where(hit, t, np.inf).min()
-        _, normal = kind.surface(packed, origin + nearest * TOWARDS)
-        leaving = np.atleast_1d(dot(normal, TOWARDS))[np.argmin(np.atleast_1d(np.where(hit, t, np.inf)))]
-    return bool(nearest < np.inf and leaving > 0.0)
+        _, normal = kind.surface(packed, origin + distances[first] * TOWARDS)
+        leaving = np.atleast_1d(dot(normal, TOWARDS))[first]
+    return bool(distances[first] < np.inf and leaving > 0.0)
 
 
 # Highlights and mirrors that no pixel can show are left out of the arrays of a picture: the kernel skips a feature

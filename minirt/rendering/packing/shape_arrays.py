@@ -68,12 +68,8 @@ def packed_rows(packed: list[Any]) -> np.ndarray:
 
 def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
     """Corners of the bounding boxes of shapes of one kind, (n, 2, 3); of an infinite shape, its defining points."""
-    return np.array([shape.bounds() or defining_points(shape) for shape in shapes])
-
-
-def defining_points(shape: Shape) -> list[Any]:
-    """The points among the fields that define a shape."""
-    return [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)]
+    points = [each.name for each in fields_of(type(shapes[0])) if isinstance(each, Point)]
+    return np.array([shape.bounds() or [getattr(shape, name) for name in points] for shape in shapes])
 
 
 CHUNK = 4096  # shapes that are compared or written at once, so that their Python objects stay in the processor's cache
@@ -161,6 +157,10 @@ class ShapeArrays:
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((count, 2, 3))
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
+    def smooth(self) -> np.ndarray:
+        """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""
+        return np.array([shape.smooth for shape in self.shapes], np.int64)[self.owner]
+
     def write(self, group: int, shapes: np.ndarray) -> None:
         """Write some shapes of one kind, given by their indices, into the arrays."""
         members = [self.shapes[index] for index in shapes.tolist()]
@@ -198,11 +198,6 @@ def extents_from(eye: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     low, high = corners_last(boxes)
     extents: np.ndarray = np.abs((low + high) / 2 - eye[:, None]).max(axis=0) + (high - low).max(axis=0) / 2
     return extents
-
-
-def smooth_primitives(shape_arrays: ShapeArrays) -> np.ndarray:
-    """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""
-    return np.array([shape.smooth for shape in shape_arrays.shapes], np.int64)[shape_arrays.owner]
 
 
 def differing_indices(old: tuple[Any, ...], new: tuple[Any, ...]) -> list[int]:

@@ -14,7 +14,6 @@ from minirt.kernel.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
 from minirt.kernel.pixels import TILE
 from minirt.rendering.packing.camera import Crop
-from minirt.rendering.packing.planes import cell_runs, signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes.mesh import Mesh
 
@@ -48,7 +47,7 @@ class BinnedShapes(NamedTuple):
     starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
-    tolerance: float = 0.0  # of the lists of a light
+    tolerance: float = 0.0  # of the lists of a light: see `minirt.kernel.shadow_rays`
 
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
@@ -57,12 +56,6 @@ def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
     for kind, rows in zip(shape_arrays.group_numbers, shape_arrays.rows, strict=True):
         shapes += min(len(rows), FEW + len(rows) // SIDE_BY_SIDE) if kind is Mesh else len(rows)
     return next(cells for most, cells in CELLS_BY_SHAPES if shapes <= most)
-
-
-def tolerance(cells: int) -> float:
-    """The square of the distance up to which lists hold around a cell: see `minirt.kernel.shadow_rays`."""
-    spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)
-    return float(spread * spread)
 
 
 def screen_grid(camera: np.ndarray, width: int, height: int, crop: Crop) -> Grid:
@@ -128,7 +121,8 @@ def seen_by_light(
     binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, *place, skipped, radius, 0.0, copies, largest)
     if cells == 1:
         return in_one_cell(shape_arrays, binned.cones, skipped)
-    return binned._replace(tolerance=tolerance(cells))
+    spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)  # distance up to which lists hold around a cell
+    return binned._replace(tolerance=float(spread * spread))
 
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:
@@ -222,3 +216,44 @@ def in_one_cell(shape_arrays: ShapeArrays, cones: np.ndarray, skipped: np.ndarra
     order = np.lexsort((cones[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(shape_arrays.rows))[:, None] + [0, 1])
     return BinnedShapes(starts, shapes[order].astype(np.int32), cones)
+
+
+# Infinite planes.
+
+
+def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
+    """Lower bounds of the heights of a ball about a point above planes, (p, 5) as in
+    `minirt.rendering.packing.shape_arrays`.
+
+    They are negative below a plane, and 0 where the ball meets it or rounding may decide.
+    """
+    above = planes[:, :3] @ point - planes[:, 3]
+    slack = planes[:, 4] + MARGIN * np.abs(point).max() + radius  # rounding errors, upper bounds of them
+    bounds: np.ndarray = np.sign(above) * np.maximum(np.abs(above) - slack, 0.0)
+    return bounds
+
+
+def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The runs of cells, each within a row of them, in which planes may be hit: plane, first cell and number of cells.
+
+    `normals` (p, 3) point towards the planes; 0, 0, 0 stands for everywhere. A direction forward + x across + y down
+    hits a plane if its product with the normal, a linear function of the slopes x and y, is positive: a row is tested
+    at the edge at which it is greater. Directions may differ by vectors up to `lean`.
+    """
+    dots = (normals @ grid.frames.reshape(-1, 3).T).reshape(-1, 3, 1)  # of each plane in each frame
+    middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
+    edges = (np.arange(grid.down) + np.array([[-grid.margin], [1 + grid.margin]]) - middle_y) / grid.scale_y
+    slack = MARGIN * (1 + grid.middle_x / grid.scale_x + grid.middle_y / grid.scale_y) + lean
+    most = dots[:, 2] + np.maximum(dots[:, 1] * edges[0], dots[:, 1] * edges[1]) + slack
+    nowhere = (dots[:, 0] == 0) & (most <= 0)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # an edge beyond all cells may be infinite
+        edge = -most / dots[:, 0]
+        low = np.where(dots[:, 0] > 0, edge, np.where(nowhere, np.inf, -np.inf))
+        high = np.where(dots[:, 0] < 0, edge, np.where(nowhere, -np.inf, np.inf))
+        begin = np.floor(low * grid.scale_x + middle_x - grid.margin)
+        end = np.floor(high * grid.scale_x + middle_x + grid.margin) + 1
+    begin = np.clip(begin, 0, grid.across).astype(np.int64)
+    end = np.clip(end, 0, grid.across).astype(np.int64)
+    nonempty = np.flatnonzero(end > begin)
+    plane, row = np.divmod(nonempty, len(grid.frames) * grid.down)
+    return plane, row * grid.across + begin.ravel()[nonempty], (end - begin).ravel()[nonempty]

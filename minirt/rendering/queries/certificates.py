@@ -138,17 +138,10 @@ FITTING = 0.5  # cosine of face and normal; at an apex, where the normal may be 
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 
 
-class Foot(NamedTuple):
-    """The nearest point of a face."""
-
-    distance: Array  # of the point from it
-    normal: Vec  # of the face there
-    beyond: Array  # the distance by which the point lies beyond the end of the face
-
-
-def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
+def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> tuple[Array, Vec, Array]:
     """Find the nearest point of the face whose normal is closest to `normal`, of the nearest face where none fits.
 
+    Returns its distance, the face's unit normal there, and the distance by which the point lies beyond the face's end.
     Each step linearises the face about the last foot: the next one lies on that tangent plane, straight below the
     point. Where that ends the foot is on the face, and the face's normal at the foot leads to the point.
     """
@@ -168,7 +161,7 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
         change = way - before
         if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
             break
-    return Foot(sqrt(dot(way, way)), slope * (1.0 / sqrt(dot(slope, slope))), beyond)
+    return sqrt(dot(way, way)), slope * (1.0 / sqrt(dot(slope, slope))), beyond
 
 
 def seeded(point: Vec) -> Vec:
@@ -253,11 +246,11 @@ def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) ->
     point = exact_point(rays.origins, first, power) + distances * d
     shape = fields.shape(rows, first, power)
     normal = Vec(*rays.normals.T)
-    nearest = foot(kind, shape, point, normal)
-    slope = nearest.normal.x * d.x.high + nearest.normal.y * d.y.high + nearest.normal.z * d.z.high
-    off = normal - nearest.normal
+    distance, exact, beyond = foot(kind, shape, point, normal)
+    slope = exact.x * d.x.high + exact.y * d.y.high + exact.z * d.z.high
+    off = normal - exact
     return Certificate(
-        np.fmax(nearest.distance, nearest.beyond) / (U * magnitude),
+        np.fmax(distance, beyond) / (U * magnitude),
         magnitude / (distances * np.abs(slope)),
         sqrt(dot(off, off)),
     )

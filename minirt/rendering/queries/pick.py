@@ -6,18 +6,17 @@ Rays are cast by the interpreted formulas of the kernel, see `minirt.rendering.p
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from minirt.fields import Triple
-from minirt.kernel import interpreted
 from minirt.kernel.scene_arrays import kind_of_packed
-from minirt.kernel.trace import COINCIDENT, closest_hit
-from minirt.lanes import Vec, lane, splat
+from minirt.kernel.trace import COINCIDENT, closer_hit
+from minirt.lanes import Vec
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances
+from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
@@ -40,22 +39,15 @@ def pick(
     origin, direction = camera_ray(scene.camera, width, height, x + 0.5, y + 0.5)
     distance = hit_distances(shape_arrays, origin, direction)
     near = distance <= distance.min(initial=np.inf) * (1 + 2 * COINCIDENT)
-    nearest = np.flatnonzero(np.isfinite(distance) & near)
-    owners = np.unique(shape_arrays.owner[nearest])
-    if len(owners) < 2:
-        return shape_arrays.shapes[int(owners[0])] if len(owners) else None
-    with np.errstate(all="ignore"):  # surfaces that may coincide: let the kernel's rule decide
-        parts = [
-            shape_arrays.shapes[each].some(
-                nearest[shape_arrays.owner[nearest] == each] - shape_arrays.first_primitive[each]
-            )
-            for each in owners
-        ]
-        packing = Packing(interpreted, depth=0, culls=False)
-        arrays = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
-        rays = Vec(*(splat(part, arrays.camera) for part in (direction.x, direction.y, direction.z)))
-        _, owner, _ = closest_hit(arrays, 0, origin, rays)
-    return shape_arrays.shapes[int(owners[packing.shape_arrays.owner[int(lane(owner, 0))]])]
+    closest: Any = np.array([[np.inf], [-1.0], [0.0]])  # distance, primitive and its extent
+    for index in np.flatnonzero(np.isfinite(distance) & near).tolist():  # where they coincide the kernel's rule decides
+        group, row = shape_arrays.slots[index]
+        packed = packed_columns(shape_arrays.rows[group][row : row + 1])
+        extent, is_hit = shape_arrays.colours_and_extents[index, 3], np.ones(1, bool)
+        with np.errstate(all="ignore"):
+            closest = closer_hit(packed, index, extent, is_hit, distance[[index]], origin, direction, closest)
+    primitive = int(closest[1][0])
+    return shape_arrays.shapes[shape_arrays.owner[primitive]] if primitive >= 0 else None
 
 
 def surface_point(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
@@ -119,10 +111,9 @@ def is_near(box: Bounds, other: Bounds | None) -> bool:
     """Whether a box may lie beneath another: their footprints overlap and it does not begin above."""
     if other is None:
         return True
-    (west, _, south), (east, top, north) = box
-    return other[0][0] <= east and other[1][0] >= west and other[0][2] <= north and other[1][2] >= south and (
-        other[0][1] < top
-    )  # fmt: skip
+    (low, high), (other_low, other_high) = box, other
+    overlap = all(other_low[axis] <= high[axis] and other_high[axis] >= low[axis] for axis in (0, 2))
+    return overlap and other_low[1] < high[1]
 
 
 def vertical(shape: Shape, x: np.ndarray, y: float, z: np.ndarray, up: float) -> np.ndarray:
@@ -148,18 +139,13 @@ def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.nd
     with np.errstate(all="ignore"):  # points that no triangle has may be anywhere
         x, y = x / depth, y / depth
     covered = np.zeros((height, width), bool)
-    # The back of a closed mesh lies behind its front.
-    for facing in facing_triangles(x, y, triangles.corners)[: 1 if triangles.closed else 2]:
+    (ax, bx, cx), (ay, by, cy) = x[triangles.corners].T, y[triangles.corners].T
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    # Triangles that are seen from their front, and from their back. That of a closed mesh lies behind its front.
+    for facing in (area > 0, area < 0)[: 1 if triangles.closed else 2]:
         start, end = silhouette_edges(facing, triangles.corners, triangles.edges)
         covered |= winding_numbers(x[start], y[start], x[end], y[end], width, height) != 0
     return covered
-
-
-def facing_triangles(x: np.ndarray, y: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Whether each triangle is seen from its front, and whether from its back."""
-    (ax, bx, cx), (ay, by, cy) = x[corners].T, y[corners].T
-    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    return area > 0, area < 0
 
 
 def silhouette_edges(facing: np.ndarray, corners: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

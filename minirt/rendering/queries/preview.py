@@ -14,7 +14,6 @@ import numpy as np
 from minirt.fields import FARTHEST, Triple, spelled
 from minirt.kernel import interpreted
 from minirt.kernel.frame import ray_direction
-from minirt.kernel.pixels import to_byte_range
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame import thread_memory
@@ -22,7 +21,7 @@ from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
-from minirt.rendering.tone_mapping import PLAIN, map_tones
+from minirt.rendering.tone_mapping import map_tones
 from minirt.scene import Camera, Scene, describe
 
 BUDGET = 0.12  # seconds
@@ -53,18 +52,16 @@ def render_interpreted(
         direction = unit(ray_direction(arrays.camera, x + arrays.camera[12], y + arrays.camera[13]))
         colour = incoming_radiance(arrays, thread_memory(arrays), 0, Vec(*arrays.camera[:3]), direction)
     light = np.stack([colour.x, colour.y, colour.z], axis=-1).reshape(height, width, 3)
-    pixels = np.full((height, width, 4), 255, np.uint8)
-    pixels[..., :3] = to_byte_range(light[..., ::-1])
-    if scene.camera.tone != PLAIN:
-        map_tones(light, pixels, scene.camera.tone)
+    pixels = np.empty((height, width, 4), np.uint8)
+    map_tones(light, pixels, scene.camera.tone)
     return pixels, light
 
 
-def draw_background(request: Request, linear: np.ndarray) -> None:
-    """Draw a scene without shapes: its background, or black. `linear` may have no rows."""
-    pixels = request.pixels
-    if request.scene.background and pixels.size:
-        pixels[...], light = render_interpreted(request.scene, pixels.shape[1], pixels.shape[0], request.crop)
+def draw_background(request: Request) -> None:
+    """Draw a scene without shapes: its background, or black."""
+    scene, pixels, linear, crop = request
+    if scene.background and pixels.size:
+        pixels[...], light = render_interpreted(scene, pixels.shape[1], pixels.shape[0], crop)
         linear[...] = light if len(linear) else linear
     else:
         pixels[...] = (0, 0, 0, 255)
@@ -114,21 +111,18 @@ def visible_shapes(arrays: ShapeArrays, camera: Camera, width: int, height: int)
 
 def showing_camera(scene: Scene, arrays: ShapeArrays, width: int, height: int) -> str:
     """Return the line of the first camera that shows most shapes, or an empty text."""
-    centre, radius = bounding_ball(scene)
+    centre, radius = bounding_ball(arrays)
     count = max(1, TESTS // (COLUMNS * ROWS * len(arrays.slots)))
     cameras = candidates(scene.camera, centre, radius, height / width)[:count]
     shown = [len(visible_shapes(arrays, camera, width, height)) for camera in cameras]
     return line_of(cameras[np.argmax(shown)]) if max(shown, default=0) else ""
 
 
-def bounding_ball(scene: Scene) -> tuple[Triple, float]:
-    """Return a ball around all bounded shapes; without any, around points of the infinite ones and the lights."""
-    boxes = [box for box in (shape.bounds() for shape in scene.shapes) if box is not None]
-    if not boxes:
-        points = [flat[0] for flat in (shape.flat() for shape in scene.shapes) if flat is not None]
-        points += [light.position for light in scene.lights if hasattr(light, "position")]
-        boxes = [(point, point) for point in points or [(0.0, 0.0, 0.0)]]
-    low, high = np.min([box[0] for box in boxes], axis=0), np.max([box[1] for box in boxes], axis=0)
+def bounding_ball(arrays: ShapeArrays) -> tuple[Triple, float]:
+    """Return a ball around all bounded shapes; without any, around points of the infinite ones."""
+    is_bounded = ~np.array([kind.infinite for kind in arrays.group_numbers], bool)[arrays.slots[:, 0]]
+    boxes = arrays.boxes[is_bounded] if is_bounded.any() else arrays.boxes
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     x, y, z = (low + high).tolist()
     return (x / 2, y / 2, z / 2), dist(low, high) / 2 or 1.0
 
@@ -141,22 +135,18 @@ def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> 
     distance = MARGIN * radius / sin(atan2(half, 1.0))
     x, _, z = (eye - middle for eye, middle in zip(camera.position, centre, strict=True))
     start = atan2(x, z) if x or z else pi
+    digits = DIGITS - 1 - floor(log10(radius))
     turns = [(-1) ** i * ceil(i / 2) * 2 * pi / AZIMUTHS for i in range(AZIMUTHS)]
     cameras = []
     for elevation in map(radians, ELEVATIONS):
         for azimuth in (start + turn for turn in turns):
             towards = cos(elevation) * sin(azimuth), sin(elevation), cos(elevation) * cos(azimuth)
-            eye = tuple(rounded(a + distance * b, radius) for a, b in zip(centre, towards, strict=True))
+            eye = tuple(round(a + distance * b, digits) for a, b in zip(centre, towards, strict=True))
             if max(map(abs, eye)) > FARTHEST:
                 continue
             direction = tuple(round(-b, PLACES) for b in towards)
             cameras.append(camera.replace(position=eye, direction=direction, fov=fov, roll=0.0))
     return cameras
-
-
-def rounded(coordinate: float, size: float) -> float:
-    """Round a coordinate to `DIGITS` digits of a size."""
-    return round(coordinate, DIGITS - 1 - floor(log10(size)))
 
 
 def line_of(camera: Camera) -> str:

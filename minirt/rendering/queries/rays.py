@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
-from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,12 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from minirt.errors import check_whole
 from minirt.kernel.bvh_nodes import Tree
-from minirt.kernel.frame import ray_direction
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.generic_kernels import generalised_tree
+from minirt.rendering.packing.ray_casting import camera_ray
 from minirt.rendering.renderer import renderer
 from minirt.scene import Camera, Scene
 from minirt.scene.scene import check_scene
@@ -39,12 +37,10 @@ def camera_rays(scene: Scene | Camera, width: int, height: int) -> tuple[NDArray
     check_scene(scene, "camera_rays")
     width, height = check_whole("width", width, 1), check_whole("height", height, 1)
     camera = scene if isinstance(scene, Camera) else scene.camera
-    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     y, x = np.mgrid[0:height, 0:width] + 0.5
-    toward = ray_direction(numbers, x, y)
+    _, toward = camera_ray(camera, width, height, x, y)
     directions = np.stack(np.broadcast_arrays(toward.x, toward.y, toward.z), axis=-1)
-    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
-    return np.broadcast_to(numbers[:3], directions.shape).copy(), directions
+    return np.broadcast_to(np.array(camera.position, np.float64), directions.shape).copy(), directions
 
 
 class Traced(NamedTuple):
@@ -77,21 +73,23 @@ class Hits(ClosestHits):
     @cached_property
     def certificate(self) -> Certificate:
         """Backward error, condition and normal error; ValueError for hits that are not those of a call of `trace`."""
-        if self.traced is None:
-            raise ValueError("only hits that minirt.trace returned have a certificate, not parts of them or copies")
-        certificate = import_module("minirt.rendering.queries.certificates")
-        shapes, _, parts, *rays = self.traced
-        rays = certificate.Rays(*rays, self.distance, self.normal)
-        found: Certificate = certificate.certify(shapes, self.owner, parts, rays)
-        return found
+        from minirt.rendering.queries import certificates
+
+        shapes, _, parts, origins, directions = self.known()
+        rays = certificates.Rays(origins, directions, self.distance, self.normal)
+        return certificates.certify(shapes, self.owner, parts, rays)
 
     @property
     def primitive(self) -> NDArray[np.int64]:
         """(n,) the index among the primitives of the scene, in the order of its shapes, of which a mesh has one for
         each triangle; 0 where nothing is hit. ValueError for hits that are not those of a call of `trace`."""
+        return self.known().primitives
+
+    def known(self) -> Traced:
+        """Return the rays and shapes; ValueError for hits that are not those of a call of `trace`."""
         if self.traced is None:
-            raise ValueError("only hits that minirt.trace returned know their primitives, not parts of them or copies")
-        return self.traced.primitives
+            raise ValueError("only hits that minirt.trace returned know their rays, not parts of them or copies")
+        return self.traced
 
     def columns(self) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
         """Return the hits as columns of a table: `pandas.DataFrame(hits.columns())`.

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
-from minirt.kernel.frame import ray_direction
-from minirt.kernel.scene_arrays import kind_of, kind_of_packed
+from minirt.kernel.scene_arrays import kind_of
 from minirt.kernel.trace import ROUNDING
-from minirt.lanes import Vec, dot, unit
+from minirt.lanes import Vec, dot
 from minirt.rendering.notes import shape_name
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.ray_casting import packed_columns
+from minirt.rendering.packing.camera import camera_numbers
+from minirt.rendering.packing.ray_casting import camera_ray, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes, extents_from
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -60,33 +59,28 @@ class Stiff(NamedTuple):
         return f"{self.element}: {self.why} ({figures})"
 
 
-class ShapeViews(NamedTuple):
-    """Distances, sizes and rounding errors of n primitives as seen from the eye, in scene units."""
-
-    distance: np.ndarray  # (n,) from the eye to the surface
-    size: np.ndarray  # (n,) shortest length of each shape, infinity if it has none
-    double: np.ndarray  # (n,) rounding error of a point on the surface in float64
-    single: np.ndarray  # (n,) rounding error in float32, relative to the eye
-    ahead: np.ndarray  # (n,) whether the nearest point lies in front of the camera
-
-
 def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> Iterator[Stiff]:
     """Yield the stiff shapes of a scene in a picture of the given size."""
-    camera = camera_numbers(scene.camera, width, height)
-    seen = shape_views(tables, camera)
+    eye, right, _, forward = camera_numbers(scene.camera, width, height).reshape(4, 3)
+    nearest, size = nearest_points_and_sizes(tables, eye)
+    way = nearest - eye
+    distance = np.linalg.norm(way, axis=1)
+    # Rounding errors of a point on the surface, in scene units; in float32 relative to the eye.
+    double = ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3])
+    single = ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, tables.boxes))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        scale = np.minimum(seen.size, seen.distance)
-        double, single = seen.double / scale, seen.single / scale
-        pixels = seen.size / (seen.distance * 2 * np.linalg.norm(camera[3:6]) / width)
-        thinness = np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0)
+        scale = np.minimum(size, distance)
+        double, single = double / scale, single / scale
+        pixels = size / (distance * 2 * np.linalg.norm(right) / width)
+        thinness = np.where((way @ forward > 0) & (pixels > 0), 1 / pixels, 0.0)
     for index, element in worst(tables, np.maximum(double, single), VISIBLE):
-        small = seen.size[index] <= seen.distance[index]
+        small = size[index] <= distance[index]
         yield Stiff(
             element,
             "small for its coordinates or its distance" if small else "the eye is close to it for its size",
             {
-                "size": float(seen.size[index]),
-                "distance": float(seen.distance[index]),
+                "size": float(size[index]),
+                "distance": float(distance[index]),
                 "relative rounding of a hit, double": float(double[index]),
                 "single": float(single[index]),
             },
@@ -114,9 +108,9 @@ def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tu
         yield index, shape_name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
-def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
-    """Compute distances, sizes and rounding errors of all primitives as seen from the camera's eye."""
-    eye, forward = camera[:3], camera[9:]
+def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return for each of n primitives the point nearest to the eye, (n, 3), and the shortest length of its shape, (n,),
+    infinity if it has none."""
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
         selected = np.flatnonzero(tables.slots[:, 0] == group)
@@ -127,17 +121,8 @@ def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
             nearest[selected] = np.clip(nearest[selected], *tables.boxes[selected].swapaxes(0, 1))
         owners, part_of = np.unique(tables.owner[selected], return_inverse=True)
         size[selected] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
-    nearest = np.where(
-        np.isfinite(nearest), nearest, tables.boxes.mean(axis=1)
-    )  # at the exact centre no point is nearest
-    way = nearest - eye
-    return ShapeViews(
-        np.linalg.norm(way, axis=1),
-        size,
-        ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3]),
-        ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, tables.boxes)),
-        way @ forward > 0,
-    )
+    # At the exact centre no point is nearest.
+    return np.where(np.isfinite(nearest), nearest, tables.boxes.mean(axis=1)), size
 
 
 # Find coincident surfaces: pairs so close together that rounding decides which of them is seen (z-fighting).
@@ -154,11 +139,11 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
     """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye."""
     if not 2 <= len(tables.owner) <= MOST_SHAPES:
         return
-    camera = pixel_rays(camera_numbers(scene.camera, ACROSS, DOWN), ACROSS, DOWN)
     y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
-    eye, ways = camera[:3], unit(ray_direction(camera, x, y))
+    origin, ways = camera_ray(scene.camera, ACROSS, DOWN, x, y)
+    eye = np.array(scene.camera.position, np.float64)
     with np.errstate(all="ignore"):
-        t, slopes = all_hits(tables, Vec(*eye), ways)
+        t, slopes = all_hits(tables, origin, ways)
         pair = np.argsort(t, axis=0, kind="stable")[:2]
         near, far = np.take_along_axis(t, pair, axis=0)
         gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
@@ -186,11 +171,9 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
 def all_hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
     """For each shape and ray return the hit distance, infinity for a miss, and the cosine of ray and normal."""
     t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
-    for index, (group, row) in enumerate(tables.slots):
-        packed = packed_columns(tables.rows[group][row : row + 1])
-        kind = kind_of_packed(type(packed))
+    for group, rows in enumerate(tables.rows):
+        selected, packed, kind = tables.slots[:, 0] == group, packed_columns(rows, 1), kind_of(rows.dtype.names)
         hit, at = kind.intersect(packed, eye, ways)
         _, normal = kind.surface(packed, eye + at * ways)
-        t[index] = np.where(hit, at, np.inf)
-        slopes[index] = np.abs(dot(normal, ways))
+        t[selected], slopes[selected] = np.where(hit, at, np.inf), np.abs(dot(normal, ways))
     return t, slopes

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.rendering.sampling.contrast import estimated_error
+from minirt.rendering.sampling.packets import estimated_error
 from minirt.scene import Scene
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Outcome:
     pixels: Pixels | None = None
     error: Exception | None = None
     seconds: float = 0.0  # of rendering; 0 in simulated time
-    error_estimate: float | None = None  # of a refined picture: see `minirt.rendering.sampling.contrast`
+    error_estimate: float | None = None  # of a refined picture: see `minirt.rendering.sampling.packets`
     preview: bool = False  # another picture follows when the kernel is ready
     about: tuple[str, ...] = ()  # notes on how it was rendered
 
@@ -116,8 +116,7 @@ def paint(
         if preview:
             return Outcome(job, renderer.preview(job.scene, job.width, job.height), preview=True)
         pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
-        render = renderer.render if base is None else renderer.refine
-        done = render(job.scene, pixels, job.samples, is_wanted=is_wanted)
+        done = renderer.render(job.scene, pixels, job.samples, is_wanted=is_wanted, edges_only=base is not None)
     except Exception as error:  # of any kind: the session raises it in the main thread
         return Outcome(job, error=error)
     about = () if job.urgent or not done else tuple(renderer.about)

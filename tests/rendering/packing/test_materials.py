@@ -166,7 +166,7 @@ def test_no_bit_of_the_picture_changes(renderer: Renderer, scene: Scene, monkeyp
     turned = scene.replace(EYE, direction=(0.9, 0, -0.4))
     found = [linear(each, *SIZE, 2, renderer) for each in (scene, turned, scene)]
     with monkeypatch.context() as patch:
-        patch.setattr("minirt.rendering.scene_packing.without_unseen", lambda materials, seen: materials)
+        patch.setattr("minirt.rendering.packing.materials.without_unseen", lambda materials, seen: materials)
         right = [linear(Scene(each.elements), *SIZE, 2, renderer) for each in (scene, turned, scene)]
     for some, others in zip(found, right, strict=True):
         assert np.array_equal(some, others)

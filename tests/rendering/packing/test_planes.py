@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from minirt.kernel.pixels import TILE
-from minirt.rendering import Renderer, scene_packing
-from minirt.rendering.packing.planes import signed_heights
+from minirt.rendering import Renderer
+from minirt.rendering.packing import lights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.visibility import signed_heights
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.plane import Plane
@@ -111,13 +112,13 @@ def test_pictures_are_the_same_without_culling_of_planes(monkeypatch: pytest.Mon
     pictures = [linear(scene, 60, 40, renderer=Renderer(1)) for scene in scenes]
     dropped = []
 
-    original = scene_packing.never_occludes
+    original = lights.never_occludes
 
     def none(shapes: Any, eye: Any, light: Any, radius: float) -> np.ndarray:
         dropped.append(original(shapes, eye, light, radius).any())
         return np.zeros(len(shapes.planes), bool)
 
-    monkeypatch.setattr(scene_packing, "never_occludes", none)
+    monkeypatch.setattr(lights, "never_occludes", none)
     for scene, picture in zip(scenes, pictures, strict=True):
         assert np.array_equal(linear(scene, 60, 40, renderer=Renderer(1)), picture)
     assert 0.2 < np.mean(dropped) < 0.95

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import threading
-from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from minirt.rendering import Renderer
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -54,13 +52,6 @@ def test_clicks_hit_the_shapes_of_random_scenes(seed: int) -> None:
 def test_a_click_hits_the_visible_one_of_coincident_surfaces(name: str) -> None:
     assert_picks(Scene((EYE, *SAME[name])))
     assert_picks(Scene((EYE, *reversed(SAME[name]))))
-
-
-def test_coincident_surfaces_may_have_textures_in_another_folder(tmp_path: Path) -> None:
-    Image.new("RGB", (2, 2), (9, 9, 9)).save(tmp_path / "grey.png")
-    ball = Sphere((0, 0, 5), 2, (1, 2, 3), texture="grey.png")
-    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), ball, ball.replace(diameter=2)), tmp_path / "scene.rt")
-    assert pick(scene, 11, 11, 5, 5) in scene.shapes
 
 
 def test_the_point_on_a_shape() -> None:

@@ -200,9 +200,9 @@ def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -
     renderer = Renderer(2)
     sweep = AutoSampler.sweep
 
-    def cancelled(self: AutoSampler, *arguments: Any) -> bool:
+    def cancelled(self: AutoSampler, *arguments: Any) -> None:
         renderer.cancel()
-        return sweep(self, *arguments)
+        sweep(self, *arguments)
 
     monkeypatch.setattr(AutoSampler, "sweep", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
@@ -224,8 +224,8 @@ class FirstSweep(AutoSampler):
         super().__init__(lambda _: True, lambda: (errors, errors), packets, PACKETS, 1)
         self.refines = False
 
-    def draw_first(self) -> bool:
-        return True
+    def draw_first(self) -> None:
+        pass
 
     def refine(self, goal: float, end: float) -> float:
         self.refines = True

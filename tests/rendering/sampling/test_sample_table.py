@@ -12,18 +12,20 @@ from numpy.typing import NDArray
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
-from minirt.rendering.frame import sample_positions
-from minirt.rendering.packing.camera import packet_pixels, packet_rays
-from minirt.rendering.sampling.contrast import (
+from minirt.rendering.frame import COUNTS, SampleTable, random_shifts, sample_positions
+from minirt.rendering.sampling.packets import (
     CLASSES,
     LINES,
+    PRIOR,
     SQUARED_ROUNDING,
+    Packets,
+    allocate,
+    coefficients,
     contrast_classes,
     estimated_error,
+    places_of,
 )
-from minirt.rendering.sampling.packets import PRIOR, Packets, allocate, coefficients, places_of
 from minirt.rendering.sampling.packets import squared_error as sum_of_errors
-from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_shifts, table_rays
 from tests.kernel.pictures import TWO
 from tests.rendering.sampling.test_auto import FACTOR, HEIGHT, KNOWN, WIDTH, reference, rms
 
@@ -58,16 +60,6 @@ def test_references_have_no_bias() -> None:
     shifts = random_shifts(2000, RAYS).reshape(-1, 2)
     positions = (sample_positions(REFERENCE_SAMPLES)[:, None] + shifts) % 1.0
     assert (positions @ (0.3, 0.8) < 0.4).mean() == pytest.approx(0.5 - 0.3 / 2 / 0.8, abs=0.003)
-
-
-@pytest.mark.parametrize("precision", [np.float64, np.float32])
-def test_rays_are_those_of_packets(precision: type[np.floating]) -> None:
-    camera = np.random.default_rng(1).normal(size=12).astype(precision)
-    positions = SampleTable(np.arange(5), 128 // camera.itemsize).positions
-    rays = table_rays(camera, positions, packet_pixels(128 // camera.itemsize))
-    expected = packet_rays(camera, positions)
-    assert rays.dtype == expected.dtype
-    assert rays == pytest.approx(expected, rel=1e-6 if precision == np.float32 else 1e-14, abs=1e-5)
 
 
 # Estimator of the squared error of a picture, on packets with constructed errors, and wrong estimators.
@@ -258,7 +250,7 @@ def test_the_estimate_is_near_the_true_error(name: str) -> None:
     fewer = 1
     for samples in (4, 16):
         before = pixels.copy()
-        assert TWO.refine(KNOWN[name], pixels, samples)
+        assert TWO.render(KNOWN[name], pixels, samples, edges_only=True)
         estimate = estimated_error(before, pixels, fewer, samples)
         assert estimate is not None
         assert 1 / FACTOR < estimate / rms(pixels[..., 2::-1] / 255 - reference(name)) < FACTOR

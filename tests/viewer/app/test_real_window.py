@@ -86,7 +86,7 @@ def still(scene: Scene, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = 
     pixels = np.zeros((size[1], size[0], 4), np.uint8)
     renderer.render(scene, pixels)
     for samples in passes:
-        renderer.refine(scene, pixels, samples)
+        renderer.render(scene, pixels, samples, edges_only=True)
     return pixels[..., 2::-1]
 
 
