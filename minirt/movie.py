@@ -32,11 +32,7 @@ MEDIA = {".gif": "image/gif", ".webp": "image/webp", ".apng": "image/png", ".mp4
 QUALITY = 80  # of 100
 COLOURS = 255  # of each picture of a GIF; Pillow uses one more for pixels that stay as they are
 LONGEST = {"GIF": 655_350, "APNG": 65_535, "WEBP": 2**24 - 1}  # milliseconds that a picture can last
-OPTIONS: dict[str, dict[str, Any]] = {
-    "GIF": {"optimize": True},
-    "APNG": {},
-    "WEBP": {"method": 0},  # of compression: the fastest
-}
+OPTIONS: dict[str, dict[str, Any]] = {"GIF": {"optimize": True}, "APNG": {}, "WEBP": {"method": 0}}  # 0: the fastest
 CODECS = {"MP4": ("mp4", "libx264", 45), "WEBM": ("webm", "libvpx-vp9", 58)}  # and constant rate factors of quality 0
 BEST = 4  # constant rate factor of quality 100
 BT709, STUDIO_RANGE = 1, 1  # FFmpeg's numbers of the matrix from RGB, and of levels from 16 to 235

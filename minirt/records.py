@@ -46,11 +46,8 @@ class FieldDocumentation:
 
     def __get__(self, instance: object, kind: Any) -> str:
         text = sys.modules[kind.__module__].__doc__ if self.text.startswith("A line `") else self.text
-        facts = [
-            f"- `{each.name}: {each.type}`: {facts_of(each)}"
-            for each in ordered_fields(kind)
-            if "field" in each.metadata
-        ]
+        declared = (each for each in ordered_fields(kind) if "field" in each.metadata)
+        facts = [f"- `{each.name}: {each.type}`: {facts_of(each)}" for each in declared]
         head = [cleandoc(text or ""), "", "Fields; a value out of range is a ValueError:", ""] if facts else [self.text]
         return "\n".join([*head, *facts])
 

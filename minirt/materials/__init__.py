@@ -13,7 +13,7 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.fields import Factor, Flag, Real, declare
-from minirt.materials.compound import Compound, Material
+from minirt.materials.compound import Compound, Material, Share
 from minirt.materials.glass import Fresnel, Glass, Mirror, Tint
 from minirt.materials.maps import Bump, Checker, Clouds, Marble, NormalMap, Placement, Texture, Wood
 from minirt.records import record
@@ -55,17 +55,7 @@ class Specular(Material):
 # should.
 #
 #     sp 0,0,20 8 255,200,120 glow:0.8
-Glow = partial(
-    Real,
-    unit="ratio",
-    low=0.0,
-    high=1.0,
-    step=0.05,
-    placeholder="share",
-    initial=0.5,
-    feature="glow",
-    packed=lambda share, reader: share * reader.gain,
-)
+Glow = partial(Share, initial=0.5, feature="glow", packed=lambda share, reader: share * reader.gain)
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
 MAPPED: dict[str, Any] = {"mapped": True} | SHARED

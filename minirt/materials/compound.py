@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any, ClassVar
 
 from minirt.element import Record, fields_of
 from minirt.errors import FieldError, quoted
-from minirt.fields import Field, PictureFile
+from minirt.fields import Field, PictureFile, Real
 from minirt.records import record
+
+Share = partial(Real, unit="ratio", low=0.0, high=1.0, step=0.05, placeholder="share")
 
 
 @record()

@@ -10,7 +10,7 @@ from math import log2, sqrt
 from typing import Any
 
 from minirt.fields import FARTHEST, Colour, Length, Real, Triple, declare
-from minirt.materials.compound import Material
+from minirt.materials.compound import Material, Share
 from minirt.records import record
 
 BLACK = 1e30  # absorption, in halvings for each scene unit, of what lets nothing of a colour through
@@ -149,14 +149,4 @@ class Tint(Material):
 # does: `mirror:0.04` is a polished floor. A shape with neither `glass:` nor `mirror:` shows no difference.
 #
 #     sp 0,0,20 8 255,255,255 glass:1.5 fresnel
-Fresnel = partial(
-    Real,
-    unit="ratio",
-    low=0.0,
-    high=1.0,
-    step=0.1,
-    placeholder="share",
-    initial=1.0,
-    feature="fresnel",
-    packed=lambda share, _: share,
-)
+Fresnel = partial(Share, step=0.1, initial=1.0, feature="fresnel", packed=lambda share, _: share)

@@ -10,11 +10,8 @@ from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import LAMPS
 from minirt.shapes import ALL_KINDS
 
-KNOWN: tuple[type[Element], ...] = (
-    *(Resolution, Ambient, Background, Camera),
-    *LAMPS,
-    *(kind.element for kind in ALL_KINDS),
-)
+SHAPES = tuple(kind.element for kind in ALL_KINDS)
+KNOWN: tuple[type[Element], ...] = (Resolution, Ambient, Background, Camera, *LAMPS, *SHAPES)
 
 ELEMENTS = {element.code: element for element in KNOWN}
 
@@ -25,22 +22,15 @@ LOOKALIKES = str.maketrans("1I0", "llo")
 GLUED = re.compile(r"([A-Za-z]++)[-+.0-9]")  # an identifier without a blank before the first number
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
 
-# Prefixes of attribute keys in scenes of other programs: the key that is meant, where spelling does not tell it.
+# The key that is meant by attributes of other programs that begin so, where spelling does not tell it.
 FOREIGN_KEYS = {
-    "refl": "mirror",
-    "refr": "glass",
-    "ior": "glass",
-    "trans": "glass",
-    "shin": "specular",
-    "phong": "specular",
-    "tex": "texture",
-    "xpm": "texture",
-    "image": "texture",
-    "height": "bump",
-    "bump": "bump",
-    "chess": "checker",
-    "chequer": "checker",
-    "atten": "fade",
+    "mirror": ("refl",),
+    "glass": ("refr", "ior", "trans"),
+    "specular": ("shin", "phong"),
+    "texture": ("tex", "xpm", "image"),
+    "bump": ("height", "bump"),
+    "checker": ("chess", "chequer"),
+    "fade": ("atten",),
 }
 
 
@@ -61,7 +51,7 @@ def nearest_element(word: str) -> str:
 
 def nearest_key(word: str, known: list[str]) -> str:
     """Return the key of `known` that `word` may mean, or ''."""
-    key = next((key for prefix, key in FOREIGN_KEYS.items() if word.lower().startswith(prefix)), "")
+    key = next((key for key, beginnings in FOREIGN_KEYS.items() if word.lower().startswith(beginnings)), "")
     return key if key in known else nearest_word(word, known)
 
 

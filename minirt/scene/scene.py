@@ -65,9 +65,8 @@ class Scene(Immutable):
         for kind in UNIQUE_KINDS:
             count = sum(type(element) is kind for page in pages if kind in page.kinds for element in page.of(kind))
             if count > 1 or (kind is Camera and count == 0):
-                raise ValueError(
-                    f"a scene has {'exactly' if kind is Camera else 'at most'} one {kind.title}, got {count}"
-                )
+                number = "exactly" if kind is Camera else "at most"
+                raise ValueError(f"a scene has {number} one {kind.title}, got {count}")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene) or self.file != other.file:

@@ -5,7 +5,6 @@ lines stay as they were read.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from typing import Any
 
 from minirt.element import Element, fields_of
@@ -14,7 +13,7 @@ from minirt.helpers import file_io
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
-from minirt.scene.pages import Item, Page
+from minirt.scene.pages import Page
 from minirt.scene.registry import SPELLINGS
 
 
@@ -91,15 +90,12 @@ def edited(text: str, start: int, end: int, new: str | None) -> str:
 def text_of(pages: tuple[Page, ...]) -> str:
     """Return the text of a scene file."""
     length = sum(len(page.items) for page in pages)
-    lines = [line for page in pages for line in lines_of(page.items, length)]
+    lines: list[str] = []
+    for page in pages:
+        sources = [item if isinstance(item, str) else item.source for item in page.items]
+        for item, source, read in zip(page.items, sources, fast.read(sources, length), strict=True):
+            lines.append(source if isinstance(item, str) or item == read else line_of(item))
     return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
-
-
-def lines_of(items: tuple[Item, ...], length: int) -> Iterator[str]:
-    """Yield the lines of items of a file of `length` lines."""
-    sources = [item if isinstance(item, str) else item.source for item in items]
-    for item, source, read in zip(items, sources, fast.read(sources, length), strict=True):
-        yield source if isinstance(item, str) or item == read else line_of(item)
 
 
 def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from gmpy2 import mpfr
 
-from minirt.scene.writer import lines_of
+from minirt.scene.writer import line_of
 from minirt.shapes import Kind, Shape
 from tests import oracle
 from tests.oracle.body import body, inside, meetings
@@ -173,7 +173,7 @@ class Wrong(NamedTuple):
 
     def __str__(self) -> str:
         reason = " (where it starts)" if self.again else ""
-        line = " ".join(lines_of((self.shape,), 1))
+        line = line_of(self.shape)
         return f"t = {self.t!r}{reason}, not {self.exact!r}: {line} from {self.origin} along {self.direction}"
 
 
