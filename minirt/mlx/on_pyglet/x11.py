@@ -8,10 +8,14 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+
+with suppress(ImportError):  # other systems have no X11, and no windows for the functions here
+    from pyglet.libs.x11 import xlib
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -33,8 +37,6 @@ def is_x11(window: Any) -> bool:
 
 def set_icon(window: Any, pictures: Sequence[NDArray[np.uint8]]) -> None:
     """Set the icon (_NET_WM_ICON) in several sizes, each (h, w, 4) uint8, BGRA."""
-    from pyglet.libs.x11 import xlib
-
     parts = [np.array([each.shape[1], each.shape[0], *each.view("<u4").ravel()], np.ulonglong) for each in pictures]
     words = np.concatenate(parts).astype(ctypes.c_ulong)  # Xlib takes a long for each word of 32 bits
     xlib.XChangeProperty(
@@ -57,8 +59,6 @@ def manager_has_full_screen(window: Any) -> bool:
 
 def request_full_screen(window: Any, on: bool) -> None:
     """Ask the window manager to let the window fill the screen, or to give it its former size and place."""
-    from pyglet.libs.x11 import xlib
-
     event = xlib.XEvent()
     message = event.xclient
     message.type, message.format, message.window = CLIENT_MESSAGE, 32, window._window
@@ -71,15 +71,11 @@ def request_full_screen(window: Any, on: bool) -> None:
 
 
 def _atom(window: Any, name: str) -> int:
-    from pyglet.libs.x11 import xlib
-
     return int(xlib.XInternAtom(window._x_display, name.encode(), False))
 
 
 def _property(window: Any, owner: int, name: int, kind: int) -> list[int]:
     """Return the words of a property of any window, an empty list if it has none."""
-    from pyglet.libs.x11 import xlib
-
     data, count, _ = window.get_single_property(owner, name, kind)
     words = ctypes.cast(data, ctypes.POINTER(ctypes.c_ulong))
     values = [int(words[n]) for n in range(count)] if data else []
@@ -119,9 +115,7 @@ def report_key_events(window: Any, report: Callable[[KeyEvent | None], None]) ->
 
 def handle_key(window: Any, report: Callable[[KeyEvent | None], None], original: Any, event: Any) -> None:
     """Report a key event, and let pyglet handle it, which makes text of it."""
-    from pyglet.libs.x11.xlib import XLookupKeysym
-
-    code = int(XLookupKeysym(event.xkey, 0))
+    code = int(xlib.XLookupKeysym(event.xkey, 0))
     if code:
         modifiers = window._translate_modifiers(event.xkey.state)
         report(KeyEvent(event.type == KEY_PRESS, code, latin_letter(window, event), modifiers))
@@ -153,17 +147,9 @@ def latin_letter(window: Any, event: Any) -> int | None:
 
 def _symbol(window: Any, key: int, group: int) -> int:
     """Return the symbol that a key prints without modifiers in a group; group 0 where the key has no such group."""
-    lookup = _xlib().XkbKeycodeToKeysym
+    lookup = xlib._lib.XkbKeycodeToKeysym  # whose types pyglet does not declare
+    lookup.restype, lookup.argtypes = ctypes.c_ulong, [ctypes.c_void_p, ctypes.c_ubyte, ctypes.c_int, ctypes.c_int]
     return int(lookup(window._x_display, key, group, 0) or lookup(window._x_display, key, 0, 0))
-
-
-def _xlib() -> Any:
-    """Return Xlib, with the types of a function that pyglet does not declare."""
-    from pyglet.libs.x11 import xlib
-
-    function = xlib._lib.XkbKeycodeToKeysym
-    function.restype, function.argtypes = ctypes.c_ulong, [ctypes.c_void_p, ctypes.c_ubyte, ctypes.c_int, ctypes.c_int]
-    return xlib._lib
 
 
 # Drag and drop (XDND protocol): pyglet 2.1 fails with a TypeError, which would end the program, when an object with at
@@ -204,7 +190,6 @@ def end_program_when_connection_is_lost(save: Callable[[], None]) -> None:
     """Call `save` and end the process with status 1 when the X server is gone. No other system has such a server."""
     if not sys.platform.startswith("linux"):
         return
-    from pyglet.libs.x11 import xlib
 
     def handler(_display: int) -> int:
         try:
