@@ -14,10 +14,10 @@ import minirt
 from minirt.cli import main
 from minirt.cli.arguments import argument_parser
 from tests.make_tables import PAGE, index_text, manual_page, renewed
-from tests.notebook.requirements import require
 from tests.pages import PAGES, anchors, block, blocks, links, name, read, without_code
 from tests.paths import PACKAGE, ROOT, TESTS
 from tests.processes import run
+from tests.skipping import require
 
 NAMES = [name(page) for page in PAGES]
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")

@@ -69,17 +69,21 @@ class PageDisplay(Display):
     def __init__(self, send: Callable[[Message, bytes], object]) -> None:
         super().__init__()
         self.send = send
-        self._next_tick = 0.0
         self._sent = self._shown = 0  # numbers of the last frame that was sent, and of the last that the page has shown
         self._due = inf  # when the frame in the page is replaced by a finer one
 
     def run(self) -> None:
+        next_tick = 0.0
         self.turn(tick=False)
         while not self.over:
-            self.awake.wait(self.patience())
+            has_to_tick = self.busy or self.is_to_sharpen
+            self.awake.wait(max(0.0, next_tick - self.time()) if has_to_tick else None)
             self.awake.clear()
             self.perform_actions()
-            self.turn(tick=self._is_tick_due())
+            is_tick = self.time() >= next_tick
+            if is_tick:
+                next_tick = self.time() + TICK
+            self.turn(tick=is_tick and self.busy)
             for window in self.windows:
                 self.sharpen(window.shown.pixels)
 
@@ -104,28 +108,20 @@ class PageDisplay(Display):
         self._due = self.time() + QUIET
         return True
 
+    @property
+    def is_to_sharpen(self) -> bool:
+        """Whether the page shows the last frame, which is a coarse one."""
+        return self._due < inf and self._sent == self._shown
+
     def sharpen(self, pixels: NDArray[np.uint8]) -> None:
         """Send the same frame in finer quality, if no other one has followed it for some time."""
-        if self.time() >= self._due and self._sent == self._shown:
+        if self.is_to_sharpen and self.time() >= self._due:
             self._due = inf
             self._send_frame(encode(pixels, FINE))
-
-    def patience(self) -> float | None:
-        """Return the seconds until there is something to do without an event; None for ever."""
-        sharpening = self._due if self._sent == self._shown else inf
-        next_time = min(sharpening, self._next_tick if self.busy else inf)
-        return max(0.0, next_time - self.time()) if next_time < inf else None
 
     def _send_frame(self, data: bytes) -> None:
         self._sent += 1
         self.send({"kind": "frame", "number": self._sent}, data)
-
-    def _is_tick_due(self) -> bool:
-        now = self.time()
-        if not self.busy or now < self._next_tick:
-            return False
-        self._next_tick = now + TICK
-        return True
 
 
 def encode(pixels: NDArray[np.uint8], quality: int) -> bytes:
@@ -145,6 +141,10 @@ BUTTONS = (Button.LEFT, Button.MIDDLE, Button.RIGHT, Button.BACK, Button.FORWARD
 
 def deliver(window: Window, message: Message, now: float) -> None:
     """Report an event of the page to the window; events of an unknown kind are ignored."""
+    point = 0, 0
+    if "x" in message:  # an event of the pointer: x and y are shares of width and height
+        window.keyboard.modifiers = modifiers_of(message)
+        point = int(message["x"] * window.width), int(message["y"] * window.height)
     match message.get("kind"):
         case "key down":
             if code := code_of(message):
@@ -155,25 +155,17 @@ def deliver(window: Window, message: Message, now: float) -> None:
             if code := code_of(message):
                 window.keyboard.release(code, modifiers_of(message))
         case "button down" | "button up":
-            window.keyboard.modifiers = modifiers_of(message)
             event = Event.BUTTON_PRESS if message["kind"] == "button down" else Event.BUTTON_RELEASE
             if 0 <= message["button"] < len(BUTTONS):
-                window.on_button(event, BUTTONS[message["button"]], *point(window, message))
+                window.on_button(event, BUTTONS[message["button"]], *point)
         case "motion":
-            window.keyboard.modifiers = modifiers_of(message)
-            window.on_motion(*point(window, message))
+            window.on_motion(*point)
         case "wheel":
-            window.keyboard.modifiers = modifiers_of(message)
-            window.on_scroll(int(message["right"]), int(message["up"]), *point(window, message))
+            window.on_scroll(int(message["right"]), int(message["up"]), *point)
         case "enter" | "leave":
             window.deliver(Event.ENTER_NOTIFY if message["kind"] == "enter" else Event.LEAVE_NOTIFY)
         case "focus" | "blur":
             window.on_focus(message["kind"] == "focus")
-
-
-def point(window: Window, message: Message) -> tuple[int, int]:
-    """Return the pixel of a point, which the page gives as shares of width and height."""
-    return int(message["x"] * window.width), int(message["y"] * window.height)
 
 
 KEYPAD: Final = 3  # the location of keys on the keypad

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Collection, Hashable
 from itertools import count
 from typing import Any
 
@@ -10,11 +10,12 @@ import numpy as np
 
 from minirt.helpers.system import TooLargeError
 from minirt.kernel.bvh_nodes import Tree
+from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
-from minirt.rendering.packing.bvh import build_bvh
+from minirt.rendering.packing.bvh import build_bvh, without_boxes
 from minirt.rendering.packing.camera import Crop
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.generic_kernels import in_single
@@ -24,19 +25,22 @@ from minirt.rendering.packing.visibility import BinnedShapes
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
 
+TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
+
 
 class Packing:
     """Packs scene after scene, in "double" precision or, where a scene allows it, in "single".
 
-    With `minirt.kernel.interpreted` as the kernel it does without compiled functions. Without `culls` there is one tile
-    and one cell of each light, with all shapes.
+    With `minirt.kernel.interpreted` as the kernel it does without compiled functions. `without` names what does not
+    cull: without `TILES` each tile has all shapes, without `LIGHT_BUFFERS` each light has one cell with all of them,
+    without `BOXES` each ray visits all of the BVH. Without `BVH` there is none.
     """
 
     def __init__(
-        self, kernel: Any = functions, precision: str = "double", depth: int = DEPTH, culls: bool = True
+        self, kernel: Any = functions, precision: str = "double", depth: int = DEPTH, without: Collection[str] = ()
     ) -> None:
         self.kernel = kernel
-        self.culls = culls
+        self.without = without
         self.precision = precision
         self.depth = depth  # bounces at most
         self.shape_arrays = ShapeArrays()
@@ -54,7 +58,9 @@ class Packing:
     def bvh_of(self, shapes: tuple[Shape, ...]) -> Tree:
         """Return the BVH over these shapes, which is kept until other ones are packed."""
         arrays = self.shape_arrays_for(shapes)
-        self.bvh = self.bvh or build_bvh(arrays, self.kernel)
+        if not self.bvh:
+            tree = build_bvh(arrays, self.kernel)
+            self.bvh = without_boxes(tree) if BOXES in self.without else tree
         return self.bvh
 
     def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:
@@ -87,11 +93,12 @@ class Packing:
             lens = camera.lens_numbers(scene.camera, focus)
         radius, per_focus = camera.radius_and_focus(lens)
         view = numbers, width, height, crop, radius, per_focus
-        if self.culls:
-            eye = cached((numbers.tobytes(), *view[1:]), visibility.seen_by_eye, self.kernel, shapes, *view)
+        if TILES in self.without:
+            eye = visibility.in_all_cells(shapes, tile_count(width) * tile_count(height))
         else:
-            eye = visibility.seen_by_light(self.kernel, shapes, numbers[:3], 1, np.zeros(len(shapes.planes), bool))
-        cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes)) if self.culls else 1
+            eye = cached((numbers.tobytes(), *view[1:]), visibility.seen_by_eye, self.kernel, shapes, *view)
+        usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes))
+        cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
         while True:
             try:
                 binned, keys = self.seen_by_lights(sources, numbers[:3], cells, cached, radius)
@@ -104,7 +111,7 @@ class Packing:
         light_starts, light_buffers = cached(keys, joined_light_buffers, binned, eye)
         look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
         packed = cached(look, materials.pack_materials, scene, shapes.owner, used)
-        needs_bvh = "reflective" in used or (cells > 1 and not SPREAD.isdisjoint(used))
+        needs_bvh = "reflective" in used or (usual_cells > 1 and not SPREAD.isdisjoint(used))
         paint: Any = scene.background and scene.background.paint
         environment = None
         if "environment" in used:
@@ -130,7 +137,7 @@ class Packing:
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
             environment=environment,
-            bvh=self.bvh_of(scene.shapes) if needs_bvh else None,
+            bvh=self.bvh_of(scene.shapes) if needs_bvh and BVH not in self.without else None,
             **materials.without_unseen(packed, eye.members),
         )
 
@@ -141,6 +148,8 @@ class Packing:
 
         `TooLargeError` where memory does not suffice for so many cells.
         """
+        if LIGHT_BUFFERS in self.without:
+            return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
         shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []

@@ -18,10 +18,10 @@ from minirt.kernel.machine_code.library import LIBRARY, load
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.scene_packing import Packing
 from minirt.report.bench import Run
 from minirt.report.metrics import Interval, of_median
 from minirt.report.pictures import Budget, Step, measure_times, timed
-from minirt.report.settings import ChangedPacking
 from minirt.report.variants import Variant
 from minirt.scene import Scene
 
@@ -60,7 +60,7 @@ class Ablation:
         """Yield the scene as it is, and each variant; `step` is called with the name of each before it is measured."""
         times = measure_times([self.draw], self.draw(), self.threads, self.budget)
         frame_ms = median(run.wall for (run,) in times.runs) * 1e3
-        if not all(variant.packing for variant in variants):
+        if not all(variant.without for variant in variants):
             step("compiling the scene as it is")
             self.compile_s = compile_seconds(self.scene)
         base = Part("scene", "the scene", "as it is", frame_ms, compile_s=self.compile_s)
@@ -75,9 +75,9 @@ class Ablation:
     def part(self, variant: Variant) -> Part:
         """Measure a variant: RenderError if it fails."""
         renderer, pixels = Renderer(self.threads), np.zeros_like(self.pixels)
-        if variant.packing:
-            renderer.packing = ChangedPacking(*variant.packing)
-        compile_s = nan if variant.packing else compile_seconds(variant.scene)
+        if variant.without:
+            renderer.packing = Packing(without=[variant.without])
+        compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
         draw()
         times = measure_times([self.draw, draw], draw(), self.threads, self.budget, PAIRS)

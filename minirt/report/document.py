@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from math import isnan
 from pathlib import Path
 
-from minirt.errors import RenderError
 from minirt.helpers import file_io
 from minirt.rendering.image import Image
 from minirt.report.diagram import NARROW, WIDE, draw, on_page
@@ -35,10 +34,8 @@ def write_files(folder: str | os.PathLike[str], found: Findings, lights: dict[st
     """
     for name, data in report_files(found, lights, reference).items():
         path = Path(folder) / name
-        try:
+        with file_io.told_errors(path):
             file_io.write(path, data)
-        except OSError as error:
-            raise RenderError(f"{path}: cannot write: {error.strerror or error}") from None
 
 
 def report_files(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, bytes]:

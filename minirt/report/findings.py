@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from math import exp, isfinite, nan, sqrt
-from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 import minirt
+from minirt.kernel.machine_code.fingerprint import cpu_information
 from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
 from minirt.report.metrics import fit
@@ -129,11 +129,7 @@ def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed
 
 def processor() -> str:
     """Return the name of the processor: from /proc/cpuinfo on Linux, from `platform` elsewhere."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor()
-    return next((line.split(": ")[1] for line in lines if line.startswith("model name")), platform.processor())
+    return cpu_information("model name") or platform.processor()
 
 
 def pareto_front(rows: Iterable[Row], doubt: float) -> list[Row]:

@@ -86,7 +86,7 @@ class Measurement:
         self.seconds = dict(expected(plan, wanted, variants, once))
         right = self.reference = reference(scene, width, height, plan.samples, SEED, step)
         about = subject(scene, self.name, width, height, self.threads, SEED)
-        self.found = found = Findings(about, right.samples, right.error)
+        self.found = found = Findings(about, plan.samples, right.error)
         self.add_notes(found, width, height)
         stage = SettingRenderer(scene, width, height, self.threads, plan.budget)
         for setting in wanted:
@@ -131,7 +131,7 @@ def expected(plan: Plan, wanted: list[Setting], variants: list[Variant], once: f
     for row, _ in povray.SETTINGS if plan.others else ():
         yield row.name, RUNS * once * np.nan_to_num(row.samples, nan=4.0)
     for variant in variants:
-        yield f"{variant.name} {variant.change}", 4 * PAIRS * once + (0.0 if variant.packing else COMPILING)
+        yield f"{variant.name} {variant.change}", 4 * PAIRS * once + (0.0 if variant.without else COMPILING)
 
 
 def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int, float]:

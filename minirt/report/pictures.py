@@ -63,28 +63,24 @@ def measure_times(works: Works, first: Run, threads: int, budget: Budget, many: 
         return Times([(*(work() for work in works[:-1]), first)], TOO_SLOW)
     least = many if many * first.wall <= budget.longest else FEW
     found: list[tuple[Run, ...]] = []
+    seconds = 0.0
     for number in range(1, budget.tries + 1):
-        while len(found) < number * least or seconds_of(found) < number * budget.seconds:
+        while len(found) < number * least or seconds < number * budget.seconds:
             step = -1 if len(found) % 2 else 1
             found.append(tuple([work() for work in works[::step]][::step]))
+            seconds += sum(run.wall for run in found[-1])
         undisturbed = [each for each in found if not any(is_disturbed(run, threads) for run in each)]
         if len(undisturbed) >= min(ENOUGH, least):
             return Times(undisturbed)
-        if seconds_of(found) > budget.longest:
+        if seconds > budget.longest:
             break
     return Times(found, DISTURBED_BY_OTHERS)
 
 
-def seconds_of(found: list[tuple[Run, ...]]) -> float:
-    """Return the wall time of all runs together."""
-    return sum(run.wall for each in found for run in each)
-
-
 class Reference(NamedTuple):
-    """A picture in float64, its samples per pixel and its estimated error."""
+    """A picture in float64, and its estimated error."""
 
     picture: Picture
-    samples: int
     error: float  # estimated RMSE of the reference itself
     perceived: Picture  # the picture as the eye perceives it
 
@@ -108,13 +104,13 @@ def reference(scene: Scene, width: int, height: int, samples: int, seed: int, st
             if has_apertures(traced):
                 discs = aperture_places(len(places), 1, lanes_of(traced.camera), 2 * seed + half)
                 rays = with_apertures(rays, discs[start : start + PASS], traced.lens)
-            arguments = frame_arguments(traced, pixels, linear=linear)._replace(rays=rays)
-            renderer.runner.next_row = arguments.next_row  # so that it can be cancelled
-            renderer.runner.run([arguments], renderer.threads)
+            counter = renderer.runner.new_counters(1)  # so that it can be cancelled
+            arguments = frame_arguments(traced, pixels, linear=linear, counter=counter)
+            renderer.runner.run([arguments._replace(rays=rays)], renderer.threads)
             total += linear * len(some)
         halves.append(clamped(total / len(places)))
     mean = (halves[0] + halves[1]) / 2
-    return Reference(mean, samples, rmse(*halves) / 2, metrics.perceived(mean))
+    return Reference(mean, rmse(*halves) / 2, metrics.perceived(mean))
 
 
 def reference_steps(samples: int) -> list[str]:

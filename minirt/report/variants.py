@@ -14,39 +14,37 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.element import Element, fields_of
-from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture, Point
+from minirt.fields import Direction, Length, Lengths, MeshField, Picture, Point
 from minirt.materials import Attributes, Clouds, Compound, Glass
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import ATTRIBUTES, NEEDS, PLAIN, WORDS, features, material_features
-from minirt.rendering.scene_packing import Packing
-from minirt.report.settings import Change, without_boxes, without_light_buffers, without_tiles
+from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Background, Camera, FurtherLight, Scene, SpotLight
 from minirt.shapes import ALL_KINDS, Shape
 
 SIZE = 1e-3  # of an added shape, as a share of the distance to it
-GREY = (128, 128, 128)
 DARK = (0, 0, 1)  # of an added background, which may be seen: the least that is not black
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 
 
 class Variant(NamedTuple):
-    """A scene with something added, or the same scene packed without a list."""
+    """A scene with something added, or the same scene packed without something that culls."""
 
     sort: str
     name: str
     change: str
     scene: Scene
-    packing: tuple[Change, ...] = ()
+    without: str = ""  # as of `minirt.rendering.scene_packing.Packing`
 
 
 def without_lists(scene: Scene) -> Iterator[Variant]:
     """Yield the scene packed without each list that it has. Such variants need no kernel of their own."""
-    yield Variant("list", "tiles and their cones", "without", scene, (without_tiles,))
+    yield Variant("list", "tiles and their cones", "without", scene, TILES)
     if scene.lights:
-        yield Variant("list", "light buffers and their cones", "without", scene, (without_light_buffers,))
+        yield Variant("list", "light buffers and their cones", "without", scene, LIGHT_BUFFERS)
     if features(scene) & {"reflective", "parallel"}:
-        yield Variant("list", "boxes of the BVH", "without", scene, (without_boxes,))
+        yield Variant("list", "boxes of the BVH", "without", scene, BOXES)
 
 
 def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
@@ -118,8 +116,8 @@ class InvisibleElements:
                 value = self.size * (field.initial or 1.0)
             case Point() if corners:
                 value = next(corners)
-            case Direction() | Colour():
-                value = self.back if isinstance(field, Direction) else GREY
+            case Direction():
+                value = self.back
             case _:
                 value = (field.low + field.high) / 2 if field.initial is None else field.initial
         return value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 import secrets
 import socket
@@ -17,8 +18,8 @@ import pytest
 from PIL import Image
 
 from tests.browser import Page, open_browser, require_browser
-from tests.notebook.requirements import require, written
 from tests.processes import started
+from tests.skipping import require
 from tests.waiting import until
 
 pytestmark = pytest.mark.slow
@@ -41,6 +42,7 @@ READY = (
     "[...window.jupyterapp.shell.widgets('main')].some(each => each.sessionContext?.session?.kernel?.status === 'idle')"
 )
 RUN = "window.jupyterapp.commands.execute('notebook:run-all-cells').then(() => true)"
+KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 CANVAS = "document.querySelector('canvas.minirt-viewer')"
 
 
@@ -127,6 +129,15 @@ def viewer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ViewerInPage]:
     folder: Path = tmp_path_factory.mktemp("lab")
     with opened(written(folder / "ball.ipynb", CELL), folder) as page:
         yield ViewerInPage(page)
+
+
+def written(path: Path, *cells: str) -> Path:
+    """Write a notebook with these cells of code, and return its path."""
+    cell = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
+    made = [{**cell, "id": f"cell{number}", "source": source} for number, source in enumerate(cells)]
+    notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": KERNEL}, "cells": made}
+    path.write_text(json.dumps(notebook))
+    return path
 
 
 def ball(viewer: ViewerInPage) -> tuple[float, float, int]:

@@ -27,7 +27,7 @@ from minirt.notebook.page_back_end import (
     modifiers_of,
     text_of,
 )  # fmt: skip
-from tests.notebook.requirements import require
+from tests.skipping import require
 
 
 class NoScreen(Memory):
@@ -155,9 +155,9 @@ def test_frames_wait_for_a_page_that_shows_none() -> None:
 def test_the_last_frame_is_sent_again_in_finer_quality_once() -> None:
     page = PageOfFrames()
     page.offer(GRADIENT)
-    assert page.patience() is None  # the page has not shown it: its answer comes as an event
+    assert not page.is_to_sharpen  # the page has not shown it: its answer comes as an event
     page.show_all()
-    assert page.patience() == QUIET
+    assert page.is_to_sharpen
     page.now = QUIET / 2
     page.sharpen(GRADIENT)
     assert len(page.frames) == 1
@@ -167,7 +167,7 @@ def test_the_last_frame_is_sent_again_in_finer_quality_once() -> None:
     page.now = 2 * QUIET
     page.sharpen(GRADIENT)
     assert [data for _, data in page.frames] == [encode(GRADIENT, COARSE), encode(GRADIENT, FINE)]
-    assert page.patience() is None
+    assert not page.is_to_sharpen
 
 
 def test_frames_have_the_colours_of_the_picture() -> None:

@@ -15,12 +15,12 @@ from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import packing_calls
 from minirt.rendering.packing.features import WORDS, features
-from minirt.rendering.scene_packing import Packing
+from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
 from minirt.report import ablation, pictures
 from minirt.report.ablation import Ablation, Part
 from minirt.report.metrics import Interval
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
-from minirt.report.settings import ChangedPacking, brute_force, without_boxes, without_light_buffers, without_tiles
+from minirt.report.settings import brute_force
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS
@@ -50,7 +50,7 @@ def test_lists_change_the_time_and_not_the_picture(clock: Clock, monkeypatch: py
     render = Renderer.render
 
     def slow(renderer: Renderer, *arguments: Any) -> object:
-        clock.slowness = 1.25 if isinstance(renderer.packing, ChangedPacking) else 1.0
+        clock.slowness = 1.25 if renderer.packing.without else 1.0
         return render(renderer, *arguments)
 
     monkeypatch.setattr(Renderer, "render", slow)
@@ -78,7 +78,7 @@ def test_a_variant_with_a_kernel_of_its_own(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_variant_that_fails_and_times_that_are_disturbed_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("minirt.report.settings.MOST", 1)
+    monkeypatch.setattr("minirt.rendering.packing.visibility.MOST_MEMBERS", 1)
     monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: True)
     scene, tiles, lights = parts(*without_lists(ALL))
     assert tiles.remark.startswith("failed: 6 shapes in each of")
@@ -183,7 +183,7 @@ def test_brute_force_gives_the_same_picture(scene: Scene) -> None:
 
 
 def test_every_tile_and_every_light_has_every_shape() -> None:
-    traced = ChangedPacking(without_tiles, without_light_buffers).pack(ALL, WIDE, HIGH)
+    traced = Packing(without=(TILES, LIGHT_BUFFERS)).pack(ALL, WIDE, HIGH)
     for kind, group in enumerate(traced.groups):
         expected = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
         assert len(group.tile_starts) == 15 + 1
@@ -200,7 +200,7 @@ def test_every_tile_and_every_light_has_every_shape() -> None:
 
 def test_every_ray_visits_every_leaf_of_the_tree() -> None:
     mirrors = ALL.replace(ALL.shapes[1], mirror=0.7).replace(ALL.shapes[0], mirror=0.4)
-    tree, wide = (packing.pack(mirrors, WIDE, HIGH).bvh for packing in (Packing(), ChangedPacking(without_boxes)))
+    tree, wide = (packing.pack(mirrors, WIDE, HIGH).bvh for packing in (Packing(), Packing(without=(BOXES,))))
     boxes, open_boxes = (each.nodes.reshape(-1, NODE)[:, :REFERENCES] for each in (tree, wide))
     used = (boxes[:, : REFERENCES // 2] <= boxes[:, REFERENCES // 2 :]).sum()
     assert 0 < used == np.isneginf(open_boxes[:, : REFERENCES // 2]).sum()

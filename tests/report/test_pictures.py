@@ -11,7 +11,7 @@ import pytest
 
 import minirt
 from minirt.errors import RenderError
-from minirt.rendering import scene_packing
+from minirt.rendering.packing import lights
 from minirt.report import pictures
 from minirt.report.bench import Run
 from minirt.report.pictures import (
@@ -130,7 +130,7 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
     """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
     monkeypatch.setattr(
-        scene_packing, "positions_and_intensities", lambda lamps, _: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
+        lights, "positions_and_intensities", lambda lamps, _: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
     )
     rows = rows_for(*settings(bright, 4, 1.0), scene=bright)
     counts = {(row.knob, int(row.label)): row.not_finite for row in rows}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
-from minirt.kernel.bvh_nodes import GROUPS, NODE, WIDTH, Group, Tree
+from minirt.kernel.bvh_nodes import GROUPS, NODE, REFERENCES, WIDTH, Group, Tree
 from minirt.kernel.scene_arrays import kind_of, row_type
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
@@ -52,6 +52,15 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
     names[names == 0] = NO_LEAF
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
     return Tree(nodes, extents, shape_arrays.slots, tuple(groups))
+
+
+def without_boxes(tree: Tree) -> Tree:
+    """Widen all boxes of a BVH to all of space, so that each ray visits every leaf."""
+    nodes = tree.nodes.copy()
+    low, high = np.split(nodes.reshape(-1, NODE)[:, :REFERENCES], 2, axis=1)
+    used = low <= high  # an unused child has an empty box
+    low[used], high[used] = -np.inf, np.inf
+    return tree._replace(nodes=nodes)
 
 
 def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -33,6 +33,7 @@ CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), 
 MEMBER, START = 4, 8  # bytes of a member and of a start of a list
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**29  # bytes of lists that are built within seconds
+MOST_MEMBERS = 2**24  # of all cells that have every shape
 RUN = 120  # bytes of a plane in a row of cells, while its runs are computed
 
 # Positive floating-point numbers sort like their bits, the exponent first. Depths sort by their upper 25 bits, from
@@ -114,7 +115,7 @@ def seen_by_light(
 ) -> BinnedShapes:
     """Bin the shapes into the light buffer of a light of some radius, without the planes that are `skipped` (p,).
 
-    `TooLargeError` where there is no room for so many copies of its lists. With one cell this serves eyes, too.
+    `TooLargeError` where there is no room for so many copies of its lists.
     """
     largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
     place = np.array(light), cube_grid(cells)
@@ -127,12 +128,11 @@ def seen_by_light(
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:
     """Put all shapes into one cell; where there are more cells, none at all, because the kernel traverses a BVH."""
-    cones = np.zeros((len(shape_arrays.slots), 5))
-    cones[:, 3] = -2.0
+    every = in_all_cells(shape_arrays, 1, skipped)
     if cells == 1:
-        return in_one_cell(shape_arrays, cones, skipped)
+        return every
     starts = np.zeros((len(shape_arrays.rows), 6 * cells * cells + 1), np.int64)
-    return BinnedShapes(starts, np.zeros(0, np.int32), cones)
+    return every._replace(starts=starts, members=every.members[:0])
 
 
 def bin_shapes(
@@ -207,6 +207,23 @@ def depth_order(depths: np.ndarray) -> np.ndarray:
     low = np.argsort(depths.astype(np.uint16), kind="stable")
     order: np.ndarray = low[np.argsort((depths >> 16).astype(np.uint8)[low], kind="stable")]
     return order
+
+
+def in_all_cells(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray | None = None) -> BinnedShapes:
+    """Put all shapes, but for the planes that are `skipped`, into each cell, with cones that hold all directions.
+
+    `TooLargeError` where many cells have so many shapes that nobody would wait for the picture.
+    """
+    shapes = len(shape_arrays.slots)
+    if cells > 1 and cells * shapes > MOST_MEMBERS:
+        raise system.TooLargeError(f"{shapes} shapes in each of {cells} tiles are too many")
+    cones = np.zeros((shapes, 5))
+    cones[:, 3] = -2.0
+    one = in_one_cell(shape_arrays, cones, np.zeros(len(shape_arrays.planes), bool) if skipped is None else skipped)
+    # All lists of one kind come first, then all lists of the next kind.
+    members = [np.tile(one.members[start:end], cells) for start, end in one.starts]
+    starts = cells * one.starts[:, :1] + np.diff(one.starts) * np.arange(cells + 1)
+    return BinnedShapes(starts, np.concatenate([one.members[:0], *members]), cones)
 
 
 def in_one_cell(shape_arrays: ShapeArrays, cones: np.ndarray, skipped: np.ndarray) -> BinnedShapes:

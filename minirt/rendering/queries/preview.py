@@ -20,7 +20,7 @@ from minirt.rendering.frame import thread_memory
 from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.scene_packing import Packing
+from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.rendering.tone_mapping import map_tones
 from minirt.scene import Camera, Scene, describe
 
@@ -46,7 +46,7 @@ def render_interpreted(
     """Return the picture of a scene in that size, or a rectangle of that size of a larger picture, and its light,
     (h, w, 3)."""
     with np.errstate(all="ignore"):
-        arrays = Packing(interpreted, depth=0, culls=False).pack(scene, width, height, crop)
+        arrays = Packing(interpreted, depth=0, without=(TILES, LIGHT_BUFFERS, BVH)).pack(scene, width, height, crop)
         arrays = arrays._replace(soft=None, lens=None)
         y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
         direction = unit(ray_direction(arrays.camera, x + arrays.camera[12], y + arrays.camera[13]))
