@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 from math import inf
 from threading import Lock
@@ -34,24 +34,30 @@ class Renderer:
     """Keeps threads and packed shapes from picture to picture. Any thread may call it; pictures are made one by one."""
 
     def __init__(
-        self, threads: int | None = None, precision: str = "double", depth: int | None = None, dither: bool = False
+        self,
+        threads: int | None = None,
+        precision: str = "double",
+        depth: int | None = None,
+        dither: bool = False,
+        without: Collection[str] = (),
     ) -> None:
         """Use as many threads as there are usable processors unless `threads` is given; `precision` is "double" or
         "single", or RenderError; light is reflected or refracted at most `depth` times, `DEPTH` by default. `dither`
-        replaces rounding to 8 bits by blue noise."""
+        replaces rounding to 8 bits by blue noise; `without` names what does not cull, as of `Packing`."""
         if precision not in PRECISIONS:
             raise RenderError(f"precision must be double or single, got '{precision}'")
         self.threads = usable_cores() if threads is None else check_whole("threads", threads, 1)
         self.precision = precision
         self.depth = DEPTH if depth is None else check_whole("depth", depth, 0, MAX_DEPTH)
         self.dither = dither
+        self.without = without
         self.after_fork()
         renewables.add(self)
 
     def after_fork(self) -> None:
         """Begin without a picture, in a child process anew: locks, threads and processes are the parent's."""
         self.busy = Lock()
-        self.packing = Packing(precision=self.precision, depth=self.depth)
+        self.packing = Packing(precision=self.precision, depth=self.depth, without=self.without)
         self.kernels = Kernels(self.precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
         self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, self.dither)

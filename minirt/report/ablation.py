@@ -18,7 +18,6 @@ from minirt.kernel.machine_code.library import LIBRARY, load
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.scene_packing import Packing
 from minirt.report.bench import Run
 from minirt.report.metrics import Interval, of_median
 from minirt.report.pictures import Budget, Step, measure_times, timed
@@ -74,9 +73,7 @@ class Ablation:
 
     def part(self, variant: Variant) -> Part:
         """Measure a variant: RenderError if it fails."""
-        renderer, pixels = Renderer(self.threads), np.zeros_like(self.pixels)
-        if variant.without:
-            renderer.packing = Packing(without=[variant.without])
+        renderer, pixels = Renderer(self.threads, without=variant.without), np.zeros_like(self.pixels)
         compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
         draw()

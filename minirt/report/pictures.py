@@ -192,7 +192,7 @@ class SettingRenderer:
     def renderer(self, knob: Knob) -> tuple[Renderer, dict[str, Any]]:
         """Return the renderer of a knob, and how long its compilation and its packing took, by fields of `Row`."""
         if knob.name not in self.ready:
-            renderer = knob.renderer(self.threads)
+            renderer = Renderer(self.threads, **knob.renderer)
             compiling = timed(lambda: renderer.specialise(self.scene))
             height, width, _ = self.pixels.shape
             sorting = timed(lambda: renderer.packing.pack(self.scene, width, height))

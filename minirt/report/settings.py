@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,31 +44,18 @@ def automatic_samples(renderer: Renderer, scene: Scene, pixels: np.ndarray, erro
     return figures | {"not_finite": renderer.not_finite}
 
 
-def brute_force(threads: int) -> Renderer:
-    """Return a renderer that tests every ray against every shape."""
-    renderer = Renderer(threads)
-    renderer.packing = Packing(without=(TILES, LIGHT_BUFFERS, BOXES))
-    return renderer
-
-
 class Knob(NamedTuple):
     """A render option that is varied: a line of the diagram."""
 
     name: str
     about: str
-    renderer: Callable[[int], Renderer] = Renderer  # number of threads -> renderer
+    renderer: Mapping[str, Any] = {}  # keywords of its renderer
     draw: Draw = uniform_samples
     values: tuple[float, ...] = COUNTS  # samples, or errors that are asked for
     work: Callable[[float], float] = float  # value -> samples per pixel, at most, to which the time is proportional
 
 
-def bounces(depth: int, name: str) -> Knob:
-    """Uniform samples with at most `depth` bounces."""
-    about = f"light is reflected or refracted {depth} times at most, not {DEPTH} times"
-    return Knob(name, about, renderer=lambda threads: Renderer(threads, depth=depth), values=COUNTS[::2])
-
-
-SINGLE = Knob("single", "float32 relative to the eye", renderer=lambda threads: Renderer(threads, "single"))
+SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"})
 AUTO = Knob(
     "auto",
     "as many samples in each part of the picture as the error that is asked for needs (`--samples auto`)",
@@ -76,13 +63,18 @@ AUTO = Knob(
     values=ERRORS,
     work=lambda error: (ONE_SAMPLE / error) ** 1.5,
 )
-BOUNCES = (bounces(0, "no bounces"), bounces(1, "1 bounce"), bounces(3, "3 bounces"))
+ABOUT_BOUNCES = "light is reflected or refracted {} times at most, not {} times"
+BOUNCES = tuple(
+    Knob(name, ABOUT_BOUNCES.format(depth, DEPTH), {"depth": depth}, values=COUNTS[::2])
+    for depth, name in ((0, "no bounces"), (1, "1 bounce"), (3, "3 bounces"))
+)
+CULLING = (TILES, LIGHT_BUFFERS, BOXES)
 KNOBS = (
     Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS),
-    Knob("adaptive", "one sample, then more where neighbouring pixels differ", Renderer, adaptive_samples, COUNTS[1:]),
+    Knob("adaptive", "one sample, then more where neighbouring pixels differ", {}, adaptive_samples, COUNTS[1:]),
     AUTO,
     SINGLE,
-    Knob("brute force", "no culling: every ray tries every shape", renderer=brute_force, values=COUNTS[:2]),
+    Knob("brute force", "no culling: every ray tries every shape", {"without": CULLING}, values=COUNTS[:2]),
     *BOUNCES,
 )
 

@@ -35,16 +35,16 @@ class Variant(NamedTuple):
     name: str
     change: str
     scene: Scene
-    without: str = ""  # as of `minirt.rendering.scene_packing.Packing`
+    without: tuple[str, ...] = ()  # as of `minirt.rendering.scene_packing.Packing`
 
 
 def without_lists(scene: Scene) -> Iterator[Variant]:
     """Yield the scene packed without each list that it has. Such variants need no kernel of their own."""
-    yield Variant("list", "tiles and their cones", "without", scene, TILES)
+    yield Variant("list", "tiles and their cones", "without", scene, (TILES,))
     if scene.lights:
-        yield Variant("list", "light buffers and their cones", "without", scene, LIGHT_BUFFERS)
+        yield Variant("list", "light buffers and their cones", "without", scene, (LIGHT_BUFFERS,))
     if features(scene) & {"reflective", "parallel"}:
-        yield Variant("list", "boxes of the BVH", "without", scene, BOXES)
+        yield Variant("list", "boxes of the BVH", "without", scene, (BOXES,))
 
 
 def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:

@@ -15,12 +15,12 @@ from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import packing_calls
 from minirt.rendering.packing.features import WORDS, features
-from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
+from minirt.rendering.scene_packing import BOXES, Packing
 from minirt.report import ablation, pictures
 from minirt.report.ablation import Ablation, Part
 from minirt.report.metrics import Interval
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
-from minirt.report.settings import brute_force
+from minirt.report.settings import CULLING
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS
@@ -50,7 +50,7 @@ def test_lists_change_the_time_and_not_the_picture(clock: Clock, monkeypatch: py
     render = Renderer.render
 
     def slow(renderer: Renderer, *arguments: Any) -> object:
-        clock.slowness = 1.25 if renderer.packing.without else 1.0
+        clock.slowness = 1.25 if renderer.without else 1.0
         return render(renderer, *arguments)
 
     monkeypatch.setattr(Renderer, "render", slow)
@@ -178,12 +178,12 @@ WIDE, HIGH = 70, 40  # 5 x 3 tiles
 
 @pytest.mark.parametrize("scene", [ALL, Scene((AMBIENT, EYE, *SHAPES)), *map(random_scene, range(1, 6))])
 def test_brute_force_gives_the_same_picture(scene: Scene) -> None:
-    brute = linear(scene, WIDE, HIGH, 3, brute_force(2))
+    brute = linear(scene, WIDE, HIGH, 3, Renderer(2, without=CULLING))
     assert np.array_equal(brute, linear(scene, WIDE, HIGH, 3))
 
 
 def test_every_tile_and_every_light_has_every_shape() -> None:
-    traced = Packing(without=(TILES, LIGHT_BUFFERS)).pack(ALL, WIDE, HIGH)
+    traced = Packing(without=CULLING).pack(ALL, WIDE, HIGH)
     for kind, group in enumerate(traced.groups):
         expected = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
         assert len(group.tile_starts) == 15 + 1
@@ -205,5 +205,5 @@ def test_every_ray_visits_every_leaf_of_the_tree() -> None:
     used = (boxes[:, : REFERENCES // 2] <= boxes[:, REFERENCES // 2 :]).sum()
     assert 0 < used == np.isneginf(open_boxes[:, : REFERENCES // 2]).sum()
     assert np.array_equal(tree.nodes.reshape(-1, NODE)[:, REFERENCES:], wide.nodes.reshape(-1, NODE)[:, REFERENCES:])
-    brute = linear(mirrors, WIDE, HIGH, 1, brute_force(1))
+    brute = linear(mirrors, WIDE, HIGH, 1, Renderer(1, without=CULLING))
     assert np.array_equal(brute, linear(mirrors, WIDE, HIGH))
