@@ -28,7 +28,8 @@ class Lamp(Element):
 
     brightness: float
     colour: Triple
-    size: float | None
+    fade: float | None = None
+    size: float | None = None
 
     # What the kernel reads of it: see `minirt.kernel.shading.lights`.
 
@@ -43,8 +44,7 @@ class Lamp(Element):
 
     def fading(self) -> float:
         """One over the distance at which it has faded to nothing; 0 if it does not."""
-        fade: float | None = getattr(self, "fade", None)
-        return 1 / fade if fade else 0.0
+        return 1 / self.fade if self.fade else 0.0
 
     def features(self) -> tuple[str, ...]:
         """The features of the kernel that it needs: see `minirt.rendering.packing.features`."""
