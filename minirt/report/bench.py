@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from itertools import cycle, repeat
 from statistics import median
@@ -85,8 +84,3 @@ def moved(scene: Scene) -> Scene:
     """Return the scene seen by an eye that made one step."""
     x, y, z = scene.camera.position
     return scene.replace(scene.camera, position=(x + STEP, y, z))
-
-
-def report(measured: dict[str, str | float], as_json: bool) -> str:
-    """Format measurements as a JSON object or as a line of text."""
-    return json.dumps(measured) if as_json else ", ".join(f"{name} {value}" for name, value in measured.items())

@@ -17,7 +17,7 @@ from minirt.rendering.packing.generic_kernels import precision_of
 from minirt.rendering.queries.rays import Hits, trace
 from minirt.report.metrics import changed, clamped, rmse
 from minirt.report.variants import with_materials
-from minirt.scene import Background, Lamp, Scene
+from minirt.scene import Background, FurtherLight, Lamp, Scene
 from minirt.shapes import ALL_KINDS, Kind
 
 NEEDS_DOUBLE = "always float64"
@@ -68,7 +68,7 @@ def plain_element(element: Element, feature: Hashable) -> Element | None:
         case Background() if feature != ("environment" if isinstance(element.paint, str) else "background"):
             return None
         case Lamp() if feature != "spots" and "spots" in element.features():
-            return element.without_features()
+            return FurtherLight(element.place, element.brightness, element.colour) if element.place else None
     return element
 
 

@@ -40,8 +40,7 @@ def automatic_samples(renderer: Renderer, scene: Scene, pixels: np.ndarray, erro
     """Render as `--samples auto` does until the estimated error is at most `error`."""
     found = renderer.reach(scene, pixels, error, linear=linear)
     assert found, "nobody cancels"
-    figures = {"samples": found.samples, "asked": error, "estimated": found.error}
-    return figures | {"not_finite": renderer.not_finite}
+    return {"samples": found.samples, "asked": error, "estimated": found.error, "not_finite": renderer.not_finite}
 
 
 class Knob(NamedTuple):
@@ -97,8 +96,7 @@ def settings(scene: Scene, most: int, least_error: float) -> Iterator[Setting]:
     Single precision is left out if the scene needs float64, bounces if nothing reflects or refracts.
     """
     is_single = Packing(precision="single").pack(scene, 16, 9).camera.dtype == np.float32
-    without = {SINGLE.name} if not is_single else set()
-    without |= {each.name for each in BOUNCES} if "reflective" not in features(scene) else set()
-    for knob in (each for each in KNOBS if each.name not in without):
-        wanted = (value for value in knob.values if (value >= least_error if knob is AUTO else value <= most))
-        yield from (Setting(knob, value) for value in wanted)
+    for knob in KNOBS:
+        if (is_single or knob is not SINGLE) and ("reflective" in features(scene) or knob not in BOUNCES):
+            wanted = (value for value in knob.values if (value >= least_error if knob is AUTO else value <= most))
+            yield from (Setting(knob, value) for value in wanted)

@@ -55,10 +55,6 @@ class Lamp(Element):
         }
         return tuple(name for name, needed in needs.items() if needed)
 
-    def without_features(self) -> Lamp | None:
-        """Return a point light in its place; None for a light from infinitely far away."""
-        return FurtherLight(self.place, self.brightness, self.colour) if self.place else None
-
 
 @record()
 class Light(Lamp):
