@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
 from functools import partial
+from itertools import cycle
 from operator import ne
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -75,6 +76,7 @@ class InvisibleElements:
         lights = [np.subtract(light.position, eye) for light in scene.lights if hasattr(light, "position")]
         behind = max([1.0, *(-2 * float(offset @ forward) for offset in lights)])
         self.place, self.size = eye - behind * forward, SIZE * behind
+        self.corners = cycle(np.vstack([np.zeros(3), np.eye(3)]) * self.size + self.place)
         self.back, self.camera = (-forward).tolist(), scene.camera
         self.picture, self.mesh = str(folder / "grey.png"), str(folder / "tetrahedron.obj")
         Image(np.full((2, 2, 3), 128, np.uint8)).save(self.picture)
@@ -97,11 +99,9 @@ class InvisibleElements:
 
     def record(self, kind: type[Any]) -> Any:
         """Make a record of its required fields; its points are corners of a small tetrahedron."""
-        corners = iter(np.vstack([np.zeros(3), np.eye(3)]) * self.size + self.place)
-        required = (field for field in fields_of(kind) if field.required)
-        return kind(**{field.name: self.value(field, corners) for field in required})
+        return kind(**{field.name: self.value(field) for field in fields_of(kind) if field.required})
 
-    def value(self, field: Any, corners: Iterator[np.ndarray] | None = None) -> Any:
+    def value(self, field: Any) -> Any:
         """Return a value of a field."""
         match field:
             case Compound():
@@ -114,8 +114,8 @@ class InvisibleElements:
                 value = (self.size,) * 3
             case Length() if field.unit:
                 value = self.size * (field.initial or 1.0)
-            case Point() if corners:
-                value = next(corners)
+            case Point():
+                value = next(self.corners)
             case Direction():
                 value = self.back
             case _:

@@ -121,7 +121,7 @@ def seen_by_light(
     place = np.array(light), cube_grid(cells)
     binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, *place, skipped, radius, 0.0, copies, largest)
     if cells == 1:
-        return in_one_cell(shape_arrays, binned.cones, skipped)
+        return in_all_cells(shape_arrays, 1, skipped, binned.cones)
     spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)  # distance up to which lists hold around a cell
     return binned._replace(tolerance=float(spread * spread))
 
@@ -209,30 +209,28 @@ def depth_order(depths: np.ndarray) -> np.ndarray:
     return order
 
 
-def in_all_cells(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray | None = None) -> BinnedShapes:
-    """Put all shapes, but for the planes that are `skipped`, into each cell, with cones that hold all directions.
+def in_all_cells(
+    shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray | None = None, cones: np.ndarray | None = None
+) -> BinnedShapes:
+    """Put all shapes, but for the planes that are `skipped`, into each cell; `cones` that are not given hold all
+    directions.
 
     `TooLargeError` where many cells have so many shapes that nobody would wait for the picture.
     """
-    shapes = len(shape_arrays.slots)
-    if cells > 1 and cells * shapes > MOST_MEMBERS:
-        raise system.TooLargeError(f"{shapes} shapes in each of {cells} tiles are too many")
-    cones = np.zeros((shapes, 5))
-    cones[:, 3] = -2.0
-    one = in_one_cell(shape_arrays, cones, np.zeros(len(shape_arrays.planes), bool) if skipped is None else skipped)
-    # All lists of one kind come first, then all lists of the next kind.
-    members = [np.tile(one.members[start:end], cells) for start, end in one.starts]
-    starts = cells * one.starts[:, :1] + np.diff(one.starts) * np.arange(cells + 1)
-    return BinnedShapes(starts, np.concatenate([one.members[:0], *members]), cones)
-
-
-def in_one_cell(shape_arrays: ShapeArrays, cones: np.ndarray, skipped: np.ndarray) -> BinnedShapes:
-    """Put all shapes into a single cell, without the planes that are `skipped`."""
-    shapes = np.delete(np.arange(len(cones)), shape_arrays.plane_indices[skipped])
+    count = len(shape_arrays.slots)
+    if cells > 1 and cells * count > MOST_MEMBERS:
+        raise system.TooLargeError(f"{count} shapes in each of {cells} tiles are too many")
+    if cones is None:
+        cones = np.tile([0.0, 0.0, 0.0, -2.0, 0.0], (count, 1))
+    shapes = np.delete(np.arange(count), [] if skipped is None else shape_arrays.plane_indices[skipped])
     kinds = shape_arrays.slots[shapes, 0]
     order = np.lexsort((cones[shapes, 4], kinds))
-    starts = np.searchsorted(kinds[order], np.arange(len(shape_arrays.rows))[:, None] + [0, 1])
-    return BinnedShapes(starts, shapes[order].astype(np.int32), cones)
+    members = shapes[order].astype(np.int32)
+    ends = np.searchsorted(kinds[order], np.arange(len(shape_arrays.rows))[:, None] + [0, 1])
+    # All lists of one kind come first, then all lists of the next kind.
+    lists = [np.tile(members[first:last], cells) for first, last in ends]
+    starts = cells * ends[:, :1] + np.diff(ends) * np.arange(cells + 1)
+    return BinnedShapes(starts, np.concatenate([members[:0], *lists]), cones)
 
 
 # Infinite planes.
