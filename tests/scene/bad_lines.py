@@ -20,7 +20,7 @@ IDENTIFIERS: list[Case] = [
     ("ｓｐ 0,0,20 5 255,0,0", 1, "unknown element 'ｓｐ'"),
     ("sр 0,0,20 5 255,0,0", 1, "unknown element 'sр'"),  # the second letter is Cyrillic
     ("sp0,0,20 5 255,0,0", 3, "a blank is missing after 'sp'"),
-    ("0,0,20 5 255,0,0", 1, "a line begins with one of R, A, bg, C, L, l, dl, sl, sp, pl, cy"),
+    ("0,0,20 5 255,0,0", 1, "a line begins with one of R, A, bg, C, L, l, dl, sl"),
     ("// a comment", 1, "a comment begins with '#', got '//'"),
     ("sp 0,0,20 5 255,0,0 // red", 21, "a comment begins with '#', got '//'"),
 ]
