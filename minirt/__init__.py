@@ -36,6 +36,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.buffers import Buffers as Buffers
     from minirt.rendering.buffers import buffers as buffers
     from minirt.rendering.image import Image as Image
+    from minirt.rendering.image import LinearImage as LinearImage
     from minirt.rendering.queries.rays import Hits as Hits
     from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace

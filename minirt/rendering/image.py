@@ -11,7 +11,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class Image:
     """A picture; notebooks display it."""
 
     array: np.ndarray  # (h, w, 3) uint8, RGB
-    linear: Any = None  # (h, w, 3) float64, radiance before clamping and rounding, if the picture has it
+    linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
     reached: Outcome | None = None  # samples and estimated error of a picture with samples="auto"
     tone: str = "plain"  # the curve from `linear` to `array`
     not_finite: int = 0  # rays whose light was infinite or NaN, and is 0 in the picture
@@ -66,7 +66,7 @@ class Image:
         """Return the linear light; RenderError, which says that `what` needs it, where the picture has none."""
         if self.linear is None:
             raise RenderError(f"{what} need linear light, and this picture has levels of 8 bits alone")
-        return np.asarray(self.linear)
+        return self.linear
 
     def encode(
         self,
@@ -127,3 +127,9 @@ class Image:
     def __repr__(self) -> str:
         height, width = self.array.shape[:2]
         return f"<Image of {width}x{height} pixels{'' if self.linear is None else ', with linear light'}>"
+
+
+class LinearImage(Image):
+    """A picture with its linear light."""
+
+    linear: np.ndarray  # (h, w, 3) float64, radiance before clamping and rounding

@@ -8,7 +8,7 @@ from dataclasses import replace
 from inspect import Parameter, signature
 from math import inf
 from numbers import Real
-from typing import Any, Literal, TypedDict, TypeVar, Unpack
+from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.records import Immutable, record
-from minirt.rendering.image import Image
+from minirt.rendering.image import Image, LinearImage
 from minirt.rendering.packing.camera import cut_for
 from minirt.rendering.renderer import Renderer, renderer
 from minirt.scene import Scene, dump
@@ -91,6 +91,30 @@ def takes_settings(function: Function, source: Callable[..., Any] | None = None)
     return function
 
 
+@overload
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: Literal[True] = True,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> LinearImage: ...
+
+
+@overload
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: bool,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> Image: ...
+
+
 @takes_settings
 def render(
     scene: Scene,
@@ -153,8 +177,10 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
     if not is_done:
         raise RenderError(CANCELLED)
     levels = np.ascontiguousarray(pixels[kept][..., 2::-1])
-    kept_light = None if light is None else np.ascontiguousarray(light[kept])
-    return Image(levels, kept_light, reached, scene.camera.tone, chosen.not_finite)
+    about = reached, scene.camera.tone, chosen.not_finite
+    if light is None:
+        return Image(levels, None, *about)
+    return LinearImage(levels, np.ascontiguousarray(light[kept]), *about)
 
 
 def identity(scene: Scene, settings: str) -> str:

@@ -54,7 +54,9 @@ element: minirt.Element = scene.elements[0]
 names: list[str] = minirt.examples()
 demo: minirt.Scene = minirt.example(names[0])
 
-picture: minirt.Image = minirt.render(scene, 32, 18, samples=4, precision="single", threads=2, depth=3, dither=True)
+picture: minirt.LinearImage = minirt.render(
+    scene, 32, 18, samples=4, precision="single", threads=2, depth=3, dither=True
+)
 light: NDArray[np.float64] = picture.linear
 mean: float = float(picture.linear.mean())
 bytes_of_png: bytes = picture.encode()
