@@ -6,14 +6,16 @@ on other machines get textures, too, under the hashes of their contents.
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import pickle
+import shutil
 import sys
 from collections.abc import Callable
 from copy import copy
 from functools import cache, lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import mkdtemp
 from typing import Any, TypeVar
 
 import minirt
@@ -71,16 +73,21 @@ def unpacked(data: bytes) -> Scene:
     """Return a scene; its textures are written into this worker's folder."""
     elements, files, place = pickle.loads(data)
     for digest, content in files.items():
-        if not (texture := Path(folder().name, digest)).exists():
+        if not (texture := folder() / digest).exists():
             file_io.write(texture, content)
-    return Scene(elements, place or Path(folder().name, "scene.rt"))
+    return Scene(elements, place or folder() / "scene.rt")
 
 
 @cache
-def folder() -> TemporaryDirectory[str]:
-    """Return a folder for textures, which is deleted at the end of this process or, if it was killed, by dask."""
+def folder() -> Path:
+    """Return a folder for textures, which is deleted at the end of this process or, if it was killed, by dask.
+
+    Threads that ask for it at once may get one each.
+    """
     worker = dask_worker()
-    return TemporaryDirectory(prefix="minirt-", dir=worker and worker.local_directory, ignore_cleanup_errors=True)
+    path = mkdtemp(prefix="minirt-", dir=worker and worker.local_directory)
+    atexit.register(shutil.rmtree, path, ignore_errors=True)
+    return Path(path)
 
 
 def work(asked: str, data: bytes, camera: Camera, band: Job) -> Made:
