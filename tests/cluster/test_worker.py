@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -25,7 +24,7 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers keep no scenes, and their files in a folder of this test."""
     (tmp_path / "files").mkdir()
     unpacked.cache_clear()
-    monkeypatch.setattr(worker, "folder", lambda: SimpleNamespace(name=tmp_path / "files"))
+    monkeypatch.setattr(worker, "folder", lambda: tmp_path / "files")
 
 
 def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> None:
