@@ -64,9 +64,11 @@ FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/
 # distance of single precision from double.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays] and not interpreted- and not random_scenes"
 
+OWN = $(shell $(VENV)/bin/python -c 'from minirt.kernel.machine_code.fingerprint import level; print(level())')
+
+# `make test` runs them as on the processor of this machine.
 processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX
-	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= $(PYTEST) $(COMPILED)
-	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(PYTEST) $(COMPILED)
+	$(foreach name,$(filter-out $(OWN),x86-64-v3 generic),NUMBA_CPU_NAME=$(name) NUMBA_CPU_FEATURES= $(PYTEST) $(COMPILED) &&) true
 
 LOWEST := $(VENV)/lowest
 

@@ -20,6 +20,8 @@ from tests.compare import off
 from tests.paths import SCENES
 from tests.reference import render, to_bytes
 
+SIZE = 48, 30
+
 
 def colour_of(random: np.random.Generator) -> tuple[int, int, int]:
     """Return a random colour."""
@@ -133,7 +135,7 @@ def check(seeds: range) -> None:
     wrong = total = 0
     for seed in seeds:
         scene = material_scene(seed)
-        bad = off(minirt.render(scene, 64, 40).array, to_bytes(render(scene, 64, 40)))
+        bad = off(minirt.render(scene, *SIZE).array, to_bytes(render(scene, *SIZE)))
         assert bad.mean() < 0.003, f"seed {seed}"
         wrong, total = wrong + bad.sum(), total + bad.size
     assert wrong < 3e-4 * total

@@ -120,16 +120,12 @@ def test_only_shapes_that_take_square_roots_add_them() -> None:
     assert planes < spheres < cylinders
 
 
-@pytest.mark.parametrize(
-    ("material", "number"), [({"checker": Checker(0.5)}, ATAN_HALF), ({"clouds": Clouds(1.0)}, 1.0 / PERIOD)]
-)
-def test_texture_coordinates_and_noise_are_computed_where_a_scene_needs_them(
-    material: dict[str, Any], number: float
-) -> None:
+def test_texture_coordinates_and_noise_are_computed_where_a_scene_needs_them() -> None:
     plain = scene_of(Sphere, Cylinder)
-    other = Scene((*plain.elements[:-1], plain.elements[-1].replace(**material)))
-    constant = f"0x{np.float64(number).view(np.uint64):X}"
-    assert [constant in code(each) for each in (plain, other)] == [False, True]
+    other = Scene((*plain.elements[:-1], plain.elements[-1].replace(checker=Checker(0.5), clouds=Clouds(1.0))))
+    for number in (ATAN_HALF, 1.0 / PERIOD):
+        constant = f"0x{np.float64(number).view(np.uint64):X}"
+        assert [constant in code(each) for each in (plain, other)] == [False, True]
 
 
 def test_contraction_is_the_only_fast_math_of_instructions() -> None:

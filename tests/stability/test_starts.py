@@ -40,7 +40,7 @@ from tests.stability.degenerate import Wrong, wrong
 from tests.stability.mutants import VARIANTS, as_of_a_shadow_ray
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-DIRECTIONS = 1008  # a multiple of those of a packet
+DIRECTIONS = 512  # a multiple of those of a packet
 Offset = Callable[[Array, list[Shape]], Array]
 
 
