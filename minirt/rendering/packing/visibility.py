@@ -28,7 +28,7 @@ CUBE_MARGIN = 3 * SPREAD * np.pi / 4
 # take least. Of the triangles of a mesh, which lie side by side, the first `FEW` count, and one in `SIDE_BY_SIDE` more.
 SMALL = 8
 FEW, SIDE_BY_SIDE = 200, 8
-CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
+CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (1_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 MEMBER, START = 4, 8  # bytes of a member and of a start of a list
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
