@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import product
 from math import cos, hypot, radians, sin
 
 from minirt.errors import FieldError
@@ -42,9 +43,7 @@ class Direction(Three):
         return f"has length {length:.4g}, and is scaled to 1" if abs(length - 1) > SLACK else ""
 
     def format(self, value: Triple) -> str:
-        short = rounded(value)
-        is_exact = any(short) and unit(short) == value  # so that nine digits of each component are enough
-        return ",".join(map(plain_decimal, short if is_exact else value))
+        return ",".join(map(plain_decimal, shortest(value)))
 
     def repair(self, text: str) -> Repair | None:
         with suppress(FieldError):
@@ -75,9 +74,14 @@ def unit(vector: Triple) -> Triple:
     return x / length, y / length, z / length
 
 
+def places(part: float) -> int:
+    """Decimals of a component that has `DIGITS` significant digits."""
+    return DIGITS - 1 - math.floor(math.log10(abs(part)))
+
+
 def rounded(direction: Triple) -> Triple:
     """Round the components to `DIGITS` significant digits, and those below `LEAST` to 0."""
-    x, y, z = (float(f"{part:.{DIGITS}g}") if abs(part) >= LEAST else 0.0 for part in direction)
+    x, y, z = (round(part, places(part)) if abs(part) >= LEAST else 0.0 for part in direction)
     return x, y, z
 
 
@@ -90,12 +94,31 @@ def neat(direction: Triple) -> Triple:
     return direction
 
 
+def shortest(direction: Triple) -> Triple:
+    """Return nine digits of each component that are read as the same direction, or all digits where there are none.
+
+    The rounded components may be off by one in the last digit: scaled to unit length, others are read as the direction.
+    """
+    short = rounded(direction)
+    if not any(short):
+        return direction
+    around = product(*map(neighbours, short))
+    return next(((x, y, z) for x, y, z in around if unit((x, y, z)) == direction), direction)
+
+
+def neighbours(part: float) -> list[float]:
+    """A rounded component, and what differs from it by one in the last digit."""
+    return [part, *(round(part + step * 10.0 ** -places(part), places(part)) for step in (-1, 1) if part)]
+
+
 def plain_decimal(value: float) -> str:
     """Format a number without an exponent, unless it is smaller than `LEAST`."""
+    text = spelled(value)
+    if "e" not in text or abs(value) < LEAST:
+        return text
     from decimal import Decimal
 
-    text = spelled(value)
-    return text if abs(value) < LEAST else f"{Decimal(text):f}"
+    return f"{Decimal(text):f}"
 
 
 def upright(x: float, y: float, z: float) -> tuple[Triple, Triple]:
