@@ -93,6 +93,8 @@ RANGES: list[Case] = [
     ("pl 0,0,0 1.1,0,0 255,0,0", 10, "plane normal x must be in [-1, 1], got 1.1"),
     ("sp 1.1e15,0,0 5 255,0,0", 4, "sphere centre x must be in [-1e+15, 1e+15], got 1100000000000000"),
     ("R 0 480", 3, "resolution width must be in [1, 16384], got 0"),
+    ("R 480 16385", 7, "resolution height must be in [1, 16384], got 16385"),
+    ("sp 0,0 5,5 2 255,0,0", 4, "sphere centre must be x,y,z"),  # with a word too many, so that the next may be right
 ]
 
 BLANKS: list[Case] = [
