@@ -1,4 +1,4 @@
-"""What events are about: keys, by X11's keysyms as MiniLibX passes them to hooks, buttons and pointer shapes."""
+"""Keys, buttons and pointer shapes of events; keys by X11's keysyms, as MiniLibX passes them to hooks."""
 
 from __future__ import annotations
 

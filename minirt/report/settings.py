@@ -1,4 +1,4 @@
-"""What a report varies: samples per pixel, adaptive and automatic sampling, precision, culling and bounces."""
+"""Settings that a report varies: samples per pixel, adaptive and automatic sampling, precision, culling and bounces."""
 
 from __future__ import annotations
 

@@ -135,6 +135,7 @@ def behind_surface(
     on, normal, shading_normal = surface_of(scene, index, point)
     cosine = fabs(dot(shading_normal, direction))
     reflective, fresnel = row_of(scene.transparent, index, extent), splat(scene.transparent[index, 3], extent)
+    # Shadow rays take the shares of a ray that enters, on both sides of glass: no cosine is below 0.
     light = shares_at_angle(reflective, fresnel, cosine, cosine < 0.0).y * light
     leaves = dot(normal, direction) > 0.0
     start = on + where(leaves, clearance(on, extent), -clearance(on, extent)) * normal
