@@ -151,9 +151,10 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
         start = perf_counter()
         image = picture_of(job, executor, journal, share.note)
         seconds = perf_counter() - start
-        for each in notices_about(*job[:3], image, is_here=not executor):
-            tell(f"notice: {each}")
         write(image.encode(**how), options.output)
+    single = None if executor or job.settings.precision == "double" else job.settings.renderer.packing
+    for each in notices_about(job.scene, image.array, job.size, single):
+        tell(f"notice: {each}")
     if is_measured:
         tell("\n".join(measurements(*job[:3], seconds, image.not_finite)))
     return image.reached

@@ -4,24 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from minirt.rendering.image import Image
+import numpy as np
+
 from minirt.rendering.queries.preview import notice_about
 from minirt.rendering.queries.stiffness import lost_in_single
+from minirt.rendering.scene_packing import Packing
 from minirt.rendering.settings import RenderSettings, rendered
 from minirt.rendering.tone_mapping import clipped_pixels
 from minirt.scene import Scene
 
+NOT_COMPUTED = "a notice about the picture cannot be computed"
+
 
 def notices_about(
-    scene: Scene, size: tuple[int, int], settings: RenderSettings, image: Image, is_here: bool
+    scene: Scene, pixels: np.ndarray, size: tuple[int, int], single: Packing | None = None
 ) -> Iterator[str]:
-    """Yield sentences about a picture of this size, or its region; those about its shapes where it was rendered in this
-    process, which has packed them."""
-    if is_here and settings.precision == "single":
-        for each in lost_in_single(scene, settings.renderer.packing, *size):
-            yield f"single precision cannot show {each}"
-    if not settings.region and (text := notice_about(scene, image.array)):
-        yield text
+    """Yield sentences about a picture of this size, or a region of it, (h, w, channels). The packing is that of a
+    picture in single precision which this process has rendered.
+
+    A notice costs nobody the picture: numbers that leave the range of a float64 or of a field are told in its place.
+    """
+    try:
+        if single:
+            for each in lost_in_single(scene, single, *size):
+                yield f"single precision cannot show {each}"
+        if pixels.shape[1::-1] == size and (text := notice_about(scene, pixels)):
+            yield text
+    except (ArithmeticError, ValueError) as error:
+        yield f"{NOT_COMPUTED}: {error}"
 
 
 def measurements(

@@ -89,10 +89,10 @@ def check_arguments(data: bytes) -> str:
     return VERDICTS[status]
 
 
-def run_program(arguments: list[str]) -> tuple[object, str, str]:
-    """Run the program; return its status, standard output and standard error."""
+def run_program(arguments: list[str], folder: Path = WORK) -> tuple[object, str, str]:
+    """Run the program in a folder; return its status, standard output and standard error."""
     out, err = io.StringIO(), io.StringIO()
-    with chdir(WORK), redirect_stdout(out), redirect_stderr(err):
+    with chdir(folder), redirect_stdout(out), redirect_stderr(err):
         try:
             status: object = main(arguments)
         except SystemExit as error:

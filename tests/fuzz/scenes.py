@@ -7,18 +7,24 @@ agree with the referee. A lenient reader accepts whatever a strict one does.
 from __future__ import annotations
 
 import warnings
-from functools import cache
+from math import inf, nextafter
+from unittest.mock import patch
 
 import numpy as np
 
+from minirt.element import Element, fields_of, positional_fields
 from minirt.errors import SceneError
-from minirt.rendering import Renderer
-from minirt.rendering.queries.preview import notice_about
-from minirt.rendering.queries.stiffness import stiff_shapes
-from minirt.scene import Scene, dump, parse
+from minirt.fields import FARTHEST, Choice, Field, Length, MeshField, Paint, Picture, Three, Whole
+from minirt.fields.scalars import Scalar
+from minirt.materials import Compound
+from minirt.rendering import kernels
+from minirt.rendering.notices import NOT_COMPUTED
+from minirt.scene import Resolution, Scene, dump, parse
 from minirt.scene.fast import FEW_LINES
+from minirt.scene.registry import ELEMENTS
 from tests.fuzz import grammar
 from tests.fuzz.grammar import Chance, folder
+from tests.fuzz.inputs import OK, run_program
 from tests.fuzz.mutations import Fuzzer, mutated
 
 COMMENTS = b"#\n" * FEW_LINES  # so many lines that the fast reader is used
@@ -106,64 +112,90 @@ def check_places(error: SceneError, data: bytes) -> None:
 SCENES = Fuzzer(make_scene, check_scene, 300)
 
 
-# Extreme valid scenes: what the reader accepts renders without warnings, by kernels that were compiled ahead of time.
+# Extreme valid scenes of all kinds and attributes in the registry, through the whole command: what `--check` takes is
+# drawn. Kernels were compiled ahead of time.
 
-WIDTH, HEIGHT = 8, 6
-PRECISIONS = ("double", "single")
-EXTREME = ("0", "5e-324", "-5e-324", "1e-308", "1e-160", "1e-30", "0.001", "1e8", "1e15", "-1e15", "999999999999999.9")
+KINDS = [kind for kind in ELEMENTS.values() if kind is not Resolution]  # whose place `SIZE` takes
+FRAME = {"A": "A 1 9,9,9", "C": "C 0,0,0 0,0,1 60"}
+EXTREME = (0.0, 5e-324, 1e-308, 1e-160, 1e-30, 1e-9, 0.001, 1.0, 1e8, 1e14, 1e15)
+SIZE = ("--size", "8x6")
+OPTIONS = (
+    *("", "--precision single", "--precision single -v", "--samples 2 --threads 1", "--exposure 20 -v", "--depth 0"),
+    *("--samples auto --error 0.1 --strict", "--depth 32 --tone filmic", "--lenient --left-handed", "--turntable 2"),
+    *("--samples auto --error 0.01", "--region 2,1,3,4", "--precision single --bits 16", "--dither -v"),
+)
 
 
 def make_extreme(chance: Chance) -> bytes:
-    """Make a scene; in many of its numbers stand extreme ones."""
-    codes = ["A", "C", *(code for code in ("bg", "L") if chance.random() < 0.7)]
-    codes += chance.choices(LONELY, k=chance.randint(1, 5))
-    return "\n".join(" ".join(extreme(line(code, chance), chance)) for code in codes).encode()
+    """Make a scene, many of whose numbers are extreme, behind a comment with the options that draw it."""
+    kinds = [kind for kind in KINDS if kind.required or (kind.once and chance.random() < 0.5)]
+    kinds += chance.choices([kind for kind in KINDS if not kind.once], k=chance.randint(1, 5))
+    extreme, options = chance.choice((0.05, 0.3, 0.8)), chance.choice(OPTIONS)
+    suffix = chance.choice((".pfm", ".png")) if "--bits" not in options else ".png"
+    return "\n".join((f"#{options} -o out{suffix}", *(extreme_line(kind, extreme, chance) for kind in kinds))).encode()
 
 
-def extreme(words: list[str], chance: Chance) -> list[str]:
-    """Replace some numbers of a line by extreme ones; a line that this makes wrong is made anew."""
-    for _ in range(20):
-        tried = [words[0], *(",".join(other(part, chance) for part in word.split(",")) for word in words[1:])]
-        if grammar.code_of(" ".join(tried)) not in ("wrong", "open"):
-            return tried
-    return words
+def extreme_line(kind: type[Element], extreme: float, chance: Chance) -> str:
+    """Return a line of a kind, each of whose numbers is extreme with the given probability."""
+    others = [line for code, line in FRAME.items() if code != kind.code]
+    while True:
+        keyed = [field for field in fields_of(kind) if field.keyed]
+        some = chance.sample(keyed, min(len(keyed), chance.choice((0, 0, 1, 2, 4))))
+        words = [word_of(field, extreme, chance) for field in positional_fields(kind)]
+        words += [f"{chance.choice(field.keys)}:{word_of(field, extreme, chance)}" for field in some]
+        line = " ".join((kind.code, *words))
+        if read("\n".join((line, *others)).encode()):  # its values go together
+            return line
 
 
-def other(part: str, chance: Chance) -> str:
-    """Return a number, most often as it is."""
-    is_number = not np.isnan(grammar.value_of(part))
-    return chance.choice(EXTREME) if is_number and chance.random() < 0.15 else part
+def word_of(field: Field, extreme: float, chance: Chance) -> str:
+    """Return a value of a field; of the last ones of a material, some are left out."""
+    if isinstance(field, Compound):
+        parts = fields_of(field.record)
+        count = chance.randint(sum(part.required for part in parts), len(parts))
+        return ",".join(word_of(part, extreme, chance) for part in parts[:count])
+    if isinstance(field, Picture) or (isinstance(field, Paint) and chance.random() < 0.3):
+        return chance.choice(grammar.PICTURES)
+    if isinstance(field, Three):
+        return ",".join(number_of(field.component, extreme, chance) for _ in range(field.width))
+    if isinstance(field, MeshField | Choice):
+        return chance.choice(grammar.MESHES if isinstance(field, MeshField) else field.words)
+    return number_of(field, extreme, chance) if isinstance(field, Scalar) else field.name
+
+
+def number_of(field: Scalar, extreme: float, chance: Chance) -> str:
+    """Return a number that a field can take."""
+    low, high = (5e-324, FARTHEST) if isinstance(field, Length) else (field.low, field.high)
+    if isinstance(field, Whole):
+        return str(chance.choice((int(low), int(high), chance.randint(int(low), int(high)))))
+    ends = low, high, nextafter(low, high), nextafter(high, low), *EXTREME, *(-each for each in EXTREME)
+    usual = chance.uniform(max(low, -9.0), min(high, chance.choice((1.0, 9.0, 99.0))))
+    return repr(chance.choice([each for each in ends if low <= each <= high]) if chance.random() < extreme else usual)
 
 
 def check_extreme(data: bytes) -> str:
-    """Render the scene in both precisions."""
-    scene = read(data)
-    if scene is None:
-        return "refused"
-    with warnings.catch_warnings():
+    """Let the command check the scene, and draw it with its options; read the pictures."""
+    options = data.partition(b"\n")[0].decode().removeprefix("#").split()
+    (folder() / "fuzz.rt").write_bytes(data)
+    with warnings.catch_warnings(), patch.object(kernels, "SPECIALISED_AFTER", inf):
         warnings.simplefilter("error")
-        for precision in PRECISIONS:
-            render(scene, precision)
-    return "rendered"
+        status, _, err = run_program(["fuzz.rt", "--check"], folder())
+        assert status == OK, f"--check: {err}"
+        status, _, err = run_program(["fuzz.rt", *SIZE, *options], folder())
+    assert status == OK or "not reached" in err or "no more samples" in err, f"status {status}: {err}"
+    assert NOT_COMPUTED not in err
+    assert "-v" not in options or "rays whose light is not finite: 0" in err
+    pictures = list(folder().glob("out*"))
+    assert len(pictures) == (2 if "--turntable" in options else 1)
+    for path in pictures:
+        if path.suffix == ".pfm":
+            light = np.frombuffer(path.read_bytes().split(b"\n", 3)[3], "<f4")
+            assert np.isfinite(light).all()
+            assert (light >= 0).all()
+        else:
+            assert run_program([path.name, "--check"], folder())[0] == OK, "the scene in the picture cannot be read"
+        path.unlink()
+    return options[0]
 
 
-@cache
-def renderer(precision: str) -> Renderer:
-    """Return a renderer that compiles nothing."""
-    made = Renderer(1, precision)
-    made.kernels.specialised_after = float("inf")
-    return made
-
-
-def render(scene: Scene, precision: str) -> None:
-    """Render a scene: all of the picture, with finite light."""
-    pixels, light = np.zeros((HEIGHT, WIDTH, 4), np.uint8), np.full((HEIGHT, WIDTH, 3), np.nan)
-    assert renderer(precision).render(scene, pixels, 1, light)
-    assert (pixels[..., 3] == 255).all(), "pixels were left out"
-    assert np.isfinite(light).all(), "light that is not finite"
-    assert (light >= 0).all(), "light below 0"
-    notice_about(scene, pixels)
-    assert all(map(str, stiff_shapes(scene, renderer(precision).packing.shape_arrays, WIDTH, HEIGHT)))
-
-
-EXTREMES = Fuzzer(make_extreme, check_extreme, 40)
+EXTREMES = Fuzzer(make_extreme, check_extreme, 1000)

@@ -13,16 +13,18 @@ import random
 import sys
 import time
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
+from minirt.rendering import Renderer
 from minirt.scene import Scene
 from tests import environment
 from tests.fuzz.mutations import seeded
-from tests.fuzz.scenes import PRECISIONS, make_extreme, read, renderer
+from tests.fuzz.scenes import make_extreme, read
 from tests.usage import Record, Usage
 
+PRECISIONS = ("double", "single")
 LARGEST = (320, 240)  # pixels of a picture; small ones are as frequent
 
 
@@ -39,6 +41,14 @@ def soak(share: Callable[[int], float], seed: int, record: Record) -> int:
         record.note(progress)
     record.note(1.0)
     return pictures
+
+
+@cache
+def renderer(precision: str) -> Renderer:
+    """Return a renderer that compiles nothing."""
+    made = Renderer(1, precision)
+    made.kernels.specialised_after = float("inf")
+    return made
 
 
 def render(scene: Scene, chance: random.Random) -> None:

@@ -141,9 +141,10 @@ class Session:
             return
         self._judged = self.saved
         if latest.pixels is not None and not self.state.message:
-            from minirt.rendering.queries.preview import notice_about
+            from minirt.rendering.notices import notices_about
 
-            self.say(notice_about(latest.job.scene, latest.pixels[..., :3]))
+            height, width = latest.pixels.shape[:2]
+            self.say(next(notices_about(latest.job.scene, latest.pixels[..., :3], (width, height)), ""))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""

@@ -13,6 +13,7 @@ from minirt.kernel import trace
 from minirt.kernel.scene_arrays import intersect
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
+from minirt.rendering.notices import NOT_COMPUTED, notices_about
 from minirt.rendering.packing.features import features
 from minirt.rendering.queries import preview as module
 from minirt.rendering.queries.pick import pick
@@ -150,6 +151,16 @@ def test_pictures_that_show_something_have_no_notice() -> None:
     empty = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\n").scene
     for scene in (EVERY, black, empty, load(SCENES / "subject.rt").scene, load(SCENES / "sky.rt").scene):
         assert notice_about(scene, render(scene)) == ""
+
+
+def test_a_notice_whose_numbers_leave_their_range_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A camera at a distance of 2.6e15."""
+    far = parse("A 0 0,0,0\nC 0,0,0 0,0,1 60\nsp -1e15,0,-9e14 1e15 9,9,9\n").scene
+    about = far, render(far), (WIDTH, HEIGHT)
+    assert list(notices_about(*about)) == ["nothing is in view"]
+    monkeypatch.setattr(module, "FARTHEST", 1e16)
+    (told,) = notices_about(*about)
+    assert told.startswith(f"{NOT_COMPUTED}: camera position ")
 
 
 def test_a_scene_of_many_shapes_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
