@@ -56,7 +56,7 @@ OTHER_SHADES = {"hotpink2": 0xEE6AA7, "hotpink3": 0xCD6090, "hotpink4": 0x8B3A62
 
 
 class XpmError(ValueError):
-    """An error in an XPM picture."""
+    """An error in an XPM picture, and its place; it quotes nothing of the file."""
 
 
 class Header(NamedTuple):
@@ -80,14 +80,14 @@ def read_header(strings: Iterator[bytes]) -> Header:
     text = next(strings, b"")
     match = HEADER.fullmatch(text)
     if not match:
-        raise XpmError(f"expected a header such as '16 16 2 1', got {shown(text)}")
+        raise XpmError("the first string must be a header such as '16 16 2 1'")
     header = Header(*map(int, match.groups()))
     if not header.width or not header.height:
         raise XpmError(f"it has {header.width}x{header.height} pixels")
     if not 1 <= header.colours <= MOST_COLOURS:
-        raise XpmError(f"it has {header.colours} colours, and may have 1 to {MOST_COLOURS}")
+        raise XpmError(f"it may have 1 to {MOST_COLOURS} colours")
     if not 1 <= header.length <= LONGEST:
-        raise XpmError(f"a pixel has {header.length} characters, and may have 1 to {LONGEST}")
+        raise XpmError(f"a pixel may have 1 to {LONGEST} characters")
     return header
 
 
@@ -100,21 +100,22 @@ def read_pixels(strings: Iterator[bytes], header: Header) -> np.ndarray:
     definitions = list(islice(strings, count))
     if len(definitions) < count:
         raise XpmError(f"it has {len(definitions)} colours of {count}")
-    colours = {line[:length]: colour(line[length:]) for line in definitions}
+    colours = {line[:length]: colour(line[length:], number) for number, line in enumerate(definitions, 1)}
     words = np.empty((height, width), "<u4")
     number = 0
     for number, row in enumerate(islice(strings, height), 1):
         try:
             words[number - 1] = [colours[row[at : at + length]] for at in range(0, width * length, length)]
         except KeyError as error:
-            raise XpmError(f"row {number}: {shown(error.args[0])} is no colour") from None
+            at = next(at for at in range(0, width * length, length) if row[at : at + length] == error.args[0])
+            raise XpmError(f"row {number}, column {at + 1}: expected one of the colours of the picture") from None
     if number < height:
         raise XpmError(f"it has {number} rows of {height}")
     return words.view(np.uint8).reshape(height, width, 4)
 
 
-def colour(definition: bytes) -> int:
-    """Return the colour 0xAARRGGBB of a definition such as ` c #FF8000 m white s roof`; XpmError."""
+def colour(definition: bytes, number: int) -> int:
+    """Return the colour 0xAARRGGBB of a definition such as ` c #FF8000 m white s roof`; XpmError, with its number."""
     values: dict[str, str] = {}
     key = ""
     for word in definition[:LONGEST_DEFINITION].decode("latin-1").split():
@@ -134,7 +135,7 @@ def colour(definition: bytes) -> int:
     if name in ("none", "transparent"):
         return TRANSPARENT
     if name not in names():
-        raise XpmError(f"expected a colour such as 'c #FF8000', 'c red' or 'c None', got {shown(definition)}")
+        raise XpmError(f"colour {number} must be one such as 'c #FF8000', 'c red' or 'c None'")
     return 0xFF000000 | names()[name]
 
 
@@ -151,8 +152,3 @@ def names() -> dict[str, int]:
     for percent in range(101):
         colours[f"gray{percent}"] = colours[f"grey{percent}"] = int(2.55 * percent + 0.5) * 0x010101
     return colours | OTHER_SHADES
-
-
-def shown(text: bytes) -> str:
-    """Return a part of a file for a message."""
-    return repr(text.strip()[:40].decode("ascii", "replace"))

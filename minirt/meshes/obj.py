@@ -27,7 +27,8 @@ def parse(data: bytes) -> Triangles:
     """Parse a file; degenerate triangles are dropped. ObjError when it is not a mesh."""
     if (lines_in_all := data.count(b"\n")) > MAX_LINES:
         raise ObjError(f"has {lines_in_all:,} lines, more than {MAX_LINES:,}")
-    file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
+    data = data.removeprefix(b"\xef\xbb\xbf")
+    file, blocks = BytesIO(data), []
     first, before, triangles = 1, [0, 0, 0], 0
     while lines := read_lines(file, first):
         block = obj_lines.read(lines, first, before)
@@ -37,7 +38,7 @@ def parse(data: bytes) -> Triangles:
         triangles += int((block.sizes - 2).sum())
         if triangles > MAX_TRIANGLES:
             raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
-    return assemble(blocks)
+    return assemble(blocks, data)
 
 
 def read_lines(file: BytesIO, first: int) -> list[bytes]:
@@ -52,12 +53,12 @@ def read_lines(file: BytesIO, first: int) -> list[bytes]:
     return lines
 
 
-def assemble(blocks: list[Block]) -> Triangles:
-    """Assemble the blocks of a file into triangles."""
+def assemble(blocks: list[Block], data: bytes) -> Triangles:
+    """Assemble the blocks of a file into triangles; ObjError."""
     if not sum(len(block.sizes) for block in blocks):
         raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
-    check_indices(whole)
+    check_indices(whole, data)
     fans = whole.corners[triangulate(whole.points, whole.corners[:, 0], whole.sizes, whole.lines)]
     corners = fans[..., 0]
     valid = non_degenerate(whole.points[corners])
@@ -81,14 +82,14 @@ def corner_normals(normals: np.ndarray, indices: np.ndarray, flat: np.ndarray) -
     return np.where(squared_lengths(chosen)[..., None] > 0, chosen, flat[:, None])
 
 
-def check_indices(whole: Block) -> None:
+def check_indices(whole: Block, data: bytes) -> None:
     """Check that the file has all items that its corners name; ObjError otherwise."""
     counts = [len(whole.points), len(whole.uvs), len(whole.normals)]
     beyond = whole.corners >= counts
     if beyond.any():
         corner = int(np.argmax(beyond.any(axis=1)))
         part = int(np.argmax(beyond[corner]))
-        line = np.repeat(whole.lines, whole.sizes)[corner]
-        raise ObjError(
-            obj_lines.missing_index_message(part, int(whole.corners[corner, part]) + 1, counts[part]), int(line)
-        )
+        face = int(np.searchsorted(np.cumsum(whole.sizes), corner, side="right"))
+        line, number = int(whole.lines[face]), corner - int(whole.sizes[:face].sum())
+        words = obj_lines.words_of(obj_lines.plain_lines(BytesIO(data).readlines())[line - 1])
+        raise ObjError(obj_lines.missing_index_message(part, counts[part]), line, words[1 + number].start() + 1)

@@ -124,7 +124,7 @@ def explain(lines: list[bytes], first: int, before: Sequence[int]) -> None:
     """Raise the ObjError of the first wrong line; arguments are those of `read`."""
     counts = dict(zip(NUMBERS, before, strict=True))
     for line, text in enumerate(lines, first):
-        words = list(re.finditer(r"\S+", text.decode("utf-8", "replace"), re.ASCII))
+        words = words_of(text)
         key, values = words[0][0].encode() if words else b"", words[1:]
         if key in counts:
             check_numbers(key, values, line)
@@ -136,6 +136,11 @@ def explain(lines: list[bytes], first: int, before: Sequence[int]) -> None:
                 check_corner(word, list(counts.values()), line)
         elif words and key not in SKIPPED:
             raise ObjError("a line begins with v, vt, vn, f or another word of .obj", line, words[0].start() + 1)
+
+
+def words_of(line: bytes) -> list[re.Match[str]]:
+    """Return the words of a line, and their places."""
+    return list(re.finditer(r"\S+", line.decode("utf-8", "replace"), re.ASCII))
 
 
 def check_numbers(key: bytes, words: list[re.Match[str]], line: int) -> None:
@@ -170,9 +175,9 @@ def check_corner(word: re.Match[str], counts: list[int], line: int) -> None:
         except FieldError as error:
             raise ObjError(f"the {CORNER_PARTS[part]} of a corner {expected(error)}", line, column) from None
         if named == 0 or not -counts[part] <= named < 2**63:
-            raise ObjError(missing_index_message(part, named, counts[part]), line, column)
+            raise ObjError(missing_index_message(part, counts[part]), line, column)
 
 
-def missing_index_message(part: int, named: int, count: int) -> str:
+def missing_index_message(part: int, count: int) -> str:
     """Return the message about a corner that names an item that does not exist."""
-    return f"a corner names {CORNER_PARTS[part]} {named}, but there {'is' if count == 1 else 'are'} {count}"
+    return f"a corner names a {CORNER_PARTS[part]} that is not there: there {'is' if count == 1 else 'are'} {count}"

@@ -101,20 +101,20 @@ def test_comments_and_escapes_are_those_of_c() -> None:
 
 
 BROKEN = {
-    b"/* XPM */": "expected a header such as '16 16 2 1', got ''",
-    source("2 x 1 1", [], []): "expected a header such as '16 16 2 1', got '2 x 1 1'",
+    b"/* XPM */": "the first string must be a header such as '16 16 2 1'",
+    source("2 x 1 1", [], []): "the first string must be a header such as '16 16 2 1'",
     source("0 1 1 1", [], []): "it has 0x1 pixels",
-    source("1 1 0 1", [], []): "it has 0 colours, and may have 1 to 262144",
-    source("1 1 262145 1", [], []): "it has 262145 colours, and may have 1 to 262144",
-    source("1 1 1 9", [], []): "a pixel has 9 characters, and may have 1 to 8",
+    source("1 1 0 1", [], []): "it may have 1 to 262144 colours",
+    source("1 1 262145 1", [], []): "it may have 1 to 262144 colours",
+    source("1 1 1 9", [], []): "a pixel may have 1 to 8 characters",
     source("1 1 2 1", ["a c #123456"], []): "it has 1 colours of 2",
-    source("1 1 1 1", ["a c no"], ["a"]): "expected a colour such as 'c #FF8000', 'c red' or 'c None', got 'c no'",
-    source("1 1 1 1", ["a" + " " * 2**20 + "c None"], ["a"]): "got 'c None'",
-    source("1 1 1 1", ["a c #12"], ["a"]): "got 'c #12'",
-    source("1 1 1 1", ["a s roof"], ["a"]): "got 's roof'",
+    source("1 1 1 1", ["a c no"], ["a"]): "colour 1 must be one such as 'c #FF8000', 'c red' or 'c None'",
+    source("1 1 1 1", ["a" + " " * 2**20 + "c None"], ["a"]): "'c None'",
+    source("1 1 2 1", ["a c red", "b c #12"], ["a"]): "colour 2 must be one such as 'c #FF8000', 'c red' or 'c None'",
+    source("1 1 1 1", ["a s roof"], ["a"]): "'c None'",
     source("2 2 1 1", ["a c None"], ["aa"]): "it has 1 rows of 2",
-    source("2 2 1 1", ["a c None"], ["aa", "a"]): "row 2: '' is no colour",
-    source("2 2 1 2", ["ab c None"], ["abab", "abba"]): "row 2: 'ba' is no colour",
+    source("2 2 1 1", ["a c None"], ["aa", "a"]): "row 2, column 2: expected one of the colours of the picture",
+    source("2 2 1 2", ["ab c None"], ["abab", "abba"]): "row 2, column 3: expected one of the colours of the picture",
 }
 
 

@@ -171,7 +171,7 @@ def test_every_truncated_picture_is_read_or_refused(tmp_path: Path, name: str) -
         if end == len(data):
             assert picture(path).shape == (13, 17, 3)
         else:
-            assert refusal(path).startswith(("is not a picture", "is a damaged picture ("))
+            assert refusal(path).startswith(("is not a picture", "is a damaged picture"))
 
 
 def after(form: str, beginning: int, part: bytes) -> bytes:

@@ -9,6 +9,7 @@ from minirt.meshes.obj_lines import ObjError
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
 
+MISSING = "a point that is not there: there are 4"
 BROKEN = {
     "": "has no faces",
     "\n# nothing\n": "has no faces",
@@ -16,13 +17,13 @@ BROKEN = {
     SQUARE + "f 1 1 2\n": "has no triangle that is more than a line",
     SQUARE + "f 1 2\n": "line 6: a face has at least 3 corners, got 2",
     SQUARE + "f\n": "line 6: a face has at least 3 corners, got 0",
-    SQUARE + "f 1 2 0\n": "line 6, column 7: a corner names point 0, but there are 4",
-    SQUARE + "f 1 2 5\n": "line 6: a corner names point 5, but there are 4",
-    SQUARE + "\n\nf 1 2 3\nf 1 2 -5\n": "line 9, column 7: a corner names point -5, but there are 4",
-    SQUARE + "f 1//1 2//2 3//1\n": "line 6: a corner names vn 2, but there is 1",
-    SQUARE + "f 1/1 2/1 3/1\n": "line 6: a corner names vt 1, but there are 0",
-    SQUARE + "f 1 2 9\nf 1 2 7": "line 6: a corner names point 9, but there are 4",
-    SQUARE + f"f 1 2 {10**30}\n": f"line 6, column 7: a corner names point {10**30}, but there are 4",
+    SQUARE + "f 1 2 0\n": f"line 6, column 7: a corner names {MISSING}",
+    SQUARE + "f 1 2 5\n": f"line 6, column 7: a corner names {MISSING}",
+    SQUARE + "\n\nf 1 2 3\nf 1 2 -5\n": f"line 9, column 7: a corner names {MISSING}",
+    SQUARE + "f 1//1 2//2 3//1\n": "line 6, column 8: a corner names a vn that is not there: there is 1",
+    SQUARE + "f 1/1 2/1 3/1\n": "line 6, column 3: a corner names a vt that is not there: there are 0",
+    SQUARE + "f 1 2 3 4\nf 1 \\\n 2 9\n": f"line 7, column 9: a corner names {MISSING}",
+    SQUARE + f"f 1 2 {10**30}\n": f"line 6, column 7: a corner names {MISSING}",
     SQUARE + "f 1/ 2/ 3/\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
     SQUARE + "f /1 /2 /3\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",
     SQUARE + "f 1/1/1/1 2 3\n": "line 6, column 3: a corner is v, v/vt, v//vn or v/vt/vn",

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
 
+from minirt.cli import main
 from minirt.errors import SceneError
 from minirt.materials import Mirror
+from minirt.meshes import obj_lines
 from minirt.scene import describe, dump, load, parse
 from minirt.shapes.mesh import Mesh
+from tests.fuzz.inputs import originals
 from tests.scene.examples import AMBIENT, CAMERA
 
 ONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -101,3 +105,34 @@ def test_a_changed_mesh_file_is_read_again(folder: Path) -> None:
     assert before != after
     assert (before.parts, after.parts) == (1, 2)
     assert load(path).scene.meshes[0] == after
+
+
+SECRET, NUMBER = b"qzjxkvwqzv", b"9182736450"
+PLAIN = b"P3 2 1 255 1 2 3 4 5 6\n"
+NAMING = "ob file 0,0,0 1 9,9,9", "bg file", "sp 0,0,9 1 9,9,9 texture:file bump:file normal:file"
+TRIES = 7  # of each file
+
+
+@pytest.mark.parametrize("wrong", [False, True], ids=["", "planted"])
+def test_no_message_quotes_a_file_that_a_scene_names(
+    folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, wrong: bool
+) -> None:
+    """A secret stands at random places of files of each format. The planted program quotes wrong numbers of meshes."""
+    if wrong:
+        monkeypatch.setattr(obj_lines, "expected", str)
+    seed = random.SystemRandom().randrange(2**32)
+    chance = random.Random(seed)
+    path = scene(folder, *NAMING)
+    for data, secret in [
+        (ONE.encode(), SECRET),
+        (ONE.encode(), NUMBER),
+        *((data, SECRET) for data in (PLAIN, *originals())),
+    ]:
+        for _ in range(TRIES):
+            at, blank = chance.randint(0, len(data)), chance.choice((b"", b" ", b"\n"))
+            (folder / "file").write_bytes(data[:at] + blank + secret + blank + data[at:])
+            main([str(path), "--check"])
+    told = "".join(capfd.readouterr())
+    assert min(told.count(": is a damaged "), told.count(": line ")) > TRIES / 2
+    parts = NUMBER.decode(), *(SECRET[at : at + 4].decode() for at in range(len(SECRET) - 3))
+    assert any(part in told for part in parts) == wrong, f"seed {seed}"
