@@ -15,6 +15,8 @@ from inspect import Parameter, Signature, cleandoc
 from operator import attrgetter
 from typing import Any, TypeVar, cast, dataclass_transform
 
+from minirt.errors import did_you_mean
+
 
 class FieldSignature:
     """Descriptor of `__signature__`, by which `help` and notebooks show the fields of a record."""
@@ -104,6 +106,8 @@ class Immutable:
             or len(complete) > len(defaults)
             or any(value is MISSING for value in complete.values())
         ):
+            for name in set(named).difference(defaults):
+                raise TypeError(f"{kind.__name__} has no field {name!r}{did_you_mean(name, defaults)}")
             kind.__signature__.bind(*values, **named)  # TypeError, which says what is wrong
         for name, value in complete.items():
             object.__setattr__(self, name, value)

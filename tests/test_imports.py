@@ -20,7 +20,7 @@ MAY: dict[str, set[str]] = {
     "errors": set(),
     "helpers": {"errors"},
     "lanes": set(),
-    "records": set(),
+    "records": {"errors"},
     "fields": {"errors", "records"},
     "element": {"errors", "records", "fields"},
     "materials": {"errors", "records", "fields", "element", "helpers", "formats"},

@@ -46,8 +46,11 @@ def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "limits"),
     [
-        *((name, 0, "of at least 1") for name in ("width", "height", "samples", "threads")),
-        *(("samples", value, "of at least 1") for value in (-1, 2.5)),
+        *(
+            (name, value, "of at least 1")
+            for name in ("width", "height", "samples", "threads")
+            for value in (0, -1, 10.5)
+        ),
         *(("depth", value, "from 0 to 32") for value in (-1, 1.5, 33)),
         ("samples", "many", "of at least 1"),
         ("samples", True, "of at least 1"),
@@ -60,6 +63,20 @@ def test_an_argument_that_is_no_whole_number_in_its_limits_is_named(
     with pytest.raises(minirt.RenderError, match=f"^{re.escape(message)}$"):
         minirt.render(scene, **{"width": 4, "height": 4, name: value})
     assert minirt.render(scene, np.int64(4), np.uint8(4), samples=np.int32(1)).array.shape == (4, 4, 3)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"region": (0, 0, 2.5, 3)}, "region must be 4 whole numbers, got (0, 0, 2.5, 3)"),
+        ({"region": 5}, "region must be 4 whole numbers, got 5"),
+        ({"rows": (1,)}, "rows must be 2 whole numbers, got (1,)"),
+        ({"samples": 10**12}, "1000000000000 samples a pixel need about 953674.3 GiB of memory, allowed "),
+    ],
+)
+def test_an_argument_that_no_picture_has_is_named(scene: minirt.Scene, wrong: dict[str, Any], message: str) -> None:
+    with pytest.raises(minirt.RenderError, match=f"^{re.escape(message)}"):
+        minirt.render(scene, 4, 4, **wrong)
 
 
 def test_auto_samples_report_the_error_and_samples_reached(scene: minirt.Scene) -> None:
@@ -89,6 +106,8 @@ def test_an_edit_makes_a_new_scene(scene: minirt.Scene) -> None:
     assert np.array_equal(minirt.render(scene, 32, 18).array, before)
     with pytest.raises(ValueError, match="diameter must be > 0"):
         scene.replace(scene.spheres[0], diameter=-1)
+    with pytest.raises(TypeError, match=r"^Sphere has no field 'diametre', did you mean 'diameter'\?$"):
+        scene.replace(scene.spheres[0], diametre=3)
     with pytest.raises(ValueError, match="not in"):
         scene.replace(minirt.Sphere((0, 0, 0), 1, (1, 2, 3)), diameter=1)
     with pytest.raises(AttributeError, match="a scene has no 'teapots'"):

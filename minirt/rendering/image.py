@@ -21,7 +21,7 @@ from minirt.formats.table import FLOAT, check_bits, check_quality, encoding, for
 from minirt.helpers import file_io
 
 if TYPE_CHECKING:
-    from numpy.typing import DTypeLike
+    from numpy.typing import DTypeLike, NDArray
     from PIL.Image import Image as PillowImage
 
     from minirt.rendering.outcome import Outcome
@@ -33,8 +33,8 @@ DEEP = 2**16  # levels of 16 bits
 class Image:
     """A picture; notebooks display it."""
 
-    array: np.ndarray  # (h, w, 3) uint8, RGB
-    linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
+    array: NDArray[np.uint8]  # (h, w, 3) RGB
+    linear: NDArray[np.float64] | None = None  # (h, w, 3) radiance before clamping and rounding
     reached: Outcome | None = None  # samples and estimated error of a picture with samples="auto"
     tone: str = "plain"  # the curve from `linear` to `array`
     not_finite: int = 0  # rays whose light was infinite or NaN, and is 0 in the picture
@@ -132,4 +132,4 @@ class Image:
 class LinearImage(Image):
     """A picture with its linear light."""
 
-    linear: np.ndarray  # (h, w, 3) float64, radiance before clamping and rounding
+    linear: NDArray[np.float64]  # (h, w, 3) radiance before clamping and rounding

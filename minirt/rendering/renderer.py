@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError, check_whole
-from minirt.helpers.system import ForkSafeLock, renewables
+from minirt.helpers.system import ForkSafeLock, check_memory, renewables
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.shading.whitted import MAX_DEPTH
 from minirt.rendering.frame_runner import FrameRunner
@@ -25,6 +25,8 @@ from minirt.rendering.threads import usable_cores
 from minirt.rendering.tone_mapping import ToneMapper
 from minirt.scene import Scene
 from minirt.shapes import Shape
+
+SAMPLE = 2**10  # bytes of the places of a sample in the pixels of a packet
 
 PRECISIONS = ("double", "single")
 PATIENCE = 0.2  # seconds that a click waits for the picture being made to end
@@ -135,7 +137,8 @@ class Renderer:
         self, request: Request, samples: int, is_wanted: Callable[[], bool] = lambda: True, edges_only: bool = False
     ) -> bool:
         """Render a picture with a number of samples. The caller holds `busy`."""
-        check_whole("samples", samples, 1)
+        need = SAMPLE * check_whole("samples", samples, 1)
+        check_memory(need, f"{samples} samples a pixel need", "fewer need less")
         request, is_done = self._begin(request, edges_only)
         if not is_done:
             is_done = self.runner.render_samples(self.packing, request, samples, is_wanted, edges_only)

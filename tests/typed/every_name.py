@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import assert_type
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,7 @@ picture: minirt.LinearImage = minirt.render(
     scene, 32, 18, samples=4, precision="single", threads=2, depth=3, dither=True
 )
 light: NDArray[np.float64] = picture.linear
+assert_type(picture.array, NDArray[np.uint8])
 mean: float = float(picture.linear.mean())
 bytes_of_png: bytes = picture.encode()
 array: NDArray[np.uint8] = np.asarray(picture)
