@@ -78,30 +78,30 @@ class Ablation:
         draw = frame(renderer, variant.scene, pixels)
         draw()
         times = measure_times([self.draw, draw], draw(), self.threads, self.budget, PAIRS)
-        ratios = [ratio(base, other) for base, other in times.runs]
-        interval = of_median(ratios)
+        changes = [change(base, other) for base, other in times.runs]
+        interval = of_median(changes)
         return Part(
             *variant[:3],
             frame_ms=median(other.wall for _, other in times.runs) * 1e3,
-            percent=per_cent(median(ratios)),
-            percent_low=per_cent(interval.low),
-            percent_high=per_cent(interval.high),
+            percent=median(changes),
+            percent_low=interval.low,
+            percent_high=interval.high,
             compile_s=compile_s,
-            compile_percent=per_cent(compile_s / self.compile_s),
-            pays_after_s=self.pays_after(variant.change, median(ratios), interval, compile_s),
+            compile_percent=(compile_s / self.compile_s - 1) * 100,
+            pays_after_s=self.pays_after(variant.change, median(changes), interval, compile_s),
             same=np.array_equal(pixels, self.pixels),
             valid=not times.remark,
             remark=times.remark,
         )
 
-    def pays_after(self, change: str, ratio: float, interval: Interval, compile_s: float) -> float:
+    def pays_after(self, change: str, percent: float, interval: Interval, compile_s: float) -> float:
         """Return after how many seconds of rendering a kernel without a part has saved its own compile time.
 
-        `ratio` is the frame time of the variant by that of the scene as it is. NaN where its interval holds 1.
+        `percent` is the change of the frame time by the variant. NaN where its interval holds 0.
         """
         if change == "added":
-            return self.compile_s * ratio / (ratio - 1) if interval.low > 1 else nan
-        return compile_s / (1 - ratio) if interval.high < 1 else nan
+            return self.compile_s * (1 + 100 / percent) if interval.low > 0 else nan
+        return -100 * compile_s / percent if interval.high < 0 else nan
 
 
 def frame(renderer: Renderer, scene: Scene, pixels: np.ndarray) -> Callable[[], Run]:
@@ -110,14 +110,9 @@ def frame(renderer: Renderer, scene: Scene, pixels: np.ndarray) -> Callable[[], 
     return partial(timed, partial(renderer.render, scene, pixels))
 
 
-def ratio(base: Run, other: Run) -> float:
-    """Return the ratio of processor times, or of wall times where the clock of the processor is too coarse."""
-    return other.cpu / base.cpu if base.cpu else other.wall / base.wall
-
-
-def per_cent(ratio: float) -> float:
-    """Convert a ratio to a change in per cent."""
-    return (ratio - 1) * 100
+def change(base: Run, other: Run) -> float:
+    """Return the change of processor time in per cent, of wall time where the processor's clock is too coarse."""
+    return ((other.cpu / base.cpu if base.cpu else other.wall / base.wall) - 1) * 100
 
 
 def compile_seconds(scene: Scene) -> float:

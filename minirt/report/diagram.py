@@ -9,13 +9,13 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from minirt.errors import RenderError
-from minirt.report.findings import Findings, pareto_front
+from minirt.report.findings import Findings
 from minirt.report.pictures import OURS, Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-WIDE, NARROW = (9.0, 6.2), (3.9, 6.6)  # inches, of 100 pixels each
+WIDE, NARROW = (7.6, 5.4), (3.9, 6.6)  # inches, of 100 pixels each
 COLOURS = ["#c2264a", "#3f7fb5", "#4f9440", "#b3700d", "#8563b8", "#128a92", "#b34da1", "#76818d", "#9a6238", "#6375d6"]
 MARKS = "osD^pv"
 INK, MUTED, PAPER, BAND = "#222831", "#5d6672", "#ffffff", "#e4e6ea"
@@ -53,11 +53,9 @@ def draw(found: Findings, size: tuple[float, float]) -> str:
         figure = Figure(size, dpi=100, layout="constrained")
         axes = figure.add_subplot(xscale="log", yscale="log")
         axes.set(xlabel="error: RMSE, 1 from black to white", ylabel="milliseconds per picture")
-        if front := pareto_front(found.pictures, found.reference_error):
-            axes.plot(*places(front), color=BAND, linewidth=9, solid_capstyle="round", label="Pareto front", zorder=1)
-        axes.plot(
-            *places(found.recommended), "o", markersize=12, markerfacecolor="none", color=INK, label="recommended"
-        )
+        best = places(sorted(found.recommended, key=lambda row: row.rmse))
+        ring: dict[str, Any] = {"markersize": 12, "markerfacecolor": "none", "markeredgecolor": INK}
+        axes.plot(*best, "o-", color=BAND, linewidth=9, **ring, label="recommended", zorder=1)
         for (name, rows), colour, mark in zip(lines.items(), cycle(COLOURS), cycle(MARKS)):
             draw_line(axes, name, rows, colour, mark)
         draw_floors(axes, found, min((row.rmse for rows in lines.values() for row in rows), default=1.0))

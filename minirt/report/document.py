@@ -1,30 +1,29 @@
-"""Text, tables and pictures of the report of a scene, in their order, and the files that hold them."""
+"""Values, tables and pictures of the page of a report, and the files that hold them."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from math import isnan
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from minirt.helpers import file_io
 from minirt.rendering.image import Image
+from minirt.report.answers import answers
 from minirt.report.diagram import NARROW, WIDE, draw, on_page
-from minirt.report.findings import Findings
+from minirt.report.findings import Findings, distinct
 from minirt.report.metrics import Picture as Light
-from minirt.report.metrics import error_image, to_8_bits
-from minirt.report.page import Document, Picture, as_csv, as_json
+from minirt.report.metrics import error_image, to_8_bits, worst_region
+from minirt.report.page import as_csv, as_json, bullets, figures, filled, table
 from minirt.report.pictures import Row
 from minirt.report.povray import ABOUT
 from minirt.report.settings import KNOBS
 
-CAPTION = (
-    "Left and down is better. Each point of a line is a number of samples per pixel; for `auto` it is the error that "
-    "was asked for. No other setting of miniRT is better in both error and time than the points on the grey band. Bars "
-    "are 95 % confidence intervals. Recommended points have a ring, hollow ones uncertain times."
-)
-PAGE, TEXT, DIAGRAM = "report.html", "report.md", "diagram.svg"
-TABLES = ("pictures", "orders", "ablation", "single", "certificates")  # fields of the findings
+PAGE = "report.html"
+TABLES = ("pictures", "orders", "ablation", "certificates")  # fields of the findings
+TOLD = 2.0  # roundings: a kind of shape whose hits have no larger backward errors has no row on the page
 
 
 def write_files(folder: str | os.PathLike[str], found: Findings, lights: dict[str, Light], reference: Light) -> None:
@@ -40,135 +39,64 @@ def write_files(folder: str | os.PathLike[str], found: Findings, lights: dict[st
 
 def report_files(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, bytes]:
     """Build all files: their contents by their names."""
-    pictures = []
-    for row in (each for each in found.pictures if each.name in lights):
-        file = f"error-{row.name}.png".replace(" ", "-")
-        pictures.append(Picture(caption(row), file, error_image(lights[row.name], reference).encode()))
-    if pictures:
-        pictures.append(Picture("the reference", "reference.png", Image(to_8_bits(reference)).encode()))
-    made = document(found, pictures)
-    derived = {"orders": found.orders, "choices": found.choices}
-    texts = {PAGE: made.as_page(), TEXT: made.as_markdown(), DIAGRAM: draw(found, WIDE)}
-    texts["report.json"] = as_json(vars(found) | derived)
-    texts |= {f"{table}.csv": as_csv(getattr(found, table)) for table in TABLES}
-    return {name: each.encode() for name, each in texts.items()} | {each.file: each.data for each in pictures}
+    markdown, page = filled(found.title, values(found, lights, reference))
+    texts = {PAGE: page, "report.md": markdown, "diagram.svg": draw(found, WIDE)}
+    texts["report.json"] = as_json(vars(found) | {"orders": found.orders, "choices": found.choices})
+    texts |= {f"{name}.csv": as_csv(getattr(found, name)) for name in TABLES}
+    maps = {map_name(row): error_image(lights[row.name], reference) for row in found.pictures if row.name in lights}
+    pictures = maps | {"reference.png": Image(to_8_bits(reference))}
+    encoded = {name: each.encode() for name, each in pictures.items()}
+    return {name: each.encode() for name, each in texts.items()} | encoded
 
 
-def caption(row: Row) -> str:
-    """Return the caption of the error picture of a setting."""
-    return f"{row.name}: RMSE {row.rmse:.2g}"
+def map_name(row: Row) -> str:
+    """Return the name of the file with the errors of each pixel of a setting."""
+    return f"error-{row.name}.png".replace(" ", "-")
 
 
-def document(found: Findings, pictures: list[Picture]) -> Document:
-    """Return the report of a scene: the diagram first, then what follows from it, then pictures and tables."""
-    about = found.subject
-    page = Document(found.title)
-    if found.interrupted:
-        page.notice(found.interrupted)
-    versions = ", ".join(f"{name} {version}" for name, version in about.versions.items())
-    machine = f"{about.threads} threads, {about.processor}"
-    page.text(f"{about.width}x{about.height} pixels, {machine}; seed {about.seed}. {versions}.")
-    wide, narrow = (on_page(draw(found, size)) for size in (WIDE, NARROW))
-    page.chart("Error against run time", DIAGRAM, CAPTION, wide, narrow)
-    page.heading("Recommended settings")
-    page.bullets(advice(found))
-    add_pictures(page, found, pictures)
-    add_parts(page, found)
-    add_precision(page, found)
-    if found.not_measured:
-        page.heading("Not measured")
-        page.bullets(found.not_measured)
-    return page
-
-
-def add_pictures(page: Document, found: Findings, pictures: list[Picture]) -> None:
-    """Add what was measured of pictures: errors, settings and convergence."""
-    best = found.recommended
-    if pictures:
-        page.heading("Where the errors are")
-        page.text(
-            "The pictures `error-*.png` show the error of each pixel: black up to 0.0001, blue at 0.001, red at 0.01, "
-            "orange at 0.1, white at 1."
-        )
-        names = [caption(row) for row in sorted(best, key=lambda row: row.rmse)[:1]]
-        page.pictures(pictures, next((i for i, each in enumerate(pictures) if each.name in names), len(pictures) - 1))
-    page.section(
-        "Pictures",
-        f"The reference has {found.reference_samples} samples per pixel in float64, at other sample positions; its own "
-        f"RMSE is about {found.reference_error:.1g}. Each time is the median of undisturbed runs. From and to are 95 % "
-        "confidence intervals. Recommended settings stand out.",
-        found.pictures,
-        best,
-    )
+def values(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, Any]:
+    """Return what the page of a report tells, by the names in its template."""
     used = {row.knob for row in found.pictures}
-    abouts = {knob.name: knob.about for knob in KNOBS} | ABOUT
-    page.bullets(f"{name}: {about}" for name, about in abouts.items() if name in used)
-    page.section(
-        "Orders of convergence",
-        "RMSE falls as samples^-order, or as time^-order, by least squares; from and to are 95 % confidence intervals "
-        "by Student's t. Points within twice the error of the reference are left out, and that error is taken off the "
-        "rest; disturbed times are left out.",
-        found.orders,
-    )
+    wide, narrow = (on_page(draw(found, size)) for size in (WIDE, NARROW))
+    knobs = {knob.name: knob.about for knob in KNOBS} | ABOUT
+    equal = [row for row in found.of_equal_time if row.name in lights]
+    return {
+        "found": found,
+        "answers": bullets(answers(found)),
+        "interrupted": found.interrupted,
+        "diagram": f'<div class="wide">{wide}</div><div class="narrow">{narrow}</div>',
+        "choices": table(found.choices),
+        "pictures": figures("pictures", compared(equal, lights, reference)),
+        "crops": crops(equal, lights, reference) if equal else "",
+        "settings": table(distinct(found.pictures), found.recommended),
+        "knobs": "; ".join(f"{name}: {knobs[name]}" for name in knobs if name in used),
+        "orders": table(found.orders),
+        "ablation": table(found.ablation),
+        "stiff": bullets(found.stiff),
+        "certificates": table([row for row in found.certificates if row.backward_largest > TOLD]),
+        "not_measured": bullets(found.not_measured),
+        "maps": ", ".join(f"[{row.name}]({map_name(row)})" for row in found.pictures if row.name in lights),
+        "notes": "; ".join(found.notes),
+        "versions": ", ".join(f"{name} {version}" for name, version in found.subject.versions.items()),
+    }
 
 
-def add_parts(page: Document, found: Findings) -> None:
-    """Add the cost of parts, and which work is left out."""
-    page.heading("Work that this scene leaves out")
-    counts = " and ".join(map(str, found.same))
-    same = f"testing every ray against every shape gives the same pictures, bit for bit (samples: {counts})"
-    page.bullets([*found.notes, *[same] * bool(found.same)])
-    page.section(
-        "What parts cost and save",
-        "Processor time of a frame with one sample per pixel, changed by one part: a list is left out, or something "
-        "that no ray meets is added. It is the median of the ratios of frames in turn with the scene as it is; from "
-        "and to are a 95 % confidence interval. Where code lies in memory changes a time by some per cent, too. "
-        "`--ablation` adds the features and the kinds of shapes that the scene lacks, and leaves out those that it has "
-        "and no pixel can show. A kernel without a part has saved its own compile time after so many seconds of "
-        "rendering, where the interval tells that the part costs time.",
-        found.ablation,
-    )
+def compared(rows: list[Row], lights: dict[str, Light], reference: Light) -> Iterator[dict[str, bytes]]:
+    """Yield the reference, and for each row its picture and the errors of that, by their names."""
+    yield {"the reference": Image(to_8_bits(reference)).encode()}
+    for row in rows:
+        light, name = lights[row.name], f"{row.name}: {row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}"
+        errors = error_image(light, reference).encode()
+        yield {name: Image(to_8_bits(light)).encode(), f"errors of {row.name}": errors}
 
 
-def add_precision(page: Document, found: Findings) -> None:
-    """Add what rounding does: in float32, in stiff parts of the scene, and at hits."""
-    page.section(
-        "Single precision, feature by feature",
-        "Difference between pictures in float32 and in float64 with one sample per pixel: of the shapes alone, in "
-        "their own colours, and with one feature of the scene at a time.",
-        found.single,
-    )
-    page.heading("Stiff parts of the scene")
-    page.bullets(map(str, found.stiff)) if found.stiff else page.text("None.")
-    page.section(
-        "Certificates of hits",
-        "The backward error of a hit is its distance from the exact surface, in roundings (2^-53) of the numbers that "
-        "it is computed from: of t, of the way from the origin of the ray to the shape, and of the shape's size. It is "
-        "computed with twice the digits. The columns from 1/4 on are a histogram. The condition number tells how many "
-        "times larger the relative error of t may be, as it is for grazing rays: t is exact within their product times "
-        "2^-53. The last column is the largest distance of a normal from the exact unit normal.",
-        found.certificates,
-    )
+def crops(rows: list[Row], lights: dict[str, Light], reference: Light) -> str:
+    """Return crops of pictures, where these are furthest from the reference."""
+    region = worst_region(np.sum([((lights[row.name] - reference) ** 2).sum(axis=-1) for row in rows], axis=0))
+    return figures("crops", compared(rows, {row.name: lights[row.name][region] for row in rows}, reference[region]))
 
 
 def summary(found: Findings) -> str:
-    """Return the recommended settings, the stiff shapes and what was not measured, a line each."""
-    stiff = (f"stiff: {each}" for each in found.stiff)
-    return "\n".join([*[found.interrupted] * bool(found.interrupted), *advice(found), *stiff, *found.not_measured])
-
-
-def advice(found: Findings) -> Iterator[str]:
-    """Yield the best setting for each target error and each target time, and how many cannot be recommended."""
-    disturbed = 0
-    for choice in found.choices:
-        best, disturbed = choice["best"], choice["disturbed"]
-        yield f"{choice['wanted']}: {described(best) if best else 'none of these settings'}"
-    if disturbed:
-        yield f"left out, as other programs disturbed their times: {disturbed}"
-
-
-def described(row: Row) -> str:
-    """Describe a recommended setting in words."""
-    samples = f"{row.samples:.3g} sample{'s' * (row.samples != 1)}"
-    asked = "" if isnan(row.asked) else f" asked for {row.asked:g},"
-    return f"{row.knob},{asked} {samples} ({row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB)"
+    """Return the answers and what was not measured, a line each."""
+    told = (answer.replace("`", "").replace("**", "") for answer in answers(found))
+    return "\n".join([*[found.interrupted] * bool(found.interrupted), *told, *found.not_measured])

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from importlib.metadata import version
-from math import exp, isfinite, nan, sqrt
-from typing import Annotated, Any, NamedTuple
+from math import exp, isfinite, log, nan, sqrt
+from operator import attrgetter
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -17,14 +18,17 @@ from minirt.kernel.machine_code.fingerprint import cpu_information
 from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
 from minirt.report.metrics import fit
-from minirt.report.pictures import DISTURBED_BY_OTHERS, OURS, Row
-from minirt.report.precision import KindCertificates, SingleError
+from minirt.report.pictures import Row
+from minirt.report.precision import KindCertificates
 from minirt.scene import Scene, dump
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pillow")
 CLEAR = 2.0  # times the error of the reference: from there on an error is known well enough
-ERRORS = (0.03, 0.01, 0.003, 0.001)  # target errors, RMSE
+LEVEL = 0.004  # RMSE, one of 255 levels
+ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
+NEAR = 1.5  # ratio of times up to which they are about equal
 TIMES = (16.0, 100.0, 1000.0)  # target times, milliseconds
+TIME, ERROR = attrgetter("wall_low_ms", "wall_high_ms"), attrgetter("rmse_low", "rmse_high")  # intervals of a row
 EIGHT_BITS = 1 / 255 / sqrt(12)  # standard deviation of a number that is rounded to a 255th
 
 
@@ -46,13 +50,24 @@ class Order(NamedTuple):
 
     knob: Annotated[str, "setting"]
     points: Annotated[int, "points", "d"]  # that were fitted; others are as small as the error of the reference
-    by_samples: Annotated[float, "order by samples", ".2f"] = nan  # 0.5 for random samples; NaN where they are unknown
+    by_samples: Annotated[float, "by samples", ".2f"] = nan  # 0.5 for random samples; NaN where they are unknown
     by_samples_low: Annotated[float, "from", ".2f"] = nan  # 95 % confidence interval, Student's t
     by_samples_high: Annotated[float, "to", ".2f"] = nan
-    by_time: Annotated[float, "order by time", ".2f"] = nan
+    by_time: Annotated[float, "by time", ".2f"] = nan
     by_time_low: Annotated[float, "from", ".2f"] = nan
     by_time_high: Annotated[float, "to", ".2f"] = nan
-    constant: Annotated[float, "RMSE at 1 sample", ".3g"] = nan  # by the fit
+    constant: float = nan  # RMSE at 1 sample, by the fit
+
+
+class Recommendation(NamedTuple):
+    """The best setting for a goal, which its error or its time reaches with a confidence of 95 %."""
+
+    goal: Annotated[str, "goal"]  # such as "error at most 0.01"
+    options: Annotated[str, "best setting"] = "none of these"  # of the command line
+    wall_ms: Annotated[float, "ms", ".1f"] = nan
+    rmse: Annotated[float, "RMSE", ".5f"] = nan
+    equal: Annotated[str, "as good"] = ""  # settings whose times and errors cannot be told from these
+    best: Row | None = None
 
 
 @dataclass
@@ -65,9 +80,10 @@ class Findings:
     eight_bits: float = EIGHT_BITS  # RMSE that rounding to 8 bits per channel adds: no such file can be closer
     pictures: list[Row] = field(default_factory=list)
     ablation: list[Part] = field(default_factory=list)  # what features, kinds of shapes and lists cost or save
-    single: list[SingleError] = field(default_factory=list)  # errors of float32, feature by feature
+    single: float = nan  # pixels that float32 changes, with one sample each
     certificates: list[KindCertificates] = field(default_factory=list)  # of the hits in the picture, kind by kind
     stiff: list[Stiff] = field(default_factory=list)
+    absent: str = ""  # numbers of the kinds of shapes and of the features that the scene's kernel lacks
     notes: list[str] = field(default_factory=list)  # how the scene was packed, and which features were left out
     same: list[int] = field(default_factory=list)  # sample counts for which brute force gives the same bits
     not_measured: list[str] = field(default_factory=list)
@@ -97,26 +113,62 @@ class Findings:
         timed = [row.valid for row in rows]
         by_samples = fit(-np.log([row.samples for row in rows]), errors)
         by_time = fit(-np.log([row.wall_ms for row in rows])[timed], errors[timed])
-        return Order(rows[0].knob, len(rows), *by_samples[:3], *by_time[:3], exp(by_samples.intercept))
+        return Order(rows[0].knob, len(rows), *by_samples[:3], *by_time[:3], exp(by_samples[3]))
 
     @property
-    def choices(self) -> list[dict[str, Any]]:
-        """The best setting for each target error and each target time; None if no setting reaches it.
+    def choices(self) -> list[Recommendation]:
+        """The best setting for each target error and each target time, of those that the command line has.
 
-        Errors are known up to that of the reference. "disturbed" counts the rows that were left out since their times
-        were disturbed.
+        Of settings whose intervals overlap the simplest is the best.
         """
-        by_error, by_time = pareto_front(self.pictures, 0.0), pareto_front(self.pictures, self.reference_error)
-        best = {f"error at most {most:g}": next((row for row in by_error if row.rmse <= most), None) for most in ERRORS}
-        for time in TIMES:
-            best[f"at most {time:g} ms"] = next((row for row in reversed(by_time) if row.wall_ms <= time), None)
-        disturbed = sum(row.remark == DISTURBED_BY_OTHERS for row in self.pictures if row.program == OURS)
-        return [{"wanted": wanted, "best": row, "disturbed": disturbed} for wanted, row in best.items()]
+        rows = [row for row in self.pictures if row.options and row.valid]
+        found = []
+        for most in ERRORS:
+            fastest = unbeaten([row for row in rows if row.rmse_high <= most], TIME)
+            found.append(recommendation(f"error at most {most:g}", unbeaten(fastest, ERROR)))
+        for most in TIMES:
+            closest = unbeaten([row for row in rows if row.wall_high_ms <= most], ERROR)
+            found.append(recommendation(f"at most {most:g} ms", unbeaten(closest, TIME)))
+        return found
 
     @property
     def recommended(self) -> list[Row]:
-        """The rows that are the best for some wanted error or time."""
-        return list(dict.fromkeys(choice["best"] for choice in self.choices if choice["best"]))
+        """The rows that are the best for some goal."""
+        return list(dict.fromkeys(choice.best for choice in self.choices if choice.best))
+
+    @property
+    def of_equal_time(self) -> list[Row]:
+        """The row of each line that takes about as long as the best setting for an error of one level, the most exact
+        one first; as long as the most exact setting, if none reaches that error."""
+        rows = [row for row in distinct(self.pictures) if row.valid]
+        best = self.choices[ERRORS.index(LEVEL)].best or min(rows, key=lambda row: row.rmse, default=None)
+        nearest: dict[str, Row] = {}
+        for row in sorted(rows, key=lambda row: abs(log(row.wall_ms / best.wall_ms)) if best else 0.0):
+            if best and 1 / NEAR < row.wall_ms / best.wall_ms < NEAR:
+                nearest.setdefault(row.knob, row)
+        return sorted(nearest.values(), key=lambda row: row.rmse)
+
+
+def recommendation(goal: str, rows: list[Row]) -> Recommendation:
+    """Recommend the first of some rows, the simplest one, for a goal that all of them reach equally well."""
+    if not rows:
+        return Recommendation(goal)
+    best, *others = rows
+    return Recommendation(goal, best.options, best.wall_ms, best.rmse, ", ".join(row.name for row in others), best)
+
+
+def unbeaten(rows: list[Row], interval: Callable[[Row], tuple[float, float]]) -> list[Row]:
+    """Return the rows whose interval lies above no other row's interval."""
+    least = min((interval(row)[1] for row in rows), default=nan)
+    return [row for row in rows if interval(row)[0] <= least]
+
+
+def distinct(rows: Iterable[Row]) -> list[Row]:
+    """Return the rows without those whose picture is that of a row before, so that the error is equal to all digits."""
+    found: dict[float | str, Row] = {}
+    for row in rows:
+        found.setdefault(row.rmse if isfinite(row.rmse) else row.name, row)
+    return list(found.values())
 
 
 def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed: int) -> Subject:
@@ -130,16 +182,3 @@ def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed
 def processor() -> str:
     """Return the name of the processor: from /proc/cpuinfo on Linux, from `platform` elsewhere."""
     return cpu_information("model name") or platform.processor()
-
-
-def pareto_front(rows: Iterable[Row], doubt: float) -> list[Row]:
-    """Return the Pareto front, the fastest first: each slower setting has an error smaller by more than `doubt`.
-
-    Rows that failed or were disturbed are not on it, nor are other programs.
-    """
-    measured = (row for row in rows if row.program == OURS and row.valid and isfinite(row.rmse + row.wall_ms))
-    best: list[Row] = []
-    for row in sorted(measured, key=lambda row: (row.wall_ms, row.rmse)):
-        if not best or row.rmse < best[-1].rmse - doubt:
-            best.append(row)
-    return best

@@ -16,6 +16,7 @@ from minirt.errors import RenderError
 from minirt.helpers.progress import State, progress
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
+from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.queries.stiffness import coincident, stiff_shapes
 from minirt.rendering.threads import usable_cores
 from minirt.report import povray
@@ -24,12 +25,13 @@ from minirt.report.bench import runs
 from minirt.report.diagram import require_matplotlib
 from minirt.report.document import PAGE, summary, write_files
 from minirt.report.findings import Findings, subject
-from minirt.report.metrics import Picture
+from minirt.report.metrics import Picture, changed
 from minirt.report.pictures import RUNS, Budget, Reference, Row, SettingRenderer, reference, reference_steps
-from minirt.report.precision import hit_certificates, single_errors
+from minirt.report.precision import hit_certificates
 from minirt.report.settings import COUNTS, Setting, settings
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import Scene
+from minirt.shapes import ALL_KINDS
 
 SEED = 20240607
 CULLING = ("brute force", "uniform")  # knobs whose pictures must be the same
@@ -50,7 +52,7 @@ class Plan(NamedTuple):
 
 
 FULL = Plan(1024, 64, 0.0005, 16384, 300.0, Budget(0.3, 5.0, tries=3), others=True)
-QUICK = Plan(1024, 16, 0.002, 320, 5.0, Budget(0.0, 0.1, tries=3), others=False)
+QUICK = Plan(1024, 32, 0.002, 320, 5.0, Budget(0.0, 0.3, tries=3), others=False)
 
 
 class Measurement:
@@ -94,6 +96,8 @@ class Measurement:
             self.keep(found, *stage.measured(setting, right))
         brute, culled = ([self.pictures.get(f"{knob} {count}", nan) for count in COUNTS] for knob in CULLING)
         found.same += [count for count, a, b in zip(COUNTS, brute, culled, strict=True) if np.array_equal(a, b)]
+        if "single 1" in self.pictures:
+            found.single = changed(self.pictures["single 1"], self.pictures["uniform 1"])
         if plan.others:
             try:
                 program = povray.PovRay(scene, width, height, self.threads, files)
@@ -101,7 +105,6 @@ class Measurement:
                     self.keep(found, row, picture)
             except RenderError as error:
                 found.not_measured.append(str(error))
-        found.single.extend(single_errors(scene, width, height, self.threads))
         found.certificates.extend(hit_certificates(scene, width, height, SEED))
         found.ablation.extend(Ablation(scene, width, height, self.threads, plan.budget).parts(variants, step))
         stage.measure_disturbed_again(wanted, found.pictures, step)
@@ -117,6 +120,9 @@ class Measurement:
         packing = Renderer().packing
         packing.pack(self.scene, width, height)
         shapes = packing.shape_arrays
+        used = features(self.scene)
+        kinds, others = {kind.element for kind in ALL_KINDS} - used, WORDS.keys() - used
+        found.absent = f"{len(kinds)} kinds of shapes and {len(others)} features"
         found.notes += [*kernel_notes(self.scene, generic=None, compiling=False), *packing.notes]
         found.stiff += [*stiff_shapes(self.scene, shapes, width, height), *coincident(self.scene, shapes)]
 

@@ -99,27 +99,22 @@ def percentiles(values: np.ndarray) -> Interval:
     return Interval(low, high)
 
 
-class Fit(NamedTuple):
-    """A straight line fitted by least squares, and the confidence interval of its slope; NaN without enough points."""
+def fit(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float, float]:
+    """Fit a straight line by least squares to the points with finite x, of which at least three must differ.
 
-    slope: float = nan
-    low: float = nan
-    high: float = nan
-    intercept: float = nan
-
-
-def fit(x: np.ndarray, y: np.ndarray) -> Fit:
-    """Fit a straight line to the points with finite x, of which at least three must differ."""
+    Return its slope, the ends of the confidence interval of that, and its value at 0; NaN without enough points.
+    """
     x, y = x[np.isfinite(x)], y[np.isfinite(x)]
     if len(np.unique(x)) < LEAST_POINTS:
-        return Fit()
-    (slope, intercept), covariance = np.polyfit(x, y, 1, cov=True)
+        return nan, nan, nan, nan
+    (slope, constant), covariance = np.polyfit(x, y, 1, cov=True)
     reach = STUDENT[min(len(x) - 2, len(STUDENT)) - 1] * sqrt(covariance[0, 0])
-    return Fit(float(slope), float(slope - reach), float(slope + reach), float(intercept))
+    return float(slope), float(slope - reach), float(slope + reach), float(constant)
 
 
-# Error images: the error of each pixel as a heat map.
+# Error images: the error of each pixel as a heat map; and where errors are largest.
 
+CROP = 60, 80  # rows and columns of a crop, at most
 LEAST = 1e-4  # errors up to this are black; an error of 1, black against white, is white
 HEAT = np.array([[0, 0, 0], [40, 20, 120], [190, 30, 80], [250, 150, 20], [255, 255, 255]])  # one colour a decade
 
@@ -129,6 +124,16 @@ def error_image(picture: Picture, reference: Picture) -> Image:
     error = np.abs(picture - reference).max(axis=-1)
     heat = np.log10(np.maximum(error, LEAST) / LEAST)
     return Image(np.stack([np.interp(heat, range(len(HEAT)), part) for part in HEAT.T], axis=-1).astype(np.uint8))
+
+
+def worst_region(squares: np.ndarray) -> tuple[slice, slice]:
+    """Return the rows and the columns of the crop of a picture with the largest sum of squared errors (h, w)."""
+    height, width = np.minimum(CROP, squares.shape).tolist()
+    total = np.pad(squares.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))  # of all above and to the left
+    across = total[:, width:] - total[:, :-width]
+    sums = across[height:] - across[:-height]
+    top, left = (int(each) for each in np.unravel_index(sums.argmax(), sums.shape))
+    return slice(top, top + height), slice(left, left + width)
 
 
 # FLIP: perceived difference of two pictures that alternate on a screen, in [0, 1] for each pixel, for pictures of low

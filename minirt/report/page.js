@@ -1,5 +1,5 @@
 "use strict";
-// Two pictures of the grid lie on top of each other, and a slider moves the border between them.
+// Two of the pictures lie on top of each other, and a slider moves the border between them.
 for (const grid of document.querySelectorAll(".pictures")) {
   const pictures = [...grid.querySelectorAll("img")];
   const comparison = document.querySelector("template").content.firstElementChild.cloneNode(true);
@@ -31,7 +31,7 @@ for (const grid of document.querySelectorAll(".pictures")) {
   }
 
   choose("left", 0);
-  choose("right", Number(grid.dataset.other));
+  choose("right", Math.min(2, pictures.length - 1));
   slider.addEventListener("input", move);
   panes.addEventListener("pointerdown", drag);
   panes.addEventListener("pointermove", drag);

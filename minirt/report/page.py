@@ -1,5 +1,4 @@
-"""Tables of records and a document of text, tables and pictures, written as Markdown and as one HTML page that needs no
-other file and no network; records as CSV and as JSON."""
+"""A page of text, tables and pictures, as Markdown and as HTML that needs no network; records as CSV and as JSON."""
 
 from __future__ import annotations
 
@@ -7,128 +6,107 @@ import csv
 import json
 import re
 from base64 import b64encode
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
 from io import StringIO
 from math import isfinite, isnan
 from pathlib import Path
-from typing import Any, NamedTuple, get_args, get_type_hints
+from typing import Annotated, Any, get_origin, get_type_hints
 
 FOLDER = Path(__file__).parent
+MARKS = {
+    r"`(.+?)`": r"<code>\1</code>",
+    r"\*\*(.+?)\*\*": r"<b>\1</b>",
+    r"\[([^]]+)\]\(([\w.-]+)\)": r'<a href="\2">\1</a>',
+}
+HTML = "<div"  # begins a block that is not Markdown
+NOTHING = {"-", "", "0", "yes"}  # cells that tell nothing, if all of a column are so
 
 
-class Column(NamedTuple):
-    """A column of a table: the field of the records that it shows, its title, and the format of numbers."""
-
-    field: str
-    title: str
-    format: str = ""
-
-
-def columns(record: type) -> list[Column]:
-    """Return the columns of a table of records: the fields that are `Annotated` with a title, and perhaps a format."""
-    hints = get_type_hints(record, include_extras=True)
-    return [Column(field, *get_args(hint)[1:]) for field, hint in hints.items() if get_args(hint)[1:]]
+def columns(record: type) -> Iterator[tuple[str, str, str]]:
+    """Yield field, title and format of the columns of a table of records: of the fields that are `Annotated` so."""
+    for field, hint in get_type_hints(record, include_extras=True).items():
+        if get_origin(hint) is Annotated:
+            yield field, hint.__metadata__[0], "".join(hint.__metadata__[1:])
 
 
-class Picture(NamedTuple):
-    """A picture with a name."""
+def filled(title: str, values: dict[str, Any]) -> tuple[str, str]:
+    """Fill the template `page.txt` with values; return it as Markdown and as HTML.
 
-    name: str
-    file: str
-    data: bytes  # PNG
-
-
-class Document:
-    """Blocks in their order, each in both forms. Backticks in text surround code."""
-
-    def __init__(self, title: str) -> None:
-        self.title = title
-        self.markdown: list[str] = []
-        self.html: list[str] = []
-        self.heading(title, 1)
-
-    def add(self, markdown: str, html: str) -> None:
-        """Add a block in both forms."""
-        self.markdown.append(markdown)
-        self.html.append(html)
-
-    def heading(self, text: str, level: int = 2) -> None:
-        """Add the title of a section."""
-        self.add(f"{'#' * level} {text}", f"<h{level}>{inline(text)}</h{level}>")
-
-    def text(self, text: str) -> None:
-        """Add a paragraph."""
-        self.add(text, f"<p>{inline(text)}</p>")
-
-    def notice(self, text: str) -> None:
-        """Add a paragraph that no reader should miss."""
-        self.add(f"**{text}**", f'<p class="notice" role="alert">{inline(text)}</p>')
-
-    def bullets(self, items: Iterable[str]) -> None:
-        """Add a list of points."""
-        items = list(items)
-        points = "".join(f"<li>{inline(item)}</li>" for item in items)
-        self.add("\n".join(f"- {item}" for item in items), f"<ul>{points}</ul>")
-
-    def section(self, title: str, text: str, rows: Sequence[Any], emphasised: Collection[Any] = ()) -> None:
-        """Add a heading, a paragraph and a table of records, with a dash for NaN; nothing where there are no records.
-
-        The table scrolls sideways where it is wider than the screen.
-        """
-        if not rows:
-            return
-        self.heading(title)
-        self.text(text)
-        shown = columns(type(rows[0]))
-        kinds = ["number" if column.format else "word" for column in shown]  # numbers are aligned to the right
-        titles = [column.title for column in shown]
-        rules = ("---:" if column.format else "---" for column in shown)
-        markdown = [f"| {' | '.join(titles)} |", f"|{'|'.join(rules)}|"]
-        html = [cells("th", kinds, titles)]
-        for row in rows:
-            texts = [cell(getattr(row, column.field), column.format) for column in shown]
-            first, *others = (each.replace("|", r"\|") for each in texts)
-            best = row in emphasised
-            markdown.append(f"| {' | '.join([f'**{first}**' if best else first, *others])} |")
-            html.append(f'<tr class="{"emphasised" if best else "plain"}">{cells("td", kinds, texts)}</tr>')
-        body = f"<table><thead><tr>{html[0]}</tr></thead><tbody>{''.join(html[1:])}</tbody></table>"
-        self.add("\n".join(markdown), f'<div class="scroll" tabindex="0">{body}</div>')
-
-    def chart(self, name: str, file: str, about: str, wide: str, narrow: str) -> None:
-        """Add a chart as SVG elements in two widths; Markdown shows a file beside it."""
-        both = f'<div class="wide">{wide}</div><div class="narrow">{narrow}</div>'
-        html = f'<figure class="diagrams">{both}<figcaption>{inline(about)}</figcaption></figure>'
-        self.add(f"![{name}]({file})\n\n{about}", html)
-
-    def pictures(self, pictures: Iterable[Picture], other: int) -> None:
-        """Add pictures to compare: the first with that of index `other`, unless the reader chooses. The page alone
-        shows them."""
-        images = "".join(
-            f'<figure><img alt="{escape(each.name)}" src="data:image/png;base64,{b64encode(each.data).decode()}" '
-            f'decoding="async"><figcaption>{inline(each.name)}</figcaption></figure>'
-            for each in pictures
-        )
-        self.html.append(f'<div class="pictures" data-other="{other}">{images}</div>')
-
-    def as_markdown(self) -> str:
-        """Return the document as Markdown, an empty line between two blocks."""
-        return "\n\n".join(self.markdown) + "\n"
-
-    def as_page(self) -> str:
-        """Return the document as a page."""
-        page, style, script = ((FOLDER / f"page.{kind}").read_text(encoding="utf-8") for kind in ("html", "css", "js"))
-        return page.format(title=escape(self.title), style=style, body="\n".join(self.html), script=script)
+    A section that lacks a value is left out. Blocks that begin with "<div" are for HTML alone, those with "!" for
+    Markdown.
+    """
+    template, page, style, script = (
+        (FOLDER / f"page.{kind}").read_text(encoding="utf-8") for kind in ("txt", "html", "css", "js")
+    )
+    markdown, html = list[str](), list[str]()
+    for section in re.split(r"\n(?=## )", template):
+        if all(values[name] for name in re.findall(r"{(\w+)}", section)):
+            blocks = section.format_map(values).strip().split("\n\n")
+            markdown += [block for block in blocks if not block.startswith(HTML)]
+            name = escape(blocks[0].strip("# ").replace(" ", "-").lower())
+            body = (block if block.startswith(HTML) else as_html(block) for block in blocks if block[0] != "!")
+            html.append(f'<section id="{name}">{"".join(body)}</section>')
+    filled = page.format(title=escape(title), style=style, body="\n".join(html), script=script)
+    return "\n\n".join(markdown) + "\n", filled
 
 
-def cells(tag: str, kinds: Iterable[str], texts: Iterable[str]) -> str:
-    """Return the cells of a row in HTML."""
-    return "".join(f'<{tag} class="{kind}">{inline(text)}</{tag}>' for kind, text in zip(kinds, texts, strict=True))
+def bullets(items: Iterable[object]) -> str:
+    """Return a list of points in Markdown."""
+    return "\n".join(f"- {' '.join(str(item).split())}" for item in items)
+
+
+def table(rows: Sequence[Any], emphasised: Collection[Any] = ()) -> str:
+    """Return a table of records in Markdown, with a dash for NaN and without columns that tell nothing."""
+    if not rows:
+        return ""
+    texts = list[list[str]]()  # of the columns: title, rule, and a cell for each record
+    for field, title, form in columns(type(rows[0])):
+        cells = [cell(getattr(row, field), form).replace("|", r"\|") for row in rows]
+        if not NOTHING.issuperset(cells):
+            texts.append([title, "---:" if form else "---", *cells])
+    texts[0][2:] = [f"**{text}**" if row in emphasised else text for row, text in zip(rows, texts[0][2:], strict=True)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in zip(*texts, strict=True))
+
+
+def figures(kind: str, figures: Iterable[dict[str, bytes]]) -> str:
+    """Return figures in HTML, each of PNG pictures by their names, the first of which is its caption.
+
+    Of the kind "pictures" the page shows two at a time, which the reader chooses.
+    """
+    html = []
+    for pictures in figures:
+        data = ((escape(name), b64encode(png).decode()) for name, png in pictures.items())
+        images = (f'<img alt="{name}" src="data:image/png;base64,{text}">' for name, text in data)
+        html.append(f"<figure>{''.join(images)}<figcaption>{inline(next(iter(pictures)))}</figcaption></figure>")
+    return f'<div class="{kind}">{"".join(html)}</div>'
+
+
+def as_html(block: str) -> str:
+    """Convert a block of Markdown: a heading, a list, a table or a paragraph."""
+    lines = inline(block).splitlines()
+    sign, _, text = lines[0].partition(" ")
+    if set(sign) == {"#"}:
+        return f"<h{len(sign)}>{text}</h{len(sign)}>"
+    if sign == "-":
+        return f"<ul>{''.join(f'<li>{line[2:]}</li>' for line in lines)}</ul>"
+    if sign != "|":
+        return f"<p>{' '.join(lines)}</p>"
+    head, rules, *rows = ([text.replace(r"\|", "|") for text in line[2:-2].split(" | ")] for line in lines)
+    kinds = ["number" if rule.endswith(":") else "word" for rule in rules]  # numbers are aligned to the right
+    html = []
+    for tag, row in [("th", head), *(("td", row) for row in rows)]:
+        cells = (f'<{tag} class="{kind}">{text}</{tag}>' for kind, text in zip(kinds, row, strict=True))
+        html.append(f'<tr class="{"emphasised" if row[0].startswith("<b>") else "plain"}">{"".join(cells)}</tr>')
+    return f'<div class="scroll" tabindex="0"><table>{"".join(html)}</table></div>'
 
 
 def inline(text: str) -> str:
-    """Escape text; backticks surround code."""
-    return re.sub(r"`(.+?)`", r"<code>\1</code>", escape(text))
+    """Escape text; backticks surround code, two stars what is bold, and [text](file) is a link."""
+    text = escape(text)
+    for pattern, html in MARKS.items():
+        text = re.sub(pattern, html, text)
+    return text
 
 
 def cell(value: Any, format: str) -> str:

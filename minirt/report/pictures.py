@@ -125,24 +125,26 @@ class Row(NamedTuple):
     knob: Annotated[str, "setting"]
     label: Annotated[str, "point"]  # in the diagram: "16" samples, or the error that was asked for
     program: str = OURS  # that drew the picture
+    options: str = ""  # of the command line that draw so
     samples: Annotated[float, "samples", ".3g"] = nan  # per pixel: "adaptive" takes so many at most, "auto" on average
     rmse: Annotated[float, "RMSE", ".5f"] = nan  # of colours, 1 from black to white
     rmse_low: Annotated[float, "from", ".5f"] = nan  # 95 % confidence interval: bootstrap over blocks of pixels, and
     rmse_high: Annotated[float, "to", ".5f"] = nan  # the error of the reference
-    rmse_8_bits: Annotated[float, "in 8 bits", ".5f"] = nan  # rounded to 8 bits per channel, as files have it
+    rmse_8_bits: float = nan  # rounded to 8 bits per channel, as files have it
     psnr: Annotated[float, "PSNR, dB", ".1f"] = nan
     flip: Annotated[float, "FLIP", ".4f"] = nan  # mean over the pixels
-    changed: Annotated[float, "changed pixels", ".0f"] = nan  # that differ in 8 bits
+    changed: float = nan  # pixels that differ in 8 bits
     not_finite: Annotated[float, "rays not finite", ".0f"] = nan  # whose light is 0 in the picture
     asked: float = nan  # error that was asked for, of automatic sampling
     estimated: Annotated[float, "own estimate", ".5f"] = nan  # error by the estimate of automatic sampling
     wall_ms: Annotated[float, "ms", ".2f"] = nan  # median of the undisturbed runs
     wall_low_ms: Annotated[float, "from", ".2f"] = nan  # 95 % confidence interval: bootstrap over the runs
     wall_high_ms: Annotated[float, "to", ".2f"] = nan
-    cpu_ms: Annotated[float, "processor ms", ".2f"] = nan
+    efficiency: Annotated[float, "efficiency, 1/(MSE s)", ",.0f"] = nan
+    cpu_ms: float = nan
     runs: int = 0  # that were undisturbed
-    sort_ms: Annotated[float, "sorting, ms", ".2f"] = nan  # packing and culling, once per scene
-    compile_s: Annotated[float, "compiling or loading, s", ".2f"] = nan  # of the kernel
+    sort_ms: float = nan  # packing and culling, once per scene
+    compile_s: float = nan  # to compile the kernel or to load it
     valid: bool = False  # False: failed, or other programs disturbed all tries: never recommended
     remark: Annotated[str, "remark"] = ""
 
@@ -169,10 +171,12 @@ class Row(NamedTuple):
         """Return the row with its times."""
         walls = [run.wall * 1e3 for (run,) in times.runs]
         low, high = metrics.of_median(walls)
+        wall = median(walls)
         return self._replace(
-            wall_ms=median(walls),
+            wall_ms=wall,
             wall_low_ms=low,
             wall_high_ms=high,
+            efficiency=1e3 / (self.rmse**2 * wall) if self.rmse else nan,
             cpu_ms=median(run.cpu * 1e3 for (run,) in times.runs),
             runs=len(walls),
             valid=not times.remark,
@@ -211,7 +215,8 @@ class SettingRenderer:
 
     def measured(self, setting: Setting, right: Reference) -> tuple[Row, Picture | None]:
         """Return the row and the picture of a setting; None in place of a picture if it failed or takes too long."""
-        row, work = Row(setting.knob.name, f"{setting.value:g}"), setting.knob.work(setting.value)
+        row = Row(setting.knob.name, f"{setting.value:g}", options=setting.options)
+        work = setting.knob.work(setting.value)
         expected = self.cost.get(row.knob, 0.0) * work
         if expected > self.budget.longest:
             return row._replace(remark=f"left out: takes about {expected:.2g} s"), None

@@ -117,8 +117,8 @@ ADAPTIVE = f"{PROGRAM} adaptive"
 GRID = "+AM1 +A0.0 -J +R{}"  # options for a grid of n x n samples in each pixel
 # Rows and options: grids, and supersampling where colours differ by more than a threshold, with 81 samples at most.
 SETTINGS = (
-    (Row(PROGRAM, "1", PROGRAM, 1), "-A"),
-    *((Row(PROGRAM, str(n * n), PROGRAM, n * n), GRID.format(n)) for n in (2, 3, 4)),
+    (Row(PROGRAM, "1", PROGRAM, samples=1), "-A"),
+    *((Row(PROGRAM, str(n * n), PROGRAM, samples=n * n), GRID.format(n)) for n in (2, 3, 4)),
     *((Row(ADAPTIVE, f"A{limit:g}", PROGRAM), f"+AM2 +A{limit:g} +R3 -J") for limit in (0.3, 0.1, 0.03, 0.01)),
 )
 ABOUT = {

@@ -1,76 +1,17 @@
-"""Error of float32, feature by feature."""
+"""Certificates of the hits in a picture, kind by kind."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
-from math import nan
+from collections.abc import Iterator
 from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.element import Element
-from minirt.rendering import Renderer
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import NEEDS, WORDS, features
-from minirt.rendering.packing.generic_kernels import precision_of
 from minirt.rendering.queries.rays import Hits, trace
-from minirt.report.metrics import changed, clamped, rmse
-from minirt.report.variants import with_materials
-from minirt.scene import Background, FurtherLight, Lamp, Scene
+from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Kind
-
-NEEDS_DOUBLE = "always float64"
-NO_KERNEL = "no kernel was compiled ahead of time"
-
-
-class SingleError(NamedTuple):
-    """Difference of float32 and float64 in a scene that is reduced to one feature, both with one sample per pixel."""
-
-    feature: Annotated[str, "feature"]  # in words, or "shapes alone"
-    rmse: Annotated[float, "RMSE", ".1e"] = nan  # between the two pictures
-    largest: Annotated[float, "largest difference", ".1e"] = nan  # of a channel of a pixel
-    changed: Annotated[float, "changed pixels", ".0f"] = nan  # in 8 bits
-    remark: Annotated[str, "remark"] = ""
-
-
-def single_errors(scene: Scene, width: int, height: int, threads: int) -> Iterator[SingleError]:
-    """Compare the precisions on the shapes of a scene alone, and with each feature that the scene uses."""
-    used = features(scene)
-    both = Renderer(threads), Renderer(threads, "single")
-    for key in (None, *(feature for feature in WORDS if feature in used)):
-        yield single_error(reduced(scene, key), WORDS[key] if key else "shapes alone", width, height, *both)
-
-
-def single_error(scene: Scene, words: str, width: int, height: int, *renderers: Renderer) -> SingleError:
-    """Compare the precisions, by a renderer in each, on a scene."""
-    if precision_of(renderers[-1].packing.pack(scene, width, height)) == "double":
-        return SingleError(words, remark=NEEDS_DOUBLE)
-    if not all(each.is_ready(scene) for each in renderers):
-        return SingleError(words, remark=NO_KERNEL)
-    lights, pixels = np.zeros((2, height, width, 3)), np.zeros((height, width, 4), np.uint8)
-    for renderer, light in zip(renderers, lights, strict=True):
-        renderer.render(scene, pixels, 1, light)
-    one, other = clamped(lights)
-    return SingleError(words, rmse(one, other), float(np.abs(one - other).max()), changed(one, other))
-
-
-def reduced(scene: Scene, feature: Hashable) -> Scene:
-    """Return a scene with no other feature than the given one; None leaves the shapes alone."""
-    kept = {feature, "reflective"} if feature in NEEDS else {feature}
-    elements = (plain_element(each, feature) for each in with_materials(scene, kept.__contains__))
-    return Scene((each for each in elements if each), scene.file)
-
-
-def plain_element(element: Element, feature: Hashable) -> Element | None:
-    """Return an element without other features; a spot becomes a point light, and parallel light is left out."""
-    match element:
-        case Background() if feature != ("environment" if isinstance(element.paint, str) else "background"):
-            return None
-        case Lamp() if feature != "spots" and "spots" in element.features():
-            return FurtherLight(element.place, element.brightness, element.colour) if element.place else None
-    return element
-
 
 Array = NDArray[np.float64]
 
@@ -87,14 +28,14 @@ class KindCertificates(NamedTuple):
     hits: Annotated[int, "hits", "d"]
     backward_median: Annotated[float, "backward error, median", ".2f"]
     backward_largest: Annotated[float, "largest", ".2f"]
-    up_to_quarter: Annotated[float, "up to 1/4", ".1%"]  # share of the hits with a backward error up to 0.25
-    up_to_half: Annotated[float, "1/2", ".1%"]  # from there up to 0.5
-    up_to_1: Annotated[float, "1", ".1%"]
-    up_to_2: Annotated[float, "2", ".1%"]
-    up_to_4: Annotated[float, "4", ".1%"]
-    above_4: Annotated[float, "more", ".1%"]
-    condition_median: Annotated[float, "condition, median", ".1f"]
-    condition_99: Annotated[float, "99 %", ".2g"]  # 99 of 100 hits have no larger one
+    up_to_quarter: float  # share of the hits with a backward error up to 0.25
+    up_to_half: float  # from there up to 0.5
+    up_to_1: float
+    up_to_2: float
+    up_to_4: float
+    above_4: float
+    condition_median: float
+    condition_99: Annotated[float, "condition, 99 %", ".2g"]  # 99 of 100 hits have no larger one
     condition_largest: Annotated[float, "largest", ".2g"]
     normal_largest: Annotated[float, "normal off by", ".1g"]  # distance from the exact unit normal
 

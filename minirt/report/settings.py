@@ -54,6 +54,8 @@ class Knob(NamedTuple):
     work: Callable[[float], float] = float  # value -> samples per pixel, at most, to which the time is proportional
 
 
+OPTIONS = {uniform_samples: "--samples {:g}", automatic_samples: "--samples auto --error {:g}"}  # of the command line
+UNIFORM = Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS)
 SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"})
 AUTO = Knob(
     "auto",
@@ -68,12 +70,13 @@ BOUNCES = tuple(
     for depth, name in ((0, "no bounces"), (1, "1 bounce"), (3, "3 bounces"))
 )
 CULLING = (TILES, LIGHT_BUFFERS, BOXES)
-KNOBS = (
-    Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS),
+BRUTE_FORCE = Knob("brute force", "no culling: every ray tries every shape", {"without": CULLING}, values=COUNTS[:2])
+KNOBS = (  # the simplest first
+    UNIFORM,
     Knob("adaptive", "one sample, then more where neighbouring pixels differ", {}, adaptive_samples, COUNTS[1:]),
     AUTO,
     SINGLE,
-    Knob("brute force", "no culling: every ray tries every shape", {"without": CULLING}, values=COUNTS[:2]),
+    BRUTE_FORCE,
     *BOUNCES,
 )
 
@@ -88,6 +91,14 @@ class Setting(NamedTuple):
     def name(self) -> str:
         """Name of the setting, such as `uniform 16`."""
         return f"{self.knob.name} {self.value:g}"
+
+    @property
+    def options(self) -> str:
+        """The options of the command line that draw so, such as `--samples 16`; empty where none do."""
+        if self.knob is BRUTE_FORCE or self.knob.draw not in OPTIONS:
+            return ""
+        others = (f" --{name} {value}" for name, value in self.knob.renderer.items())
+        return OPTIONS[self.knob.draw].format(self.value) + "".join(others)
 
 
 def settings(scene: Scene, most: int, least_error: float) -> Iterator[Setting]:

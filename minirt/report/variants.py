@@ -5,10 +5,8 @@ What is added stands where no ray meets it, so that the picture stays the same: 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator
-from functools import partial
+from collections.abc import Hashable, Iterator
 from itertools import cycle
-from operator import ne
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -144,7 +142,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     materials = {feature for shape in scene.shapes for feature in material_features(shape)}
     for feature, words in WORDS.items():
         if feature in materials - used:
-            kept = with_materials(scene, partial(ne, feature))
+            kept = (without_material(each, feature) for each in scene.elements)
             yield Variant("unseen", words, "without", Scene(kept, scene.file))
     if "parallel" in features(scene):  # whose shadow rays need no list
         return
@@ -154,14 +152,10 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
             yield Variant("unseen", kind.plural, "without", rest)
 
 
-def with_materials(scene: Scene, wanted: Callable[[Hashable], bool]) -> Iterator[Element]:
-    """Yield the elements of a scene, of whose materials those remain whose feature is wanted."""
-    for each in scene.elements:
-        if isinstance(each, Shape) and ATTRIBUTES(each) != PLAIN:
-            values = ((field, getattr(each, field.name)) for field in fields_of(Attributes))
-            gone = [
-                field.name for field, value in values if value and not all(map(wanted, field.features_of(value)[:1]))
-            ]
-            yield each.replace(**dict.fromkeys(gone))
-        else:
-            yield each
+def without_material(element: Element, feature: Hashable) -> Element:
+    """Return an element without the materials of a feature."""
+    if not isinstance(element, Shape) or ATTRIBUTES(element) == PLAIN:
+        return element
+    values = ((field, getattr(element, field.name)) for field in fields_of(Attributes))
+    gone = [field.name for field, value in values if value and feature in field.features_of(value)[:1]]
+    return element.replace(**dict.fromkeys(gone))

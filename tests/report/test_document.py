@@ -18,11 +18,10 @@ from minirt.errors import RenderError
 from minirt.report import diagram
 from minirt.report.ablation import Part
 from minirt.report.diagram import NARROW, WIDE, draw
-from minirt.report.document import PAGE, advice, document, report_files
+from minirt.report.document import PAGE, report_files
 from minirt.report.findings import Findings, Order
-from minirt.report.page import Document
+from minirt.report.page import as_html, table
 from minirt.report.pictures import Row
-from minirt.report.precision import SingleError
 from tests.browser import Page, page
 from tests.paths import PACKAGE
 from tests.report.made_up import FINDINGS, NAMES, POINTS, ROWS
@@ -40,34 +39,39 @@ def no_diagram(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) 
 
 
 def lines(found: Findings) -> list[str]:
-    return document(found, []).as_markdown().splitlines()
+    return report_files(found, {}, BLACK)["report.md"].decode().splitlines()
 
 
 def test_the_order_of_the_sections_and_none_for_what_was_not_measured() -> None:
     first = {line[:2]: number for number, line in reversed([*enumerate(lines(FINDINGS))])}
-    assert first["# "] < first["!["] < first["- "] < first["| "]
-    parts = ["## Orders of convergence", "## What parts cost and save", "## Single precision, feature by feature"]
+    assert first["# "] < first["- "] < first["!["] < first["| "]
+    parts = ["## Settings", "## Orders of convergence", "## What parts cost and save", "## Stiff parts of the scene"]
+    parts += ["## Certificates of hits", "## Not measured"]
     assert [each for each in lines(FINDINGS) if each in parts] == parts
-    assert not set(lines(replace(FINDINGS, pictures=[], ablation=[], single=[]))) & set(parts)
+    nothing = replace(FINDINGS, pictures=[], ablation=[], stiff=[], certificates=[], not_measured=[])
+    assert not set(lines(nothing)) & set(parts)
 
 
-def test_disturbed_settings_are_counted_and_not_recommended() -> None:
-    told = list(advice(FINDINGS))
-    assert told[-1] == "left out, as other programs disturbed their times: 1"
-    assert "error at most 0.01: single, 4 samples (9 ms, RMSE 0.01, 30.0 dB)" in told
-    calm = replace(FINDINGS, pictures=[row._replace(valid=True, remark="") for row in ROWS])
-    assert "error at most 0.01: adaptive, 4 samples (7 ms, RMSE 0.01, 30.0 dB)" in list(advice(calm))
-    assert not [line for line in advice(calm) if "left out" in line]
+def test_the_page_leaves_out_pictures_that_repeat_another_and_hits_of_easy_kinds() -> None:
+    """The files have both."""
+    same, easy = ROWS[0]._replace(knob="the same"), FINDINGS.certificates[0]._replace(kind="disc", backward_largest=1.0)
+    found = replace(FINDINGS, pictures=[*ROWS, same], certificates=[*FINDINGS.certificates, easy])
+    made = report_files(found, {}, BLACK)
+    assert b"\nthe same,1," in made["pictures.csv"]
+    assert b"\ndisc," in made["certificates.csv"]
+    assert b"| sphere |" in made["report.md"]
+    assert not re.search(rb"\| (the same|disc) \|", made["report.md"])
 
 
 def test_every_picture_is_a_file_and_in_the_page_and_both_forms_tell_every_figure() -> None:
     made = report_files(FINDINGS, {ROWS[0].name: BLACK, ROWS[4].name: BLACK}, BLACK)
     pictures = {"error-uniform-1.png", "error-adaptive-16.png", "reference.png"}
     assert {name for name in made if name.endswith(".png")} == pictures
-    assert made["report.html"].count(b"data:image/png;base64,") == 3
+    assert made["report.html"].count(b"data:image/png;base64,") == 6  # the reference, adaptive 16, its errors; crops
+    assert b'<a href="error-uniform-1.png">' in made["report.html"]
     assert b"![Error against run time](diagram.svg)" in made["report.md"]
     for name, knob in (("report.html", "&lt;slow&gt; &amp; sure"), ("report.md", "<slow> & sure")):
-        for figure in (knob, "0.01000", "0.03600", "tiles", "+100.0", "shapes alone", "1.0e-07"):
+        for figure in (knob, "0.01000", "0.03600", "tiles", "+100.0"):
             assert figure in made[name].decode()
         assert b"POV-Ray is not installed" in made[name]
 
@@ -78,19 +82,30 @@ class Made(NamedTuple):
     word: Annotated[str, "a `b`"]
     number: Annotated[float, "y", ".2f"] = nan
     hidden: int = 0
-    truth: Annotated[bool, "z"] = False
+    truth: Annotated[bool, "z"] = True
 
 
-def test_a_table_shows_the_titled_fields_of_records() -> None:
-    """A dash for NaN, words for truth, a bar that ends no cell; the best rows in bold."""
-    made, best = Document("t"), Made("k|nob", truth=True)
-    made.section("s", "x", [best, Made("<c>", 0.125)], [best])
-    head, *lines = made.markdown[-1].splitlines()
-    assert head == "| a `b` | y | z |"
-    assert lines == ["|---|---:|---|", "| **k\\|nob** | - | yes |", "| <c> | 0.12 | no |"]
-    assert '<th class="word">a <code>b</code></th><th class="number">y</th>' in made.html[-1]
-    assert '<tr class="emphasised"><td class="word">k|nob</td><td class="number">-</td>' in made.html[-1]
-    assert '<tr class="plain"><td class="word">&lt;c&gt;</td>' in made.html[-1]
+def test_a_table_shows_the_titled_fields_of_records_that_tell_something() -> None:
+    """A dash for NaN, words for truth, a bar that ends no cell; the best rows in bold, and marked on the page."""
+    best, other = Made("k|nob"), Made("<c>", 0.125)
+    made = table([best, other], [best])
+    assert made.splitlines() == ["| a `b` | y |", "| --- | ---: |", "| **k\\|nob** | - |", "| <c> | 0.12 |"]
+    assert table([best, other._replace(truth=False)]).splitlines()[3] == "| <c> | 0.12 | no |"
+    for html in (
+        '<tr class="plain"><th class="word">a <code>b</code></th><th class="number">y</th></tr>',
+        '<tr class="emphasised"><td class="word"><b>k|nob</b></td><td class="number">-</td></tr>',
+        '<tr class="plain"><td class="word">&lt;c&gt;</td>',
+    ):
+        assert html in as_html(made)
+
+
+def test_markdown_becomes_html() -> None:
+    for block, html in (
+        ("# a & b", "<h1>a &amp; b</h1>"),
+        ("- `x` **y**\n- [z](z-1.csv)", '<ul><li><code>x</code> <b>y</b></li><li><a href="z-1.csv">z</a></li></ul>'),
+        ("<i>\n-", "<p>&lt;i&gt; -</p>"),
+    ):
+        assert as_html(block) == html
 
 
 @pytest.mark.parametrize("size", [WIDE, NARROW])
@@ -98,7 +113,7 @@ def test_the_diagram_shows_each_line_and_each_point(size: tuple[float, float]) -
     svg = draw(FINDINGS, size)
     words = [each.text for each in ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}text")]
     shown = {each.strip() for each in words if each}
-    assert {*NAMES, "recommended", "Pareto front", "rounding to 8 bits: 0.0011"} <= shown
+    assert {*NAMES, "recommended", "rounding to 8 bits: 0.0011"} <= shown
     assert "error of the reference: 0.0002" not in shown  # which lies far below all errors
     assert sum(each in ("1", "4", "16") for each in words) >= POINTS
     assert draw(FINDINGS, size) == svg
@@ -120,7 +135,6 @@ def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
         ("pictures.csv", Row._fields),
         ("orders.csv", Order._fields),
         ("ablation.csv", Part._fields),
-        ("single.csv", SingleError._fields),
     ],
 )
 def test_the_page_about_reports_explains_every_field(table: str, fields: tuple[str, ...]) -> None:
@@ -146,13 +160,14 @@ def test_the_page_of_a_report(page: Page, tmp_path: Path) -> None:
     lights = {row.name: np.full((HEIGHT, WIDTH, 3), 0.001 * index) for index, row in enumerate(ROWS[:-1])}
     file = tmp_path / PAGE
     file.write_bytes(report_files(FINDINGS, lights, np.zeros((HEIGHT, WIDTH, 3)))[PAGE])
-    page.open(file, height=2000)
+    page.open(file, 1300, height=2000)
+    assert page.value("[...document.querySelectorAll('.scroll')].every(each => each.scrollWidth <= each.clientWidth)")
     assert page.value("document.title") == "scenes/<ball>.rt: error against run time"
     assert page.requests[0] == file.as_uri()
     assert {each.partition(":")[0] for each in page.requests[1:]} == {"data"}
     assert page.value("[...document.images].every(each => each.complete && each.naturalWidth > 0)")
     names = page.value("[...document.querySelectorAll('.pictures img')].map(each => each.alt)")
-    assert len(names) == len(ROWS)  # the last row has none, and the reference is one more
+    assert names[1::2] == [f"{row.name}: {row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}" for row in FINDINGS.of_equal_time]
     assert page.value("[...document.querySelectorAll('select.left option')].map(each => each.text)") == names
 
     panes = box(page, ".panes")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from math import isnan, nan
 
 import numpy as np
@@ -9,7 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from minirt.report.findings import Findings, Order, pareto_front
+from minirt.report import answers
+from minirt.report.findings import ERRORS, TIMES, Findings, Order, Recommendation
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Row
 from tests.report.made_up import FINDINGS
 
@@ -60,49 +63,141 @@ def test_disturbed_times_and_unknown_samples_are_left_out_of_the_fit() -> None:
     assert found.by_time == pytest.approx(0.75)
 
 
-# No setting beats one of the Pareto front in both time and error.
+# A setting is recommended where no other one is certainly better; of those that cannot be told apart the simplest is.
 
 
-def point(rmse: float, wall_ms: float) -> Row:
-    return Row("u", "", rmse=rmse, wall_ms=wall_ms, valid=True)
+def point(rmse: float, wall_ms: float, label: str = "", doubt: float = 0.1) -> Row:
+    """A row with intervals of a tenth around its error and its time."""
+    low, high = 1 - doubt, 1 + doubt
+    errors = {"rmse": rmse, "rmse_low": low * rmse, "rmse_high": high * rmse}
+    times = {"wall_ms": wall_ms, "wall_low_ms": low * wall_ms, "wall_high_ms": high * wall_ms}
+    return Row("u", label, options=f"--samples {label}", valid=True, **errors, **times)
 
 
-ROUGH, FINE, SLOW, FAILED = point(0.1, 1), point(0.01, 10), point(0.05, 20), Row("u", "")
-POINTS = [SLOW, FINE, FAILED, ROUGH]
-FEW = some.integers(1, 6).map(float)
+ROUGH, FINE, SLOW, FAILED = (
+    point(0.02, 1, "r"),
+    point(0.008, 10, "f"),
+    point(0.0081, 20, "s"),
+    Row("u", "", options="-"),
+)
+POINTS = [FINE, SLOW, FAILED, ROUGH]
+AMOUNTS = some.floats(1e-4, 1e3)
 
 
-def best(rows: list[Row], doubt: float = 0.0) -> dict[str, Row | None]:
-    found = Findings(FINDINGS.subject, 1024, doubt, pictures=rows)
-    return {choice["wanted"]: choice["best"] for choice in found.choices}
+def choices(rows: list[Row]) -> dict[str, Recommendation]:
+    return {choice.goal: choice for choice in Findings(FINDINGS.subject, 1024, 0.0, pictures=rows).choices}
 
 
 def test_the_best_settings_by_hand() -> None:
-    assert pareto_front(POINTS, 0.0) == [ROUGH, FINE]
-    found = best([*POINTS, point(0.02, 90)])
-    assert (found["error at most 0.03"], found["error at most 0.003"]) == (FINE, None)
-    assert (found["at most 16 ms"], best([ROUGH, SLOW])["at most 16 ms"]) == (FINE, ROUGH)
-    assert set(best([FAILED]).values()) == {None}
+    best = {goal: choice.best for goal, choice in choices(POINTS).items()}
+    assert (best["error at most 0.03"], best["error at most 0.01"], best["error at most 0.004"]) == (ROUGH, FINE, None)
+    assert (best["at most 16 ms"], best["at most 100 ms"]) == (FINE, FINE)
+    assert {choice.best for choice in choices([FAILED]).values()} == {None}
 
 
-def test_an_error_smaller_by_less_than_the_doubt_counts_as_equal() -> None:
-    close = point(0.0099, 30)
-    assert pareto_front([*POINTS, close], 0.0) == [ROUGH, FINE, close]
-    assert pareto_front([*POINTS, close], 0.001) == [ROUGH, FINE]
-    assert best([*POINTS, close], 0.001)["at most 100 ms"] == FINE
+def test_settings_that_cannot_be_told_apart_are_as_good_and_the_simplest_is_recommended() -> None:
+    """A faster or closer setting wins once its interval is clear of the other's, and by no smaller difference."""
+    for other, is_better in (
+        (point(0.0079, 9.9, "o"), False),
+        (point(0.0080, 8.3, "o"), False),
+        (point(0.0080, 8.1, "o"), True),
+        (point(0.0064, 10.1, "o"), True),
+    ):
+        for goal in ("error at most 0.01", "at most 16 ms"):
+            choice = choices([FINE, SLOW, other])[goal]
+            assert (choice.best, choice.equal) == ((other, "") if is_better else (FINE, other.name))
 
 
-def test_disturbed_rows_and_other_programs_are_never_the_best() -> None:
-    disturbed, other = FINE._replace(valid=False, remark=DISTURBED_BY_OTHERS), FINE._replace(program="POV-Ray")
-    assert pareto_front([ROUGH, disturbed, other], 0.0) == [ROUGH]
-    found = Findings(FINDINGS.subject, 1024, 0.0, pictures=[ROUGH, disturbed, other])
-    assert {choice["disturbed"] for choice in found.choices} == {1}
+def test_disturbed_rows_and_those_that_no_option_draws_are_never_the_best() -> None:
+    disturbed, other = FINE._replace(valid=False, remark=DISTURBED_BY_OTHERS), FINE._replace(options="")
+    assert {choice.best for choice in choices([ROUGH, disturbed, other]).values()} == {ROUGH, None}
 
 
-@given(some.lists(some.builds(point, FEW, FEW), max_size=12))
-def test_nothing_beats_the_front(points: list[Row]) -> None:
-    front = pareto_front(points, 0.0)
-    for each in points:
-        assert any(other.rmse <= each.rmse and other.wall_ms <= each.wall_ms for other in front)
-    for each in front:
-        assert not any(other != each and other.rmse <= each.rmse and other.wall_ms <= each.wall_ms for other in points)
+@given(some.lists(some.builds(point, AMOUNTS, AMOUNTS, doubt=some.floats(0.01, 0.5)), max_size=12))
+def test_nothing_is_certainly_better_than_what_is_recommended(rows: list[Row]) -> None:
+    found = choices(rows)
+    for most in ERRORS:
+        reached = [row for row in rows if row.rmse_high <= most]
+        best = found[f"error at most {most:g}"].best
+        assert (best is None) == (not reached)
+        assert not best or all(row.wall_high_ms >= best.wall_low_ms for row in reached)
+    for most in TIMES:
+        reached = [row for row in rows if row.wall_high_ms <= most]
+        best = found[f"at most {most:g} ms"].best
+        assert (best is None) == (not reached)
+        assert not best or all(row.rmse_high >= best.rmse_low for row in reached)
+
+
+# The answers.
+
+
+def automatic(asked: float, rmse: float, wall_ms: float) -> Row:
+    return point(rmse, wall_ms, f"{asked:g}", 0.05)._replace(knob="auto", asked=asked)
+
+
+def answer(*rows: Row) -> str:
+    """Answer whether automatic sampling pays where uniform sampling takes 1 ms for an error of 0.04, and at an order
+    of 1 less than that in proportion."""
+    uniform = [point(0.04 / n, n, str(n))._replace(knob="uniform") for n in (1, 2, 4, 8, 16)]
+    return answers.automatic(Findings(FINDINGS.subject, 1024, 1e-5, pictures=[*uniform, *rows]))
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ([(0.01, 0.01, 2.0)], r"Yes: it takes 0\.5 times as long .* \(2 ms instead of 4 ms for RMSE 0\.01\)"),
+        ([(0.01, 0.01, 6.0)], r"No: it takes 1\.5 times"),
+        (
+            [(0.01, 0.01, 6.0), (0.005, 0.004, 5.0)],
+            r"Yes for an error of 0\.005, no for 0\.01: it takes 0\.5 to 1\.5 times",
+        ),
+        ([(0.01, 0.01, 4.2)], r"It makes no difference that can be measured: it takes 1\.1 times"),
+        ([(0.05, 0.08, 2.0)], r"No: it takes 2 times"),  # one sample takes 1 ms
+        ([(0.001, 0.0001, 2.0)], r"unknown"),  # uniform sampling was not measured so far
+        ([], r"unknown"),
+    ],
+)
+def test_whether_automatic_sampling_pays(rows: list[tuple[float, float, float]], expected: str) -> None:
+    assert re.match(expected, answer(*(automatic(*row) for row in rows)))
+
+
+def test_the_best_setting_and_what_the_next_costs() -> None:
+    def told(*rows: Row) -> str:
+        return answers.best_setting(Findings(FINDINGS.subject, 1024, 0.0, pictures=list(rows)))
+
+    one, two, three = point(0.0035, 10, "1"), point(0.0015, 25, "2"), point(0.0008, 55, "3")
+    best = "for an error at most 0.004, one of 255 levels, `--samples 1`, 10 ms a picture (RMSE 0.0035)"
+    assert (
+        told(one, two, three)
+        == f"{best}; an error at most 0.002 costs 2.5 times that: `--samples 2`, 25 ms a picture (RMSE 0.0015)"
+    )
+    assert told(one) == f"{best}; no setting has an error at most 0.002 for sure"
+    assert told(one, one._replace(knob="v")).startswith(f"{best}, from which v 1 cannot be told;")
+    assert told(three).endswith("(RMSE 0.0008); it has an error at most 0.001, too")
+    assert (
+        told(FINE)
+        == "none has an error at most 0.004 for sure; the closest is `--samples f`, 10 ms a picture (RMSE 0.008)"
+    )
+    assert told(FAILED) == answers.UNKNOWN
+
+
+def test_exactness_and_what_is_left_out() -> None:
+    hits = "the worst of 8 hits is 3 roundings off its surface (sphere, rays from the eye)"
+    assert (
+        answers.exactness(FINDINGS)
+        == f"{hits}; stiff is {FINDINGS.stiff[0]}; `--precision single` changes 12 of 640 pixels"
+    )
+    bare = replace(FINDINGS, certificates=[], stiff=[], single=nan)
+    assert answers.exactness(bare) == "nothing in this scene is stiff"
+    lacks = "the kernel of this scene lacks 3 kinds of shapes and 5 features"
+    assert answers.left_out(FINDINGS) == lacks
+    brute = point(0.04, 10, "1")._replace(knob="brute force", samples=1)
+    saved = f"{lacks}; culling saves 75% of a frame (2.5 ms instead of 10 ms, the same bits)"
+    assert answers.left_out(replace(FINDINGS, pictures=[*FINDINGS.pictures, brute])) == saved
+
+
+def test_rows_of_equal_time_are_the_nearest_of_each_line() -> None:
+    rows = [point(0.0035, 10, "1"), point(0.002, 14, "2"), point(0.003, 12, "3")._replace(knob="v")]
+    rows += [point(0.001, 16, "4")._replace(knob="w"), rows[0]._replace(knob="the same")]
+    assert Findings(FINDINGS.subject, 1024, 0.0, pictures=rows).of_equal_time == [rows[2], rows[0]]
+    assert Findings(FINDINGS.subject, 1024, 0.0).of_equal_time == []

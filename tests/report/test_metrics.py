@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.report import metrics
 from minirt.report.metrics import (
     HEAT,
     STUDENT,
@@ -54,8 +53,8 @@ def test_heat_is_logarithmic() -> None:
 TRIALS = 300
 
 
-def share_that_holds(truth: float, found: Sequence[metrics.Interval | metrics.Fit]) -> float:
-    return sum(each.low <= truth <= each.high for each in found) / len(found)
+def share_that_holds(truth: float, found: Sequence[tuple[float, ...]]) -> float:
+    return sum(low <= truth <= high for low, high in found) / len(found)
 
 
 def test_the_median_lies_in_its_interval() -> None:
@@ -69,9 +68,9 @@ def test_the_median_lies_in_its_interval() -> None:
 def test_the_slope_lies_in_its_interval() -> None:
     random, x = np.random.default_rng(2), np.log([1, 2, 4, 8, 16, 32, 64])
     lines = [fit(x, 0.3 - 0.75 * x + random.normal(0, 0.1, len(x))) for _ in range(TRIALS)]
-    assert 0.91 < share_that_holds(-0.75, lines) < 0.98
-    assert np.mean([line.intercept for line in lines]) == pytest.approx(0.3, abs=0.02)
-    assert isnan(fit(np.array([1.0, 1.0, 2.0, np.nan]), np.zeros(4)).slope)
+    assert 0.91 < share_that_holds(-0.75, [line[1:3] for line in lines]) < 0.98
+    assert np.mean([line[3] for line in lines]) == pytest.approx(0.3, abs=0.02)
+    assert isnan(fit(np.array([1.0, 1.0, 2.0, np.nan]), np.zeros(4))[0])
 
 
 @pytest.mark.parametrize("free", [1, 5])

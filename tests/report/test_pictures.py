@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import minirt
+from minirt.cli.arguments import argument_parser
 from minirt.errors import RenderError
 from minirt.rendering.packing import lights
 from minirt.report import pictures
@@ -95,6 +96,7 @@ def test_more_samples_are_closer_and_take_longer() -> None:
         assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * PROCESSOR_SHARE)
         assert row.rmse_low < row.rmse < row.rmse_high < 1.5 * row.rmse
         assert row.wall_low_ms <= row.wall_ms <= row.wall_high_ms
+        assert row.efficiency == pytest.approx(1e3 / row.rmse**2 / row.wall_ms)
 
 
 def test_knobs_do_what_they_say(clock: Clock) -> None:
@@ -110,9 +112,20 @@ def test_knobs_do_what_they_say(clock: Clock) -> None:
     assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
     assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
     brute = rows()["brute force", 4]
-    errors = slice(Row._fields.index("label"), Row._fields.index("not_finite"))
+    errors = slice(Row._fields.index("samples"), Row._fields.index("not_finite"))
     assert brute[errors] == rows()["uniform", 4][errors]
     assert all(row.not_finite == 0 for row in rows().values())
+
+
+def test_the_options_of_the_command_line_draw_the_picture_of_a_setting() -> None:
+    """Settings that no options draw have none."""
+    assert rows()["adaptive", 16].options == rows()["brute force", 4].options == ""
+    for key in (("uniform", 4), ("single", 4), ("auto", 0.01)):
+        options = argument_parser().parse_args(rows()[key].options.split())
+        how = {"samples": options.samples, "precision": options.precision, "error": options.error}
+        made = minirt.render(ALL, WIDTH, HEIGHT, **{name: value for name, value in how.items() if value}).linear
+        assert made is not None
+        assert rows()[key].rmse == pytest.approx(error(np.clip(made, 0, 1), right().picture), rel=1e-9)
 
 
 def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
