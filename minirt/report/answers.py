@@ -5,7 +5,7 @@ Backticks in them surround code, two stars what is bold.
 
 from __future__ import annotations
 
-from math import isnan, nan
+from math import isnan
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from minirt.report.findings import CLEAR, ERRORS, LEVEL, Findings
 from minirt.report.pictures import Row
 from minirt.report.settings import AUTO, BRUTE_FORCE, UNIFORM
 
-UNKNOWN = "unknown, as the times were disturbed, or too long to be taken more than once"
+UNKNOWN = "unknown, as there are no undisturbed times to compare"
 
 
 def answers(found: Findings) -> list[str]:
@@ -28,53 +28,54 @@ def answers(found: Findings) -> list[str]:
 
 def best_setting(found: Findings) -> str:
     """Name the best setting for an error of one level of 255, and what the next smaller error costs."""
-    choice, *finer = found.choices[ERRORS.index(LEVEL) : len(ERRORS)]
-    rows = sorted((row for row in found.pictures if row.options and row.valid), key=lambda row: row.rmse)
-    if not choice.best:
-        return f"none has an {choice.goal} for sure; the closest is {described(rows[0])}" if rows else UNKNOWN
-    text = f"for an {choice.goal}, one of 255 levels, {described(choice.best)}"
-    if choice.equal:
-        text += f", from which {choice.equal} cannot be told"
-    for other in finer:
-        if not other.best:
-            return f"{text}; no setting has an {other.goal} for sure"
-        if other.best != choice.best:
-            times = f"{other.wall_ms / choice.wall_ms:.2g} times"
-            return f"{text}; an {other.goal} costs {times} that: {described(other.best)}"
-    return f"{text}; it has an {finer[-1].goal}, too"
+    place = ERRORS.index(LEVEL)
+    best, equal = found.choices[place].best, found.choices[place].equal
+    goal = f"an error of at most {LEVEL:g}, one of 255 levels"
+    if not best:
+        rows = sorted((row for row in found.pictures if row.options and row.valid), key=lambda row: row.rmse)
+        return f"none is sure to have {goal}; {described(rows[0])} comes closest" if rows else UNKNOWN
+    text = f"{described(best)} has {goal}" + (f", and so has {equal}" if equal else "")
+    for most, choice in zip(ERRORS[place + 1 :], found.choices[place + 1 :], strict=False):
+        if not choice.best:
+            return f"{text}; none is sure to have at most {most:g}"
+        if choice.best != best:
+            times = f"{choice.wall_ms / best.wall_ms:.2g} times the time"
+            return f"{text}; at most {most:g} costs {times}, with {described(choice.best)}"
+    return f"{text}, and even of at most {ERRORS[-1]:g}"
 
 
 def described(row: Row) -> str:
     """Describe a setting by its options, its time and its error."""
-    return f"`{row.options}`, {row.wall_ms:.3g} ms a picture (RMSE {row.rmse:.2g})"
+    return f"`{row.options}` ({row.wall_ms:.3g} ms a picture, RMSE {row.rmse:.2g})"
 
 
 def exactness(found: Findings) -> str:
     """Name the largest backward error of a hit and the first stiff part, and count what single precision changes."""
-    parts = []
+    parts = ["nothing in this scene is stiff"]
+    if found.stiff:
+        first, *more = found.stiff
+        parts = [f"{first.element} is stiff ({first.why})" + f", and {len(more)} more below" * bool(more)]
     if found.certificates:
         worst = max(found.certificates, key=lambda each: each.backward_largest)
-        count = sum(each.hits for each in found.certificates)
-        where = f"{worst.kind}, rays {worst.rays}"
-        parts.append(f"the worst of {count:,} hits is {worst.backward_largest:.2g} roundings off its surface ({where})")
-    more = f", and {len(found.stiff) - 1} more below" if len(found.stiff) > 1 else ""
-    parts.append(f"stiff is {found.stiff[0]}{more}" if found.stiff else "nothing in this scene is stiff")
+        count, where = sum(each.hits for each in found.certificates), f"{worst.kind}, rays {worst.rays}"
+        hits = f"the worst of {count:,} hits is {worst.backward_largest:.2g} roundings off its surface ({where})"
+        parts.insert(0, hits)
     if not isnan(found.single):
-        parts.append(
-            f"`--precision single` changes {found.single:,} of {found.subject.width * found.subject.height:,} pixels"
-        )
+        pixels = found.subject.width * found.subject.height
+        parts.append(f"`--precision single` changes {found.single:,} of {pixels:,} pixels")
     return "; ".join(parts)
 
 
 def left_out(found: Findings) -> str:
     """Tell what the kernel leaves out, and what is saved by not testing each ray against each shape."""
     text = f"the kernel of this scene lacks {found.absent}"
-    first = {row.knob: row.wall_ms for row in found.pictures if row.valid and row.samples == 1}
-    lean, brute = (first.get(knob.name, nan) for knob in (UNIFORM, BRUTE_FORCE))
-    if isnan(lean + brute):
+    first = {row.knob: row for row in found.pictures if row.valid and row.samples == 1}
+    lean, brute = (first.get(knob.name, Row("", "")) for knob in (UNIFORM, BRUTE_FORCE))
+    if not lean.wall_high_ms < brute.wall_low_ms:
         return text
-    same = ", the same bits" if found.same else ""
-    return f"{text}; culling saves {1 - lean / brute:.0%} of a frame ({lean:.3g} ms instead of {brute:.3g} ms{same})"
+    saved, same = 100 * (1 - lean.wall_ms / brute.wall_ms), ", the same bits" if found.same else ""
+    times = f"{lean.wall_ms:.3g} ms instead of {brute.wall_ms:.3g} ms"
+    return f"{text}; culling saves {saved:.0f} % of a frame ({times}{same})"
 
 
 def automatic(found: Findings) -> str:

@@ -99,15 +99,6 @@ def test_a_table_shows_the_titled_fields_of_records_that_tell_something() -> Non
         assert html in as_html(made)
 
 
-def test_markdown_becomes_html() -> None:
-    for block, html in (
-        ("# a & b", "<h1>a &amp; b</h1>"),
-        ("- `x` **y**\n- [z](z-1.csv)", '<ul><li><code>x</code> <b>y</b></li><li><a href="z-1.csv">z</a></li></ul>'),
-        ("<i>\n-", "<p>&lt;i&gt; -</p>"),
-    ):
-        assert as_html(block) == html
-
-
 @pytest.mark.parametrize("size", [WIDE, NARROW])
 def test_the_diagram_shows_each_line_and_each_point(size: tuple[float, float]) -> None:
     svg = draw(FINDINGS, size)

@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.report.metrics import (
+    CROP,
     HEAT,
     STUDENT,
     changed,
@@ -23,6 +24,7 @@ from minirt.report.metrics import (
     psnr,
     rmse,
     to_8_bits,
+    worst_region,
 )
 
 
@@ -45,6 +47,15 @@ def test_metrics_by_hand() -> None:
 def test_heat_is_logarithmic() -> None:
     picture = error_image(grey(0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1), grey(0, 0, 0, 0, 0, 0, 0))
     assert picture.array[0].tolist() == HEAT[[0, 0, 0, 1, 2, 3, 4]].tolist()
+
+
+def test_a_crop_has_the_largest_sum_of_errors() -> None:
+    for shape in ((70, 90), (60, 100), (9, 200), (1, 1)):
+        squares = np.random.default_rng(6).random(shape)
+        places = np.lib.stride_tricks.sliding_window_view(squares, np.minimum(CROP, shape))
+        region = worst_region(squares)
+        assert squares[region].shape == places.shape[2:]
+        assert squares[region].sum() == pytest.approx(places.sum(axis=(2, 3)).max(), rel=1e-12)
 
 
 # Confidence intervals hold the truth as often as they say.
