@@ -39,14 +39,19 @@ def best_setting(found: Findings) -> str:
         if not choice.best:
             return f"{text}; none is sure to have at most {most:g}"
         if choice.best != best:
-            times = f"{choice.wall_ms / best.wall_ms:.2g} times the time"
+            times = f"{rounded(choice.wall_ms / best.wall_ms)} times the time"
             return f"{text}; at most {most:g} costs {times}, with {described(choice.best)}"
     return f"{text}, and even of at most {ERRORS[-1]:g}"
 
 
 def described(row: Row) -> str:
     """Describe a setting by its options, its time and its error."""
-    return f"`{row.options}` ({row.wall_ms:.3g} ms a picture, RMSE {row.rmse:.2g})"
+    return f"`{row.options}` ({rounded(row.wall_ms)} ms a picture, RMSE {row.rmse:.2g})"
+
+
+def rounded(number: float) -> str:
+    """Format a number with three digits that count, without an exponent."""
+    return f"{float(f'{number:.3g}'):,.15g}"
 
 
 def exactness(found: Findings) -> str:
@@ -74,7 +79,7 @@ def left_out(found: Findings) -> str:
     if not lean.wall_high_ms < brute.wall_low_ms:
         return text
     saved, same = 100 * (1 - lean.wall_ms / brute.wall_ms), ", the same bits" if found.same else ""
-    times = f"{lean.wall_ms:.3g} ms instead of {brute.wall_ms:.3g} ms"
+    times = f"{rounded(lean.wall_ms)} ms instead of {rounded(brute.wall_ms)} ms"
     return f"{text}; culling saves {saved:.0f} % of a frame ({times}{same})"
 
 
@@ -100,5 +105,5 @@ def automatic(found: Findings) -> str:
     if faster and slower:
         answer = f"Yes for an error of {faster}, no for {slower}"
     extent = " to ".join(dict.fromkeys(f"{each:.2g}" for each in (ratio.min(), ratio.max())))
-    last = f"{times[-1, 1]:.3g} ms instead of {others[-1, 1]:.3g} ms for RMSE {errors[-1, 1]:.2g}"
+    last = f"{rounded(times[-1, 1])} ms instead of {rounded(others[-1, 1])} ms for RMSE {errors[-1, 1]:.2g}"
     return f"{answer}: it takes {extent} times as long as uniform sampling with the same true error ({last})"

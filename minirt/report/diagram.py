@@ -15,7 +15,7 @@ from minirt.report.pictures import OURS, Row
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-WIDE, NARROW = (7.6, 5.4), (3.9, 6.6)  # inches, of 100 pixels each
+WIDE, NARROW = (7.6, 6.2), (3.9, 6.6)  # inches, of 100 pixels each
 COLOURS = ["#c2264a", "#3f7fb5", "#4f9440", "#b3700d", "#8563b8", "#128a92", "#b34da1", "#76818d", "#9a6238", "#6375d6"]
 MARKS = "osD^pv"
 INK, MUTED, PAPER, BAND = "#222831", "#5d6672", "#ffffff", "#e4e6ea"

@@ -142,10 +142,9 @@ class Findings:
         one first; as long as the most exact setting, if none reaches that error."""
         rows = [row for row in distinct(self.pictures) if row.valid]
         best = self.choices[ERRORS.index(LEVEL)].best or min(rows, key=lambda row: row.rmse, default=None)
-        nearest: dict[str, Row] = {}
-        for row in sorted(rows, key=lambda row: abs(log(row.wall_ms / best.wall_ms)) if best else 0.0):
-            if best and 1 / NEAR < row.wall_ms / best.wall_ms < NEAR:
-                nearest.setdefault(row.knob, row)
+        ratios = {row: abs(log(row.wall_ms / best.wall_ms)) for row in rows if best}
+        near = [row for row, ratio in ratios.items() if ratio < log(NEAR)]
+        nearest = {row.knob: row for row in sorted(near, key=ratios.__getitem__, reverse=True)}
         return sorted(nearest.values(), key=lambda row: row.rmse)
 
 

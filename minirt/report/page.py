@@ -6,7 +6,7 @@ import csv
 import json
 import re
 from base64 import b64encode
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from html import escape
 from io import StringIO
 from math import isfinite, isnan
@@ -19,15 +19,7 @@ MARKS = {
     r"\*\*(.+?)\*\*": r"<b>\1</b>",
     r"\[([^]]+)\]\(([\w.-]+)\)": r'<a href="\2">\1</a>',
 }
-HTML = "<div"  # begins a block that is not Markdown
 NOTHING = {"-", "", "0", "yes"}  # cells that tell nothing, if all of a column are so
-
-
-def columns(record: type) -> Iterator[tuple[str, str, str]]:
-    """Yield field, title and format of the columns of a table of records: of the fields that are `Annotated` so."""
-    for field, hint in get_type_hints(record, include_extras=True).items():
-        if get_origin(hint) is Annotated:
-            yield field, hint.__metadata__[0], "".join(hint.__metadata__[1:])
 
 
 def filled(title: str, values: dict[str, Any]) -> tuple[str, str]:
@@ -43,9 +35,9 @@ def filled(title: str, values: dict[str, Any]) -> tuple[str, str]:
     for section in re.split(r"\n(?=## )", template):
         if all(values[name] for name in re.findall(r"{(\w+)}", section)):
             blocks = section.format_map(values).strip().split("\n\n")
-            markdown += [block for block in blocks if not block.startswith(HTML)]
+            markdown += [block for block in blocks if not block.startswith("<div")]
             name = escape(blocks[0].strip("# ").replace(" ", "-").lower())
-            body = (block if block.startswith(HTML) else as_html(block) for block in blocks if block[0] != "!")
+            body = (block if block.startswith("<div") else as_html(block) for block in blocks if block[0] != "!")
             html.append(f'<section id="{name}">{"".join(body)}</section>')
     filled = page.format(title=escape(title), style=style, body="\n".join(html), script=script)
     return "\n\n".join(markdown) + "\n", filled
@@ -57,14 +49,19 @@ def bullets(items: Iterable[object]) -> str:
 
 
 def table(rows: Sequence[Any], emphasised: Collection[Any] = ()) -> str:
-    """Return a table of records in Markdown, with a dash for NaN and without columns that tell nothing."""
+    """Return a table of records in Markdown: the fields that are `Annotated` with a title, and perhaps a format.
+
+    NaN is a dash; columns that tell nothing are left out.
+    """
     if not rows:
         return ""
     texts = list[list[str]]()  # of the columns: title, rule, and a cell for each record
-    for field, title, form in columns(type(rows[0])):
-        cells = [cell(getattr(row, field), form).replace("|", r"\|") for row in rows]
-        if not NOTHING.issuperset(cells):
-            texts.append([title, "---:" if form else "---", *cells])
+    for field, hint in get_type_hints(type(rows[0]), include_extras=True).items():
+        if get_origin(hint) is Annotated:
+            title, form = (*hint.__metadata__, "")[:2]
+            cells = [cell(getattr(row, field), form).replace("|", r"\|") for row in rows]
+            if not NOTHING.issuperset(cells):
+                texts.append([title, "---:" if form else "---", *cells])
     texts[0][2:] = [f"**{text}**" if row in emphasised else text for row, text in zip(rows, texts[0][2:], strict=True)]
     return "\n".join(f"| {' | '.join(line)} |" for line in zip(*texts, strict=True))
 

@@ -158,10 +158,10 @@ def test_the_best_setting_and_what_the_next_costs() -> None:
     def told(*rows: Row) -> str:
         return answers.best_setting(Findings(FINDINGS.subject, 1024, 0.0, pictures=list(rows)))
 
-    one, two, three = point(0.0035, 10, "1"), point(0.0015, 25, "2"), point(0.0008, 55, "3")
+    one, two, three = point(0.0035, 10, "1"), point(0.0015, 12345, "2"), point(0.0008, 55, "3")
     best = "`--samples 1` (10 ms a picture, RMSE 0.0035) has an error of at most 0.004, one of 255 levels"
-    next_one = "`--samples 2` (25 ms a picture, RMSE 0.0015)"
-    assert told(one, two, three) == f"{best}; at most 0.002 costs 2.5 times the time, with {next_one}"
+    next_one = "`--samples 2` (12,300 ms a picture, RMSE 0.0015)"
+    assert told(one, two) == f"{best}; at most 0.002 costs 1,230 times the time, with {next_one}"
     assert told(one) == f"{best}; none is sure to have at most 0.002"
     assert told(one, one._replace(knob="v")).startswith(f"{best}, and so has v 1;")
     assert told(three).endswith("has an error of at most 0.004, one of 255 levels, and even of at most 0.001")
