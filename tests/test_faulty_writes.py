@@ -155,9 +155,11 @@ def test_an_error_at_a_write_is_told_and_leaves_old_or_new_files(
         work.mkdir()
         for name in new:
             (work / name).write_bytes(OLD)
-        with faulty_files(fail), pytest.raises(MiniRTError, match=f"(?i){os.strerror(code)}"):
+        with faulty_files(fail), pytest.raises(MiniRTError, match=f"(?i){os.strerror(code)}") as caught:
             writer(work)
-        found = {name: data for name, data in contents(work).items() if not name.endswith(".journal")}
+        found = contents(work)
+        kept = [name for name in found.keys() - new.keys() if found.pop(name)]
+        assert all(f" are kept in {work / name}; " in caught.value.__notes__[0] for name in kept)
         assert found.keys() == new.keys()
         assert all(data in (OLD, new[name]) for name, data in found.items())
     assert capfd.readouterr() == ("", ""), "libraries print nothing of their own"

@@ -33,22 +33,30 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of standard output has closed it
         return FAILED
     except KeyboardInterrupt as error:  # SIGINT, or another signal that the error names
+        tell_notes(error)
         number = getattr(error, "number", None)
         return INTERRUPTED if number is None else 128 + int(number)
     except MiniRTError as error:
         return failed(error)
-    except MemoryError:
-        return failed(NO_MEMORY)
+    except MemoryError as error:
+        return failed(error, NO_MEMORY)
     except RuntimeError as error:
         if str(error) != "can't start new thread":  # of Python
             raise
-        return failed(NO_THREADS)
+        return failed(error, NO_THREADS)
 
 
-def failed(message: object) -> int:
-    """Print an error, and return the exit status."""
-    tell(f"Error\n{message}")
+def failed(error: BaseException, message: str = "") -> int:
+    """Print an error, or another message about it, and its notes; return the exit status."""
+    tell(f"Error\n{message or error}")
+    tell_notes(error)
     return FAILED
+
+
+def tell_notes(error: BaseException) -> None:
+    """Print what is kept of the work that an error has ended."""
+    for note in getattr(error, "__notes__", ()):
+        tell(note)
 
 
 def run(parser: Arguments, argv: Sequence[str] | None) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import islice
@@ -13,7 +14,7 @@ from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.files import check_output, format_name, is_film, needs_light, write
 from minirt.cli.output import tell
 from minirt.cluster.job import Job
-from minirt.cluster.journal import Journal, delete, path_for
+from minirt.cluster.journal import BANDS, Journal, delete, path_for
 from minirt.cluster.pictures import picture_of, results, stream
 from minirt.errors import RenderError
 from minirt.formats.table import memory_of
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
 LONG = 2**24  # rays: work of about a second of two processors, which an interrupt does not undo
 GIVEN = ("error", "time", "threads", "precision", "depth", "dither", "region")  # options that are settings
-BANDS = "bands of the picture"
 PATIENCE = 10  # seconds for a scheduler to answer
 
 
@@ -62,6 +62,8 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
         return
     import logging
 
+    from minirt.cluster.executor import DESERTED
+
     try:
         from distributed import Client
     except ImportError:
@@ -69,14 +71,15 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
             "--cluster with an address needs dask.distributed: install it (pip install 'minirt[cluster]'), or try "
             "--cluster local"
         ) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("distributed", "distributed.client", "tornado"):  # their tracebacks where a scheduler ends
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = Client(options.cluster, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise RenderError(f"--cluster {options.cluster}: no scheduler answers: {error}") from None
     with client:
         if not client.nthreads():
-            tell(f"notice: the cluster at {options.cluster} has no workers yet")
+            tell(f"notice: {options.cluster} has no workers yet, and is waited for {DESERTED:.0f} s")
         yield client
 
 
@@ -93,21 +96,13 @@ def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bo
             yield None
         return
     work = job.work(options.turntable, options.bits, options.quality, options.metadata)
-    journal = Journal(options.output, work, options.resume, has_parts=has_parts)
-    if options.resume and not journal.places:
-        tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
-    try:
+    command = shlex.join(["miniRT", *(each for each in options.command if each != "--resume"), "--resume"])
+    how = {"again": command, "what": share.what, "resume": options.resume, "has_parts": has_parts}
+    with Journal(options.output, work, **how) as journal:
+        if options.resume and not journal.places:
+            tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
         with progress(share.state):
             yield journal
-    except BaseException:
-        journal.close()
-        if journal.places:
-            import shlex
-
-            command = shlex.join([*(each for each in options.command if each != "--resume"), "--resume"])
-            tell(f"{len(journal.places)} of {share.total} {share.what} are kept; miniRT {command} goes on")
-        raise
-    journal.remove()
 
 
 class Share:
@@ -189,12 +184,8 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None,
 
 def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render a picture of any size into a TIFF file, which goes on with what was interrupted."""
-    try:
-        with progress(share.state):
-            return stream(options.output, job, options.bits or 8, executor, share.note)
-    except KeyboardInterrupt:
-        tell(f"{share.done} of {share.total} {BANDS} are kept; the same command goes on")
-        raise
+    with progress(share.state):
+        return stream(options.output, job, options.bits or 8, executor, share.note)
 
 
 def encoding(scene: Scene, output: str, options: argparse.Namespace) -> dict[str, Any]:

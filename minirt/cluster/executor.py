@@ -6,10 +6,14 @@ import hashlib
 import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import BrokenExecutor, Executor, Future, InvalidStateError, ProcessPoolExecutor, wait
+from contextlib import suppress
+from functools import partial
 from itertools import islice
+from math import inf
 from multiprocessing import get_context, parent_process
 from threading import Thread
+from time import perf_counter
 from typing import Any, TypeAlias
 
 from minirt.cluster.job import Job, Made
@@ -21,92 +25,142 @@ from minirt.scene import Camera
 OF_EACH = 2  # bands of each worker in flight: one is rendered, one waits
 LARGE = 2**16  # bytes of a packed scene that dask keeps, and hands to each worker once
 MOST_PROCESSES = 8  # on this machine; each has its share of the processors
+LATE, LONGER = 60.0, 10  # seconds, and times the longest that one took so far, after which a band is sent once more
+SILENT, DESERTED = 60.0, 300.0  # seconds without an answer of the scheduler, and without workers, that end the work
+WATCH = 1.0  # seconds between two looks at what is late
 
 Workers: TypeAlias = Executor | Callable[[], Executor] | Any  # the last is a client of dask.distributed
 
 
 class Dispatcher:
-    """Bands in flight to an executor."""
+    """Bands in flight to an executor. One that is late is sent to another worker, too, since the first may hang."""
 
     def __init__(self, workers: Any) -> None:
         self.is_own = callable(workers) and not hasattr(workers, "submit")
         made = workers() if self.is_own else workers
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)
-        self.executor: Executor = made.get_executor() if hasattr(made, "get_executor") else made
+        self.executor: Any = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
-        self.last: tuple[object, Any] = None, b""  # the scene that was packed last, and its bytes
+        self.where = "the executor" if self.client is None else f"the scheduler at {self.client.scheduler.address}"
+        self.last: tuple[object, bytes, Any] = (
+            None,
+            b"",
+            b"",
+        )  # the scene packed last: itself, its bytes, and those sent
+        self.sent: dict[Future[Made], float] = {}  # what is rendered, and the time in seconds when it was sent
+        self.tasks: list[Future[Made]] = []  # at workers: of a band that was late, several
+        self.has_late, self.longest = False, 0.0  # seconds from sending a band to its result
 
     @property
     def count(self) -> int:
-        """The number of workers; those of a cluster may come and go."""
-        if self.client is not None:
-            return max(1, len(self.client.nthreads()))
-        return int(getattr(self.executor, "_max_workers", 0)) or usable_cores()
+        """The number of workers; those of a cluster may come and go. RenderError where the scheduler is silent."""
+        if self.client is None:
+            return int(getattr(self.executor, "_max_workers", 0)) or usable_cores()
+        try:
+            return len(self.client.sync(self.client.scheduler.ncores, workers=None, callback_timeout=SILENT))
+        except OSError as error:
+            raise RenderError(f"{self.where} has ended, or does not answer") from error
 
     def results(
         self, bands: Iterable[Job], restore: Callable[[Job], Made | None], in_order: bool
     ) -> Iterator[tuple[Job, Made]]:
-        """Yield bands and what was made of them, here or before; RenderError where one fails or its worker dies."""
+        """Yield bands and what was made of them, here or before; RenderError where one fails, its worker dies or the
+        cluster has ended."""
         rest = iter(bands)
         running: dict[Future[Made], Job] = {}
         try:
             while True:
-                for band in islice(rest, max(0, OF_EACH * self.count - len(running))):
-                    running[self.future(band, restore(band))] = band
+                for band in islice(rest, max(0, OF_EACH * max(1, self.count) - len(running))):
+                    future: Future[Made] = Future()
+                    running[future] = band
+                    if kept := restore(band):
+                        future.set_result(kept)
+                    else:
+                        self.send(band, future)
                 if not running:
                     return
-                ready = running if in_order else wait(running, return_when=FIRST_COMPLETED).done
-                future = next(iter(ready))
+                future = self.first_made(dict(islice(running.items(), 1)) if in_order else running)
+                self.longest = max(self.longest, perf_counter() - self.sent.pop(future, inf))
                 band = running.pop(future)
-                yield band, made_of(band, future)
+                yield band, self.made_of(band, future)
         finally:
-            self.close(running)
+            self.close()
 
-    def future(self, band: Job, kept: Made | None) -> Future[Made]:
-        """Send a band to a worker, unless it is kept. Scenes that differ in the camera alone are packed once."""
-        if kept:
-            done: Future[Made] = Future()
-            done.set_result(kept)
-            return done
+    def first_made(self, running: dict[Future[Made], Job]) -> Future[Made]:
+        """Wait until one of some bands is made, and send those that are late once more; RenderError where there have
+        been no workers for too long."""
+        seen = perf_counter()
+        while not (made := wait(running, WATCH, "FIRST_COMPLETED").done):
+            now = perf_counter()
+            seen = now if self.count else seen
+            if now - seen > DESERTED:
+                raise RenderError(f"{self.where} has had no workers for {DESERTED:.0f} s")
+            for future, band in running.items():
+                if self.longest and now - self.sent[future] > max(LATE, LONGER * self.longest):
+                    self.has_late = True
+                    self.send(band, future)
+        return next(iter(made))
+
+    def send(self, band: Job, future: Future[Made]) -> None:
+        """Send a band to a worker, whose result will be that of a future unless another one's is first. Scenes that
+        differ in the camera alone are packed once."""
         scene, settings = band.scene, band.settings
         others = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
         if self.last[0] != others:
-            data: Any = packed(scene, with_files=not self.is_pool)
+            there: Any = packed(scene, with_files=not self.is_pool)
+            data = there
             if self.client is not None and len(data) > LARGE:
-                data = self.client.submit(bytes, data, key=f"minirt-{hashlib.sha256(data).hexdigest()}")
-            self.last = others, data
+                there = self.client.submit(bytes, data, key=f"minirt-{hashlib.sha256(data).hexdigest()}")
+            self.last = others, data, there
         if settings.threads is None and self.is_pool:
             settings = settings.replace(threads=max(1, usable_cores() // self.count))
         nowhere: Any = None
-        sent = band._replace(scene=nowhere, settings=settings)
+        # A worker that hangs may be the only one that has a large scene.
+        arguments = version(), self.last[1 if self.has_late else 2], scene.camera
+        how = {} if self.client is None else {"pure": False}  # dask makes the same again
         try:
-            return self.executor.submit(work, version(), self.last[1], scene.camera, sent)
+            task = self.executor.submit(work, *arguments, band._replace(scene=nowhere, settings=settings), **how)
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
+        self.sent[future] = perf_counter()
+        self.tasks = [*(each for each in self.tasks if not each.done()), task]
+        task.add_done_callback(partial(hand_over, future))
 
-    def close(self, running: Iterable[Future[Made]]) -> None:
+    def made_of(self, band: Job, future: Future[Made]) -> Made:
+        """Return what is made of a band; RenderError where that has failed."""
+        try:
+            return future.result()
+        except MiniRTError:
+            raise
+        except Exception as error:
+            if type(error) is BrokenExecutor:  # of `hand_over`
+                raise RenderError(f"{self.where} {error}") from error
+            if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
+                raise RenderError(f"{band.what}: its worker died") from error
+            raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
+
+    def close(self) -> None:
         """Cancel what has not been made, and end the executor if it was made here."""
-        unfinished = [each for each in running if not each.done()]
+        unfinished = [each for each in self.tasks if not each.done()]
         for each in unfinished:
             each.cancel()
         if not self.is_own:
             return
         # An idle process waits with the lock of the queue: where it has been killed, the others never learn of the end.
-        for each in list((vars(self.executor).get("_processes") or {}).values()):
-            each.terminate()
+        for process in list((vars(self.executor).get("_processes") or {}).values()):
+            process.kill()  # also one that is stopped
         self.executor.shutdown(wait=not unfinished, cancel_futures=True)
 
 
-def made_of(band: Job, future: Future[Made]) -> Made:
-    """Wait for what is made of a band; RenderError where that fails."""
-    try:
-        return future.result()
-    except MiniRTError:
-        raise
-    except Exception as error:
-        if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
-            raise RenderError(f"{band.what}: its worker died") from error
-        raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
+def hand_over(future: Future[Made], task: Future[Made]) -> None:
+    """Give a future the result of a task, unless it has that of another one."""
+    with suppress(InvalidStateError):
+        if task.cancelled():
+            future.set_exception(BrokenExecutor("has ended, or has cancelled the work"))
+        elif error := task.exception():
+            future.set_exception(error)
+        else:
+            future.set_result(task.result())
 
 
 def local_pool() -> Executor:

@@ -28,16 +28,21 @@ from minirt.rendering.outcome import Outcome
 TITLE = b"miniRT journal 2, work "
 HEAD = struct.Struct("<QQI")  # number, length and checksum of a record
 LEVEL = 1  # of compression
+BANDS = "bands of the picture"
 SHARE = 0.1  # of the time, that goes into keeping bands at most; cheap ones are sooner rendered again than kept
 
 
 class Journal:
-    """Records by their numbers. The file is there from the first record on."""
+    """Records by their numbers. The file is there from the first record on, to the end of the block that fills it. An
+    error that ends the block gets a note about what is kept."""
 
     def __init__(
         self,
         output: str | os.PathLike[str],
         work: str,
+        *,
+        again: str = "the same command or call",
+        what: str = BANDS,
         resume: bool = True,
         keeps_all: bool = False,
         has_parts: bool = True,
@@ -45,11 +50,12 @@ class Journal:
         """Go on with the journal of an output, or delete it.
 
         One that `keeps_all` bands, of which the output is put together, begins anew where it is of other work. Without
-        parts it has what is done, and not what was rendered. RenderError where another program writes it, and where it
-        is of other work.
+        parts it has what is done, and not what was rendered. `again` and `what` are words of the note: who goes on, and
+        with what. RenderError where another program writes it, and where it is of other work.
         """
         self.path = path_for(output)
         self.start = TITLE + work.encode() + b"\n"
+        self.again, self.what, self.total = again, what, 0
         self.keeps_all, self.has_parts = keeps_all, has_parts
         self.places: dict[int, tuple[int, int]] = {}  # start and length of each record
         self.file: IO[bytes] | None = None
@@ -69,7 +75,7 @@ class Journal:
             raise RenderError(f"{self.path}: cannot be read: {error.strerror or error}") from None
         start = self.file.read(len(self.start))
         if not (self.keeps_all or self.start.startswith(start)):  # a part: of a program killed before the first band
-            self.close()
+            self.file.close()
             raise RenderError(
                 f"{self.path}: was left by another scene, other settings or another version; without --resume the "
                 "work begins anew"
@@ -130,16 +136,19 @@ class Journal:
         self.file.seek(start)
         return unpacked(self.file.read(length), band)
 
-    def close(self) -> None:
-        """Leave the file as it is."""
-        if self.file:
-            with suppress(OSError):
-                self.file.close()
+    def __enter__(self) -> Journal:
+        return self
 
-    def remove(self) -> None:
-        """Delete the file."""
-        self.close()
-        delete(self.path)
+    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
+        if self.file is None:  # there is none, or it is another program's
+            return
+        with suppress(OSError):
+            self.file.close()
+        if error is None or not self.places:
+            delete(self.path)
+        else:
+            kept = f"{len(self.places)} of {self.total} {self.what} are kept in {self.path}"
+            error.add_note(f"{kept}; {self.again} goes on")
 
 
 def packed(made: Made) -> bytes:

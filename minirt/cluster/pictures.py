@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import closing
 from itertools import chain
 from operator import length_hint
 from pathlib import Path
@@ -101,12 +100,11 @@ def stream(
     bands, outcomes = job.bands(rows_of(job.region), bits), []
     with file_io.told_errors(path):
         file_io.probe(path)
-        with closing(Journal(path, job.work(bits), keeps_all=True)) as journal:
-            for band, made in results(bands, executor, journal, on_progress):
-                outcomes.append((band.region, made.reached))
-            strips = chain.from_iterable(each.parts for each in map(journal.restore, bands) if each)
-            file_io.write(path, lambda file: tiff.write(file, *job.region[2:], bits, strips))
-        journal.remove()
+    with Journal(path, job.work(bits), keeps_all=True) as journal, file_io.told_errors(path):
+        for band, made in results(bands, executor, journal, on_progress):
+            outcomes.append((band.region, made.reached))
+        strips = chain.from_iterable(each.parts for each in map(journal.restore, bands) if each)
+        file_io.write(path, lambda file: tiff.write(file, *job.region[2:], bits, strips))
     return whole(outcomes)
 
 
@@ -150,6 +148,8 @@ def results(
     restore = journal.restore if journal else lambda band: None
     done, total = sum(band.number in kept for band in bands) if journal else 0, length_hint(bands)
     on_progress(done, total)
+    if journal:
+        journal.total = total
     made_of: Iterable[tuple[Job, Made]] = ((band, restore(band) or render_band(band)) for band in bands)
     if executor is not None:
         from minirt.cluster.executor import Dispatcher

@@ -88,7 +88,9 @@ def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: P
         assert running.poll() is None, "the work ended before it could be interrupted"
         assert interrupt(running, screen)[0] == 130  # after the end of all processes, which have the terminal open
     assert b"Traceback" not in screen.text
-    assert re.search(rb"\d+ of 25 bands of the picture are kept; the same command goes on", screen.text)
+    assert re.search(
+        rb"\d+ of 25 bands of the picture are kept in .a.tif.journal; the same command or call goes on", screen.text
+    )
     assert {each.name for each in folder.iterdir()} == {"ball.rt", ".a.tif.journal"}
 
 

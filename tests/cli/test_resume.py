@@ -77,7 +77,7 @@ def test_an_interrupted_program_goes_on(run: Run, folder: Path, renders: Renders
     status, out, err = run(*arguments)
     assert (status, out) == (130, b"")
     what = "bands of the picture" if arguments is STILL else "pictures of the film"
-    assert err == f"3 of 5 {what} are kept; miniRT {' '.join(arguments)} --resume goes on\n"
+    assert err == f"3 of 5 {what} are kept in .{arguments[-1]}.journal; miniRT {' '.join(arguments)} --resume goes on\n"
     renders.until(2)  # is interrupted again
     again = run(*arguments, "--resume")
     assert (again.status, again.err) == (130, err.replace("3 of", "4 of"))
@@ -238,6 +238,31 @@ def test_a_full_disk_keeps_nothing_and_spoils_nothing(
     monkeypatch.setattr(Journal, "append", until_full)
     assert run(*FILM) == (0, b"", "")
     assert (contents(folder), parts) == (wanted, [1, 2])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files")
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.9])
+@EVERY
+def test_a_disk_that_fills_leaves_only_what_is_named(
+    run: Run, folder: Path, renders: Renders, arguments: tuple[str, ...], share: float
+) -> None:
+    """Files may have no more bytes than a share of the smallest one."""
+    import resource
+
+    wanted, journal = undisturbed(run, folder, arguments), f".{arguments[-1]}.journal"
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * min(map(len, wanted.values()))), before[1]))
+    try:
+        ended = run(*arguments)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert (ended.status, ended.out) == (1, b"")
+    assert "cannot write: File too large" in ended.err
+    is_kept = f" are kept in {journal}; miniRT " in ended.err
+    assert is_kept == (share == 0.9 and arguments is not NUMBERED)
+    assert set(contents(folder)) == ({journal} if is_kept else set())
+    assert run(*arguments, *["--resume"] * is_kept) == (0, b"", "")
+    assert contents(folder) == wanted
 
 
 def test_short_work_leaves_nothing_and_removes_what_was_left(

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+import json
+import logging
 import os
+import re
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 import tifffile
 
 import minirt
-from minirt.cli import main
+from minirt.cli import main, render
 from minirt.cluster import executor
 from minirt.cluster.job import Job, Made
 from minirt.cluster.worker import share_of_cores, work
 from minirt.errors import RenderError
 from tests.cluster.scenes import BALL, with_files
+from tests.paths import ROOT
+from tests.processes import started
+from tests.waiting import until
 
 SIZE = 600, 400
 
@@ -69,13 +77,102 @@ def test_an_executor_that_is_shut_down_takes_no_tasks(tmp_path: Path) -> None:
 OF_DASK = pytest.mark.filterwarnings("ignore")  # those of another library
 
 
-@pytest.fixture(scope="module")
-def client() -> Iterator[Any]:
-    """A dask cluster of two workers with a thread each, which are processes of their own."""
+class Cluster(NamedTuple):
+    """A scheduler and three workers of dask with a thread each, all of them processes, and their client."""
+
+    scheduler: subprocess.Popen[Any]
+    workers: list[subprocess.Popen[Any]]
+    client: Any
+
+
+@contextmanager
+def dask_cluster(folder: Path) -> Iterator[Cluster]:
+    """Start a cluster."""
     distributed = pytest.importorskip("distributed")
-    how = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
-    with distributed.LocalCluster(**how) as cluster, distributed.Client(cluster, set_as_default=False) as client:
-        yield client
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    file = folder / "scheduler.json"
+
+    def process(name: str, *arguments: str) -> subprocess.Popen[Any]:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments, "--no-dashboard"]
+        how = {
+            "env": os.environ | {"PYTHONPATH": str(ROOT)},
+            "stdout": subprocess.DEVNULL,
+            "stderr": subprocess.DEVNULL,
+        }
+        return stack.enter_context(started(command, **how))
+
+    with ExitStack() as stack:
+        scheduler = process("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
+        until(lambda: file.exists() and file.read_text().endswith("}"), "the scheduler")
+        place = "--scheduler-file", str(file), "--local-directory", str(folder)
+        workers = [process("worker", *place, "--nthreads", "1", "--no-nanny") for _ in range(3)]
+        client = distributed.Client(json.loads(file.read_text())["address"], set_as_default=False)
+        stack.callback(client.close)
+        client.wait_for_workers(3)
+        client.run(exec, "import minirt; minirt.render(minirt.example(), 8, 6)")  # which loads the program
+        yield Cluster(scheduler, workers, client)
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A cluster of these tests."""
+    with dask_cluster(tmp_path_factory.mktemp("dask")) as made:
+        yield made
+
+
+@pytest.fixture
+def client(cluster: Cluster) -> Any:
+    """The client of the cluster."""
+    return cluster.client
+
+
+@OF_DASK
+@pytest.mark.parametrize("large", [False, True])
+def test_a_worker_that_hangs_is_passed_over(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, large: bool
+) -> None:
+    """A large scene is at the workers already, and may be at the one that hangs alone."""
+    monkeypatch.setattr(executor, "LATE", 0.0)
+    monkeypatch.setattr(executor, "LONGER", 3)
+    monkeypatch.setattr(executor, "LARGE", 0 if large else 2**30)
+    hanging, pictures = cluster.workers[0], 0
+    scenes = [BALL.replace(BALL.spheres[0], diameter=2 + n / 9 + large) for n in range(9)]
+    for scene, image in zip(scenes, minirt.render_all(scenes, 80, 60, executor=cluster.client), strict=True):
+        pictures += 1
+        if pictures == 2:
+            hanging.send_signal(signal.SIGSTOP)
+        assert np.array_equal(image.array, minirt.render(scene, 80, 60).array)
+    hanging.send_signal(signal.SIGCONT)
+    assert pictures == 9
+
+
+@OF_DASK
+@pytest.mark.parametrize("ending", ["scheduler", "workers"])
+def test_the_end_of_a_cluster_is_told_with_what_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], ending: str
+) -> None:
+    monkeypatch.setattr(executor, "DESERTED", 0.0)
+    BALL.save(tmp_path / "ball.rt")
+    monkeypatch.chdir(tmp_path)
+    arguments = "ball.rt", "--size", "300x1200", "-o", "a.tif"
+    with dask_cluster(tmp_path) as cluster:
+        address = cluster.client.scheduler.address
+
+        def end(share: render.Share, done: int, total: int) -> None:
+            share.done, share.total = done, total
+            if done == 2:
+                for process in [cluster.scheduler] if ending == "scheduler" else cluster.workers:
+                    process.kill()
+
+        monkeypatch.setattr(render.Share, "note", end)
+        assert main([*arguments, "--cluster", address]) == 1
+    why = "has ended, or .*" if ending == "scheduler" else "has had no workers for 0 s"
+    told = (
+        rf"Error\nthe scheduler at {address} {why}\n\d of \d+ bands of the picture are kept in \.a\.tif\.journal; .*\n"
+    )
+    assert re.fullmatch(told, capsys.readouterr().err)
+    assert main(arguments) == 0
+    assert np.array_equal(tifffile.imread("a.tif"), minirt.render(BALL, 300, 1200).array)
 
 
 @OF_DASK
