@@ -56,7 +56,7 @@ def map_name(row: Row) -> str:
 
 def values(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, Any]:
     """Return what the page of a report tells, by the names in its template."""
-    used = {row.knob for row in found.pictures}
+    used, shown = {row.knob for row in found.pictures}, {*distinct(found.pictures), *found.recommended}
     wide, narrow = (on_page(draw(found, size)) for size in (WIDE, NARROW))
     knobs = {knob.name: knob.about for knob in KNOBS} | ABOUT
     equal = [row for row in found.of_equal_time if row.name in lights]
@@ -68,7 +68,7 @@ def values(found: Findings, lights: dict[str, Light], reference: Light) -> dict[
         "choices": table(found.choices),
         "pictures": figures("pictures", compared(equal, lights, reference)),
         "crops": crops(equal, lights, reference) if equal else "",
-        "settings": table(distinct(found.pictures), found.recommended),
+        "settings": table([row for row in found.pictures if row in shown], found.recommended),
         "knobs": "; ".join(f"{name}: {knobs[name]}" for name in knobs if name in used),
         "orders": table(found.orders),
         "ablation": table(found.ablation),
@@ -92,7 +92,8 @@ def compared(rows: list[Row], lights: dict[str, Light], reference: Light) -> Ite
 
 def crops(rows: list[Row], lights: dict[str, Light], reference: Light) -> str:
     """Return crops of pictures, where these are furthest from the reference."""
-    region = worst_region(np.sum([((lights[row.name] - reference) ** 2).sum(axis=-1) for row in rows], axis=0))
+    squares = (((lights[row.name] - reference) ** 2).sum(axis=-1) for row in rows)
+    region = worst_region(np.sum([each / (each.sum() or 1.0) for each in squares], axis=0))  # none outweighs the others
     return figures("crops", compared(rows, {row.name: lights[row.name][region] for row in rows}, reference[region]))
 
 

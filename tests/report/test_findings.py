@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from minirt.report import answers
-from minirt.report.findings import ERRORS, TIMES, Findings, Order, Recommendation
+from minirt.report.findings import ERROR, ERRORS, TIME, TIMES, Findings, Order, Recommendation
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Row
 from tests.report.made_up import FINDINGS
 
@@ -67,25 +67,12 @@ def point(rmse: float, wall_ms: float, label: str = "", doubt: float = 0.1) -> R
     return Row("u", label, options=f"--samples {label}", valid=True, **errors, **times)
 
 
-ROUGH, FINE, SLOW, FAILED = (
-    point(0.02, 1, "r"),
-    point(0.008, 10, "f"),
-    point(0.0081, 20, "s"),
-    Row("u", "", options="-"),
-)
-POINTS = [FINE, SLOW, FAILED, ROUGH]
+ROUGH, FINE, SLOW, FAILED = *map(point, (0.02, 0.008, 0.0081), (1, 10, 20), "rfs"), Row("u", "", options="-")
 AMOUNTS = some.floats(1e-4, 1e3)
 
 
 def choices(rows: list[Row]) -> dict[str, Recommendation]:
     return {choice.goal: choice for choice in Findings(FINDINGS.subject, 1024, 0.0, pictures=rows).choices}
-
-
-def test_the_best_settings_by_hand() -> None:
-    best = {goal: choice.best for goal, choice in choices(POINTS).items()}
-    assert (best["error at most 0.03"], best["error at most 0.01"], best["error at most 0.004"]) == (ROUGH, FINE, None)
-    assert (best["at most 16 ms"], best["at most 100 ms"]) == (FINE, FINE)
-    assert {choice.best for choice in choices([FAILED]).values()} == {None}
 
 
 def test_settings_that_cannot_be_told_apart_are_as_good_and_the_simplest_is_recommended() -> None:
@@ -108,17 +95,13 @@ def test_disturbed_rows_and_those_that_no_option_draws_are_never_the_best() -> N
 
 @given(some.lists(some.builds(point, AMOUNTS, AMOUNTS, doubt=some.floats(0.01, 0.5)), max_size=12))
 def test_nothing_is_certainly_better_than_what_is_recommended(rows: list[Row]) -> None:
-    found = choices(rows)
-    for most in ERRORS:
-        reached = [row for row in rows if row.rmse_high <= most]
-        best = found[f"error at most {most:g}"].best
+    goals = [(f"error at most {most:g}", most, ERROR, TIME) for most in ERRORS]
+    goals += [(f"at most {most:g} ms", most, TIME, ERROR) for most in TIMES]
+    found = choices([*rows, FAILED])
+    for goal, most, limited, wanted in goals:
+        best, reached = found[goal].best, [row for row in rows if limited(row)[1] <= most]
         assert (best is None) == (not reached)
-        assert not best or all(row.wall_high_ms >= best.wall_low_ms for row in reached)
-    for most in TIMES:
-        reached = [row for row in rows if row.wall_high_ms <= most]
-        best = found[f"at most {most:g} ms"].best
-        assert (best is None) == (not reached)
-        assert not best or all(row.rmse_high >= best.rmse_low for row in reached)
+        assert not best or (best in reached and all(wanted(row)[1] >= wanted(best)[0] for row in reached))
 
 
 # The answers.
