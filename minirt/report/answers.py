@@ -39,19 +39,14 @@ def best_setting(found: Findings) -> str:
         if not choice.best:
             return f"{text}; none is sure to have at most {most:g}"
         if choice.best != best:
-            times = f"{rounded(choice.wall_ms / best.wall_ms)} times the time"
+            times = f"{choice.wall_ms / best.wall_ms:.3g} times the time"
             return f"{text}; at most {most:g} costs {times}, with {described(choice.best)}"
     return f"{text}, and even of at most {ERRORS[-1]:g}"
 
 
 def described(row: Row) -> str:
     """Describe a setting by its options, its time and its error."""
-    return f"`{row.options}` ({rounded(row.wall_ms)} ms a picture, RMSE {row.rmse:.2g})"
-
-
-def rounded(number: float) -> str:
-    """Format a number with three digits that count, without an exponent."""
-    return f"{float(f'{number:.3g}'):,.15g}"
+    return f"`{row.options}` ({row.wall_ms:.4g} ms a picture, RMSE {row.rmse:.2g})"
 
 
 def exactness(found: Findings) -> str:
@@ -74,20 +69,23 @@ def exactness(found: Findings) -> str:
 def left_out(found: Findings) -> str:
     """Tell what the kernel leaves out, and what is saved by not testing each ray against each shape."""
     text = f"the kernel of this scene lacks {found.absent}"
+    added = [part for part in found.ablation if part.change == "added" and part.percent_low > 0]
+    if added:
+        dearest = max(added, key=lambda part: part.percent)
+        text += f", of which {dearest.name} would cost most, {dearest.percent:.1f} % of a frame"
     first = {row.knob: row for row in found.pictures if row.valid and row.samples == 1}
     lean, brute = (first.get(knob.name, Row("", "")) for knob in (UNIFORM, BRUTE_FORCE))
     if not lean.wall_high_ms < brute.wall_low_ms:
         return text
     saved, same = 100 * (1 - lean.wall_ms / brute.wall_ms), ", the same bits" if found.same else ""
-    times = f"{rounded(lean.wall_ms)} ms instead of {rounded(brute.wall_ms)} ms"
+    times = f"{lean.wall_ms:.4g} ms instead of {brute.wall_ms:.4g} ms"
     return f"{text}; culling saves {saved:.0f} % of a frame ({times}{same})"
 
 
 def automatic(found: Findings) -> str:
-    """Tell whether automatic sampling is faster than uniform sampling with the same true error.
+    """Tell whether automatic sampling is faster than uniform sampling with the same true error, on the diagram's line.
 
-    Uniform sampling with any error lies on the lines of the diagram. The interval of a ratio of times holds those of
-    both times and of the error.
+    The interval of the ratio of their times holds those of time and error.
     """
     known = [row for row in found.pictures if row.valid and row.rmse > CLEAR * found.reference_error]
     uniform = sorted((row.rmse, row.wall_ms) for row in known if row.knob == UNIFORM.name)
@@ -105,5 +103,5 @@ def automatic(found: Findings) -> str:
     if faster and slower:
         answer = f"Yes for an error of {faster}, no for {slower}"
     extent = " to ".join(dict.fromkeys(f"{each:.2g}" for each in (ratio.min(), ratio.max())))
-    last = f"{rounded(times[-1, 1])} ms instead of {rounded(others[-1, 1])} ms for RMSE {errors[-1, 1]:.2g}"
+    last = f"{times[-1, 1]:.4g} ms instead of {others[-1, 1]:.4g} ms for RMSE {errors[-1, 1]:.2g}"
     return f"{answer}: it takes {extent} times as long as uniform sampling with the same true error ({last})"

@@ -11,7 +11,7 @@ import numpy as np
 
 from minirt.helpers import file_io
 from minirt.rendering.image import Image
-from minirt.report.answers import answers, rounded
+from minirt.report.answers import answers
 from minirt.report.diagram import NARROW, WIDE, draw, on_page
 from minirt.report.findings import Findings, distinct
 from minirt.report.metrics import Picture as Light
@@ -85,7 +85,7 @@ def compared(rows: list[Row], lights: dict[str, Light], reference: Light) -> Ite
     """Yield the reference, and for each row its picture and the errors of that, by their names."""
     yield {"the reference": Image(to_8_bits(reference)).encode()}
     for row in rows:
-        light, name = lights[row.name], f"{row.name}: {rounded(row.wall_ms)} ms, RMSE {row.rmse:.2g}"
+        light, name = lights[row.name], f"{row.name}: {row.wall_ms:.4g} ms, RMSE {row.rmse:.2g}"
         errors = error_image(light, reference).encode()
         yield {name: Image(to_8_bits(light)).encode(), f"errors of {row.name}": errors}
 

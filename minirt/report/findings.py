@@ -29,7 +29,6 @@ ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
 NEAR = 1.5  # ratio of times up to which they are about equal
 TIMES = (16.0, 100.0, 1000.0)  # target times, milliseconds
 TIME, ERROR = attrgetter("wall_low_ms", "wall_high_ms"), attrgetter("rmse_low", "rmse_high")  # intervals of a row
-EIGHT_BITS = 1 / 255 / sqrt(12)  # standard deviation of a number that is rounded to a 255th
 
 
 class Subject(NamedTuple):
@@ -77,7 +76,7 @@ class Findings:
     subject: Subject
     reference_samples: int
     reference_error: float  # RMSE of the reference itself
-    eight_bits: float = EIGHT_BITS  # RMSE that rounding to 8 bits per channel adds: no such file can be closer
+    eight_bits: float = 1 / 255 / sqrt(12)  # RMSE that rounding to 255ths adds: no file of 8 bits can be closer
     pictures: list[Row] = field(default_factory=list)
     ablation: list[Part] = field(default_factory=list)  # what features, kinds of shapes and lists cost or save
     single: float = nan  # pixels that float32 changes, with one sample each

@@ -158,7 +158,7 @@ def test_the_page_of_a_report(page: Page, tmp_path: Path) -> None:
     assert {each.partition(":")[0] for each in page.requests[1:]} == {"data"}
     assert page.value("[...document.images].every(each => each.complete && each.naturalWidth > 0)")
     names = page.value("[...document.querySelectorAll('.pictures img')].map(each => each.alt)")
-    assert names[1::2] == [f"{row.name}: {row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}" for row in FINDINGS.of_equal_time]
+    assert names[1::2] == [f"{row.name}: {row.wall_ms:.4g} ms, RMSE {row.rmse:.2g}" for row in FINDINGS.of_equal_time]
     assert page.value("[...document.querySelectorAll('select.left option')].map(each => each.text)") == names
 
     panes = box(page, ".panes")

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from minirt.report import answers
+from minirt.report.ablation import Part
 from minirt.report.findings import ERROR, ERRORS, TIME, TIMES, Findings, Order, Recommendation
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Row
 from tests.report.made_up import FINDINGS
@@ -141,10 +142,10 @@ def test_the_best_setting_and_what_the_next_costs() -> None:
     def told(*rows: Row) -> str:
         return answers.best_setting(Findings(FINDINGS.subject, 1024, 0.0, pictures=list(rows)))
 
-    one, two, three = point(0.0035, 10, "1"), point(0.0015, 12345, "2"), point(0.0008, 55, "3")
+    one, two, three = point(0.0035, 10, "1"), point(0.0015, 1234.5, "2"), point(0.0008, 55, "3")
     best = "`--samples 1` (10 ms a picture, RMSE 0.0035) has an error of at most 0.004, one of 255 levels"
-    next_one = "`--samples 2` (12,300 ms a picture, RMSE 0.0015)"
-    assert told(one, two) == f"{best}; at most 0.002 costs 1,230 times the time, with {next_one}"
+    next_one = "`--samples 2` (1234 ms a picture, RMSE 0.0015)"
+    assert told(one, two) == f"{best}; at most 0.002 costs 123 times the time, with {next_one}"
     assert told(one) == f"{best}; none is sure to have at most 0.002"
     assert told(one, one._replace(knob="v")).startswith(f"{best}, and so has v 1;")
     assert told(three).endswith("has an error of at most 0.004, one of 255 levels, and even of at most 0.001")
@@ -165,6 +166,11 @@ def test_exactness_and_what_is_left_out() -> None:
     assert answers.exactness(bare) == "nothing in this scene is stiff"
     lacks = "the kernel of this scene lacks 3 kinds of shapes and 5 features"
     assert answers.left_out(FINDINGS) == lacks
+    more = [
+        Part("kind", name, "added", percent=cost, percent_low=cost - 2) for name, cost in (("tori", 9), ("cones", 1))
+    ]
+    dearest = f"{lacks}, of which tori would cost most, 9.0 % of a frame"
+    assert answers.left_out(replace(FINDINGS, ablation=more)) == dearest
     for time, saved in ((10.0, "; culling saves 75 % of a frame (2.5 ms instead of 10 ms, the same bits)"), (2.6, "")):
         brute = point(0.04, time, "1")._replace(knob="brute force", samples=1)
         assert answers.left_out(replace(FINDINGS, pictures=[*FINDINGS.pictures, brute])) == lacks + saved
