@@ -8,6 +8,7 @@ from minirt.fields.field import Choice, Field, MeshField, MeshFile, Picture, Pic
 from minirt.fields.scalars import (
     FARTHEST,
     LEAST_LENGTH,
+    SMALLEST,
     Angle,
     Count,
     Factor,

@@ -17,6 +17,7 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 WHOLE = re.compile(r"[+-]?[0-9]+")
 LONGEST = 300  # characters: many more than `repr` writes, few enough for a whole number to fit into a float64
 FARTHEST = 1e15  # scene units; beyond it neighbouring float64 numbers are an eighth of a unit apart
+SMALLEST = 1e-50  # of a length; formulas square squares of lengths, and of coordinates in lengths
 LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
 PLAIN = rf"[-+.0-9eE]{{1,{LONGEST}}}"  # among these `float` and `int` accept exactly those that match NUMBER and WHOLE
 
@@ -130,20 +131,15 @@ class Length(Scalar):
 
     unit: str = "scene unit"
     step: float = 1.05
+    low: float = SMALLEST
 
     def check(self, value: float) -> float:
         if not value > 0:
             raise FieldError(f"must be > 0, got {spelled(value)}")
-        if not value <= FARTHEST:
-            raise FieldError(f"must be at most {FARTHEST:g}, got {spelled(value)}")
-        return float(value)
+        return super().check(value)
 
     def nudge(self, value: float, steps: float) -> float:
         return scaled([value], self.step ** clamp(steps, -10_000, 10_000))[0]
-
-    @property
-    def range(self) -> str:
-        return "> 0"
 
 
 @record(kw_only=True)

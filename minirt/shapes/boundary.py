@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.lanes import Vec, cross, dot
+from minirt.lanes import Vec, cross, dot, where
 from minirt.shapes.compensated import two_product, two_sum
 
 Roll = tuple[Any, Any]  # cosine and sine of a shape's turn about its own axis; their squares add up to exactly 1
@@ -143,9 +143,17 @@ def hypotenuse(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble:
 
 
 def along_and_off_axis(axis: Vec, p: Vec) -> tuple[DoubleDouble, DoubleDouble]:
-    """Return the coordinate of p along a unit vector, and its distance from the line through the origin along it."""
+    """Return the coordinate of p along a unit vector, and its distance from the line through the origin along it.
+
+    On that line, where the distance grows in all directions off it, it has the gradient in one of them.
+    """
     height = dot(axis, p)
-    return height, length(p - height * axis)
+    rho = length(p - height * axis)
+    on_axis = rho.high == 0.0
+    if on_axis.any():
+        aside, _ = upright_frame(axis, (1.0, 0.0))
+        rho.slope = where(on_axis, Vec(aside.x.high, aside.y.high, aside.z.high), rho.slope)
+    return height, rho
 
 
 def own_coordinates(axis: Vec, roll: Roll, p: Vec) -> tuple[DoubleDouble, DoubleDouble, DoubleDouble]:

@@ -44,9 +44,9 @@ def exists(name: str, suffix: str) -> bool:
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
-LONGEST, FARTHEST = 300, 1e15
+LONGEST, LEAST, FARTHEST = 300, 1e-50, 1e15
 EDGES = (
-    "0", "1", "-1", "0.5", "180", "255", "1e15", "-1e15", "5e-324", "1e-400", "1e400", "360", "+1", "1.", ".5",
+    "0", "1", "-1", "0.5", "180", "255", "1e15", "-1e15", "5e-324", "1e-50", "1e-400", "1e400", "360", "+1", "1.", ".5",
 )  # fmt: skip
 
 Chance = random.Random
@@ -133,8 +133,8 @@ def is_direction(text: str) -> bool:
 
 ratio, colour, component = between(0, 1), three(whole(0, 255)), three(between(-1, 1))
 length = Kind(
-    lambda text: 0 < value_of(text) <= FARTHEST,
-    lambda chance: repr(chance.choice((5e-324, 1e-9, 1e15, *[abs(chance.gauss(0, 3)) + 0.01] * 9))),
+    lambda text: LEAST <= value_of(text) <= FARTHEST,
+    lambda chance: repr(chance.choice((LEAST, 1e-9, 1e15, *[abs(chance.gauss(0, 3)) + 0.01] * 9))),
 )
 point, lengths = three(between(-FARTHEST, FARTHEST)._replace(make=number)), three(length)
 may_be_zero = component._replace(fits=lambda text: component.fits(without_homogeneous_zero(text)))  # of a camera

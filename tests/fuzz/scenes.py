@@ -14,7 +14,7 @@ import numpy as np
 
 from minirt.element import Element, fields_of, positional_fields
 from minirt.errors import SceneError
-from minirt.fields import FARTHEST, Choice, Field, Length, MeshField, Paint, Picture, Three, Whole
+from minirt.fields import Choice, Field, MeshField, Paint, Picture, Three, Whole
 from minirt.fields.scalars import Scalar
 from minirt.materials import Compound
 from minirt.rendering import kernels
@@ -165,7 +165,7 @@ def word_of(field: Field, extreme: float, chance: Chance) -> str:
 
 def number_of(field: Scalar, extreme: float, chance: Chance) -> str:
     """Return a number that a field can take."""
-    low, high = (5e-324, FARTHEST) if isinstance(field, Length) else (field.low, field.high)
+    low, high = field.low, field.high
     if isinstance(field, Whole):
         return str(chance.choice((int(low), int(high), chance.randint(int(low), int(high)))))
     ends = low, high, nextafter(low, high), nextafter(high, low), *EXTREME, *(-each for each in EXTREME)

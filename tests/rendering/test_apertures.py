@@ -209,7 +209,7 @@ def test_places_fill_discs_evenly() -> None:
     assert in_disc(np.array([0.5, 0.5])).tolist() == [0, 0]
 
 
-LENGTHS = (5e-324, 1e-308, 1e-160, 1e-30, 1.0, 1e15)
+LENGTHS = (1e-50, 1e-30, 1.0, 1e15)
 
 
 @pytest.mark.parametrize("focus", LENGTHS)

@@ -15,6 +15,7 @@ from minirt.element import Record, fields_of
 from minirt.errors import ElementError
 from minirt.fields import (
     FARTHEST,
+    SMALLEST,
     Choice,
     Colour,
     Direction,
@@ -57,8 +58,8 @@ VALUES: dict[type[Field], Callable[[Any], st.SearchStrategy[object]]] = {
     Choice: lambda field: st.sampled_from(field.words),
     Flag: lambda _: st.booleans(),
     Real: lambda field: st.floats(field.low, field.high),
-    Length: lambda _: st.floats(0, FARTHEST, exclude_min=True),
-    Lengths: lambda _: st.tuples(*[st.floats(0, FARTHEST, exclude_min=True)] * 3),
+    Length: lambda _: st.floats(SMALLEST, FARTHEST),
+    Lengths: lambda _: st.tuples(*[st.floats(SMALLEST, FARTHEST)] * 3),
     Whole: lambda field: st.integers(field.low, field.high),
     Point: lambda _: st.tuples(*[COORDINATE] * 3),
     Direction: lambda _: st.tuples(*[st.floats(-1, 1)] * 3).filter(any),

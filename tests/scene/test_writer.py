@@ -142,7 +142,7 @@ def test_an_element_without_a_fitting_source_line_gets_a_new_line(source: str) -
         (Camera((0, 0, -5), (0, 0, 1), 70, roll=1 / 3), CAMERA + " roll:0.3333333333333333"),
         (Light((-40, 0, 30), 0.7), LIGHT),
         (FurtherLight((0, 0, 0), 1, (1, 2, 3)), "l 0,0,0 1 1,2,3"),
-        (Sphere((1e15, -1e-300, 1e22 / 1e22), 5e-324, (0, 0, 0)), "sp 1000000000000000,-1e-300,1 5e-324 0,0,0"),
+        (Sphere((1e15, -1e-300, 1e22 / 1e22), 1e-50, (0, 0, 0)), "sp 1000000000000000,-1e-300,1 1e-50 0,0,0"),
         (Sphere((-0.0, 0, 0), 1, (0, 0, 0), source="  sp 0,0,0  1  0,0,0 # kept out"), "sp 0,0,0 1 0,0,0"),
     ],
 )

@@ -11,7 +11,7 @@ from gmpy2 import mpfr, sqrt
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
-from minirt.rendering.queries.certificates import Certificate, certify
+from minirt.rendering.queries.certificates import ROUNDED, Certificate, certify
 from minirt.rendering.queries.certificates import Rays as HitRays
 from minirt.shapes import Shape
 from tests import oracle
@@ -196,20 +196,28 @@ def certificate(
     more strongly than the point is far from it."""
     form, o, d = body(shape), exact(origin), unit(direction)
     point = [x + mpfr(t) * y for x, y in zip(o, d, strict=True)]
-    wall = max(form.walls, key=lambda each: dot(unit(gradient(each, point)), exact(normal)))
+
+    def beyond(wall: Implicit) -> mpfr:
+        ends = [*form.clips, *(other for other in form.walls if other is not wall)]
+        return max([mpfr(0), *(height(end, point) for end in ends)])
+
+    def distance(wall: Implicit) -> mpfr:
+        return max(abs(height(wall, point)), beyond(wall))
+
+    wall = min(form.walls, key=distance)
     nearest = foot(wall, point)
     if nearest is None:
         return None
-    ends = [*form.clips, *(other for other in form.walls if other is not wall)]
-    beyond = max([mpfr(0), *(height(end, point) for end in ends)])
     away = minus(o, exact(points(shape)[0]))
     magnitude = mpfr(t) + sqrt(dot(away, away)) + mpfr(size(shape))
+    rounding = ROUNDED * U * (magnitude + max(map(abs, o)))
     out = unit(gradient(wall, nearest))
-    off, turned = minus(nearest, point), minus(out, exact(normal))
+    normals = [unit(gradient(each, nearest)) for each in form.walls if distance(each) <= rounding] or [out]
+    off = minus(nearest, point)
     return ExactCertificate(
-        float(max(sqrt(dot(off, off)), beyond) / (mpfr(U) * magnitude)),
+        float(max(sqrt(dot(off, off)), beyond(wall)) / (mpfr(U) * magnitude)),
         float(magnitude / (mpfr(t) * abs(dot(out, d)))),
-        float(sqrt(dot(turned, turned))),
+        min(float(sqrt(dot(turned, turned))) for turned in (minus(each, exact(normal)) for each in normals)),
     )
 
 

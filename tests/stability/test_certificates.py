@@ -20,6 +20,7 @@ from minirt.shapes.boundary import Boundary
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.mesh import Mesh
+from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.paths import SCENES
 from tests.shapes.execution_modes import on_arrays
@@ -125,17 +126,22 @@ def test_a_wrong_normal_is_noticed(kind: Kind) -> None:
     assert np.median(certified(rays, t, turned).normal_error[hit]) > 5e-10
 
 
-def test_the_face_that_was_hit_counts() -> None:
-    """The normal tells which one, and the point may not lie beyond the end of it."""
+def test_the_nearest_face_counts_and_at_a_rim_the_normal_of_either() -> None:
+    """The point may not lie beyond the end of the face."""
     tube, tent = Cylinder((0, 0, 0), (0, 1, 0), 2, 2, GREY), Cone((0, 1, 0), (0, -1, 0), 1, 2, GREY)
     down, side, cap = [[0.0, -1, 0]], [[1.0, 0, 0]], [[0.0, 1, 0]]
 
-    def error(x: float, t: float, normal: Any, shape: Shape = tube) -> float:
+    def errors(x: float, t: float, normal: Any, shape: Shape = tube) -> tuple[float, float]:
         rays = certificates.Rays(*map(np.array, ([[x, 5.0, 0]], down, [t], normal)))
-        return float(certificates.certify((shape,), np.array([0]), np.array([0]), rays).backward_error[0])
+        found = certificates.certify((shape,), np.array([0]), np.array([0]), rays)
+        return float(found.backward_error[0]), float(found.normal_error[0])
+
+    def error(x: float, t: float, normal: Any, shape: Shape = tube) -> float:
+        return errors(x, t, normal, shape)[0]
 
     assert error(0.5, 4.0, cap) == 0
-    assert error(0.5, 4.0, side) > 1e14  # half a unit from the side
+    assert errors(0.5, 4.0, side) == (0, 2**0.5)  # half a unit from the side
+    assert errors(1.0 - 2.0**-52, 4.0, side) == errors(1.0 - 2.0**-52, 4.0, cap) == (0, 0)
     assert error(1.0, 4.5, side) == 0
     assert error(1.0, 3.5, side) > 1e14  # on the side, extended beyond the cap
     assert error(1.0 + 2.0**-52, 4.0, cap) == pytest.approx(2 / (4 + np.hypot(5, 1) + 4))
@@ -144,6 +150,16 @@ def test_the_face_that_was_hit_counts() -> None:
     steep = np.array([[4.0, 1, 0]]) / np.sqrt(17)
     assert error(2.0**-60, 4.0, steep, tent) < 1
     assert error(-(2.0**-60), 4.0, steep, tent) < 1  # at the apex the normal may be that of the other side
+
+
+def test_certificates_of_a_torus_without_a_hole_are_exact_on_its_axis() -> None:
+    """There the surface closes to a cusp: 1e-8 up, it is 1e-16 away."""
+    horn, down = Torus((0, 0, 0), (0, 1, 0), 1, 1, GREY), [[0.0, -1, 0]]
+    for up in (2.0**-27, 2.0**-20, 0.25):
+        rays = certificates.Rays(*map(np.array, ([[0.0, 5, 0]], down, [5 - up], [[0.0, 1, 0]])))
+        found = certificates.certify((horn,), np.array([0]), np.array([0]), rays)
+        away = np.hypot(0.5, up) - 0.5 if up > 0.1 else up * up
+        assert found.backward_error[0] == pytest.approx(away / (regime.U * (5 - up + 5 + 2)), rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])

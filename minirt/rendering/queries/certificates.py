@@ -134,14 +134,15 @@ def exact_turn(turns: Array) -> tuple[DoubleDouble, DoubleDouble]:
 
 STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
 SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
-FITTING = 0.5  # cosine of face and normal; at an apex, where the normal may be any of a cone, no face may fit
+ROUNDED = 16  # roundings of the coordinates by which the point of a normal may lie off the point of the ray
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 
 
-def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> tuple[Array, Vec, Array]:
-    """Find the nearest point of the face whose normal is closest to `normal`, of the nearest face where none fits.
+def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tuple[Array, Vec, Vec]:
+    """Find the nearest point of the nearest face.
 
-    Returns its distance, the face's unit normal there, and the distance by which the point lies beyond the face's end.
+    Returns its distance, or that of the face's end where the point lies beyond it; the face's unit normal there; and
+    of the faces that are nearer than `rounding` the unit normal that is closest to `normal`, else that of the nearest.
     Each step linearises the face about the last foot: the next one lies on that tangent plane, straight below the
     point. Where that ends the foot is on the face, and the face's normal at the foot leads to the point.
     """
@@ -150,8 +151,9 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> tuple[Array, Vec, A
     flat = np.zeros_like(point.x.high)
     ends = [np.fmax.reduce([flat, *amounts[:i], *amounts[i + 1 :]]) for i in range(len(boundary.faces))]
     farther = [np.fmax(np.abs(amount), end) for amount, end in zip(amounts, ends, strict=False)]
-    face = chosen_face(boundary, normal, np.argmin(farther, axis=0))
+    face = np.argmin(farther, axis=0)
     beyond = np.choose(face, ends)
+    fitting = fitting_face(boundary, normal, [away <= rounding for away in farther], face)
     way = Vec(flat, flat, flat)  # from the point to its foot
     for step in range(STEPS):
         if step:
@@ -161,7 +163,9 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> tuple[Array, Vec, A
         change = way - before
         if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
             break
-    return sqrt(dot(way, way)), slope * (1.0 / sqrt(dot(slope, slope))), beyond
+    fitted = height_and_slope(boundary, fitting)[1]
+    normals = (each * (1.0 / sqrt(dot(each, each))) for each in (slope, fitted))
+    return np.fmax(sqrt(dot(way, way)), beyond), *normals
 
 
 def seeded(point: Vec) -> Vec:
@@ -170,14 +174,12 @@ def seeded(point: Vec) -> Vec:
     return Vec(*(DoubleDouble(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
 
 
-def chosen_face(boundary: Boundary, normal: Vec, nearest: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The index of the face whose normal is closest to `normal`, or of the nearest face where none fits."""
+def fitting_face(boundary: Boundary, normal: Vec, near: list[Array], nearest: Integers) -> Integers:
+    """The index of the face, of those that are `near`, whose normal is closest to `normal`; the nearest if none is."""
     slopes = [face.slope for face in boundary.faces]
     cosines = [dot(slope, normal) / sqrt(dot(slope, slope)) + 0.0 * normal.x for slope in slopes]
-    chosen: NDArray[np.int64] = np.where(
-        np.fmax.reduce(cosines) >= FITTING, np.argmax(np.nan_to_num(cosines, nan=-2.0), axis=0), nearest
-    )
-    return chosen
+    fits = np.where(near, np.nan_to_num(cosines, nan=-2.0), -3.0)
+    return np.where(np.any(near, axis=0), np.argmax(fits, axis=0), nearest)
 
 
 def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
@@ -199,7 +201,7 @@ class Rays(NamedTuple):
     origins: Array  # (n, 3)
     directions: Array  # (n, 3) of any length
     distances: Array  # (n,) in scene units
-    normals: Array  # (n, 3); where they are NaN, the nearest face counts as the one that was hit
+    normals: Array  # (n, 3)
 
 
 class Certificate(NamedTuple):
@@ -235,22 +237,23 @@ def certify(shapes: tuple[Shape, ...], owners: Integers, parts: Integers, rays: 
 def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) -> Certificate:
     """Certify hits of shapes of one kind, each of the shape in a row of `fields`.
 
-    The face that was hit is the one whose normal is closest to the hit's, or the nearest one where none fits.
+    The normal belongs to the point in the coordinates of the scene, rounded: at a rim it may be that of either face.
     """
     first = next(iter(fields.points.values()))[rows]  # point that the shape is given by
     magnitude = rays.distances + lengths_of(rays.origins - first) + fields.sizes[rows]
     # Scaled by a power of two all numbers are about 1, so that no product under- or overflows.
     power = -np.frexp(magnitude)[1]
     magnitude, distances = np.ldexp(magnitude, power), np.ldexp(rays.distances, power)
+    rounding = ROUNDED * U * (magnitude + np.ldexp(np.abs(rays.origins).max(axis=1), power))
     d = exact_direction(rays.directions)
     point = exact_point(rays.origins, first, power) + distances * d
     shape = fields.shape(rows, first, power)
     normal = Vec(*rays.normals.T)
-    distance, exact, beyond = foot(kind, shape, point, normal)
+    distance, exact, fitted = foot(kind, shape, point, normal, rounding)
     slope = exact.x * d.x.high + exact.y * d.y.high + exact.z * d.z.high
-    off = normal - exact
+    off = normal - fitted
     return Certificate(
-        np.fmax(distance, beyond) / (U * magnitude),
+        distance / (U * magnitude),
         magnitude / (distances * np.abs(slope)),
         sqrt(dot(off, off)),
     )

@@ -90,10 +90,14 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
 
 
 def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
-    """Yield the shapes that look wrong in a picture that was rendered in float32."""
+    """Yield the shapes that look wrong in a picture that was rendered in float32, and the pairs of surfaces that only
+    float32 takes for one."""
     if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
         for each in stiff_shapes(scene, packing.shape_arrays, width, height):
             if each.figures.get("single", 0.0) > VISIBLE:
+                yield each
+        for each in coincident(scene, packing.shape_arrays, *FEW):
+            if each.figures["in roundings, single"] <= 1 < each.figures["in roundings, double"]:
                 yield each
 
 
@@ -129,18 +133,19 @@ def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray) -> tuple[np.n
 
 
 ACROSS, DOWN = 64, 36  # test rays over the whole picture
+FEW = 16, 9  # of a notice, which takes a sixteenth of the time
 LEAST = 4  # test rays that must show two close surfaces: where surfaces cross, a ray may do so by chance
 MOST_SHAPES = 1000  # shapes or mesh triangles; larger scenes are not tested
 TIE = 4 * ROUNDING  # unit roundoffs up to which `minirt.kernel.trace.closer_hit` takes two surfaces for one
 CLOSE = 1000  # times TIE: surfaces that nearly coincide
 
 
-def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
-    """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye."""
+def coincident(scene: Scene, tables: ShapeArrays, across: int = ACROSS, down: int = DOWN) -> Iterator[Stiff]:
+    """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye by so many rays."""
     if not 2 <= len(tables.owner) <= MOST_SHAPES:
         return
-    y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
-    origin, ways = camera_ray(scene.camera, ACROSS, DOWN, x, y)
+    y, x = np.mgrid[:down, :across].reshape(2, -1) + 0.5
+    origin, ways = camera_ray(scene.camera, across, down, x, y)
     eye = np.array(scene.camera.position, np.float64)
     with np.errstate(all="ignore"):
         t, slopes = all_hits(tables, origin, ways)

@@ -10,10 +10,12 @@ import pytest
 import minirt
 from minirt.fields import MeshFile
 from minirt.kernel.frame import ray_direction
+from minirt.rendering.notices import notices_about
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.stiffness import ACROSS, DOWN, Stiff, coincident, stiff_shapes
-from minirt.scene import Camera, Scene
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
@@ -135,6 +137,17 @@ def test_planes_that_only_float32_takes_for_one() -> None:
     assert near.figures["gap"] == pytest.approx(1e-6, rel=1e-6)
     assert near.figures["in roundings, single"] < 1 < near.figures["in roundings, double"]
     assert close(Plane((0, 0, 9), (0, 0, 1), GREY), Plane((0, 0, 9.1), (0, 0, 1), RED)) == []
+
+
+@pytest.mark.parametrize(("gap", "told"), [(1e-5, True), (1e-2, False), (0.0, False)])  # 0: in float64, too
+def test_a_picture_in_single_precision_tells_surfaces_that_only_float32_takes_for_one(gap: float, told: bool) -> None:
+    floor = Square((0, 0, 9), (0, 0, -1), 8, GREY)
+    carpet = Square((0, 0, 9 - gap), (0, 0, -1), 5, RED)
+    scene, packing = Scene((Ambient(1, GREY), EYE, floor, carpet)), Packing(precision="single")
+    packing.pack(scene, 64, 36)
+    notices = list(notices_about(scene, np.ones((36, 64, 4), np.uint8), (64, 36), packing))
+    start = "single precision cannot show square 1 and square 2: taken for one surface in single precision"
+    assert [each.startswith(start) for each in notices] == [True] * told
 
 
 def test_a_cap_on_a_wall_is_found_and_surfaces_that_cross_are_not() -> None:
