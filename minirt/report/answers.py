@@ -97,7 +97,7 @@ def automatic(found: Findings) -> str:
     others = np.exp(np.interp(np.log(errors), *np.log(uniform).T))
     low, ratio, high = (times / others).T
     faster, slower = (
-        ", ".join(f"{row.asked:g}" for row, so in zip(rows, found, strict=True) if so) for found in (high < 1, low > 1)
+        ", ".join(f"{row.asked:g}" for row, so in zip(rows, each, strict=True) if so) for each in (high < 1, low > 1)
     )
     answer = "Yes" if faster else "No" if slower else "It makes no difference that can be measured"
     if faster and slower:
