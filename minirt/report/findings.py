@@ -26,6 +26,7 @@ PACKAGES = ("numpy", "numba", "llvmlite", "pillow")
 CLEAR = 2.0  # times the error of the reference: from there on an error is known well enough
 LEVEL = 0.004  # RMSE, one of 255 levels
 ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
+WORST = 0.1  # RMSE of a recommended setting, at most, however short the target time
 NEAR = 1.5  # ratio of times up to which they are about equal
 TIMES = (16.0, 100.0, 1000.0)  # target times, milliseconds
 TIME, ERROR = attrgetter("wall_low_ms", "wall_high_ms"), attrgetter("rmse_low", "rmse_high")  # intervals of a row
@@ -120,7 +121,7 @@ class Findings:
 
         Of settings whose intervals overlap the simplest is the best.
         """
-        rows = [row for row in self.pictures if row.options and row.valid]
+        rows = [row for row in self.pictures if row.options and row.valid and row.rmse_high <= WORST]
         found = []
         for most in ERRORS:
             fastest = unbeaten([row for row in rows if row.rmse_high <= most], TIME)
