@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from math import inf
 from operator import index
@@ -100,14 +99,6 @@ def check_whole(name: str, value: Any, least: int, most: float = inf) -> int:
         limits = f"of at least {least}" if most == inf else f"from {least} to {most}"
         raise RenderError(f"{name} must be a whole number {limits}, got {value!r}")
     return index(value)
-
-
-def check_whole_numbers(name: str, values: Any, count: int) -> tuple[int, ...]:
-    """Return the value of an argument if it is so many whole numbers; RenderError, which names the argument, if not."""
-    with suppress(TypeError):
-        if len(numbers := tuple(map(index, values))) == count:
-            return numbers
-    raise RenderError(f"{name} must be {count} whole numbers, got {values!r}")
 
 
 class FileError(MiniRTError):

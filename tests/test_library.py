@@ -70,7 +70,7 @@ def test_an_argument_that_is_no_whole_number_in_its_limits_is_named(
     [
         ({"region": (0, 0, 2.5, 3)}, "region must be 4 whole numbers, got (0, 0, 2.5, 3)"),
         ({"region": 5}, "region must be 4 whole numbers, got 5"),
-        ({"rows": (1,)}, "rows must be 2 whole numbers, got (1,)"),
+        ({"rows": (0, 1.5)}, "region must be 4 whole numbers, got (0, 0, 4, 1.5)"),
         ({"samples": 10**12}, "1000000000000 samples a pixel need about 953674.3 GiB of memory, allowed "),
     ],
 )

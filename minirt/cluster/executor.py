@@ -10,7 +10,6 @@ from concurrent.futures import BrokenExecutor, Executor, Future, InvalidStateErr
 from contextlib import suppress
 from functools import partial
 from itertools import islice
-from math import inf
 from multiprocessing import get_context, parent_process
 from threading import Thread
 from time import perf_counter
@@ -25,7 +24,7 @@ from minirt.scene import Camera
 OF_EACH = 2  # bands of each worker in flight: one is rendered, one waits
 LARGE = 2**16  # bytes of a packed scene that dask keeps, and hands to each worker once
 MOST_PROCESSES = 8  # on this machine; each has its share of the processors
-LATE, LONGER = 60.0, 10  # seconds, and times the longest that one took so far, after which a band is sent once more
+LATE, LONGER = 60.0, 10  # seconds, and times the longest band so far, after which one is late; without any, both
 SILENT, DESERTED = 60.0, 300.0  # seconds without an answer of the scheduler, and without workers, that end the work
 WATCH = 1.0  # seconds between two looks at what is late
 
@@ -42,14 +41,10 @@ class Dispatcher:
         self.executor: Any = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
         self.where = "the executor" if self.client is None else f"the scheduler at {self.client.scheduler.address}"
-        self.last: tuple[object, bytes, Any] = (
-            None,
-            b"",
-            b"",
-        )  # the scene packed last: itself, its bytes, and those sent
-        self.sent: dict[Future[Made], float] = {}  # what is rendered, and the time in seconds when it was sent
-        self.tasks: list[Future[Made]] = []  # at workers: of a band that was late, several
-        self.has_late, self.longest = False, 0.0  # seconds from sending a band to its result
+        self.last: tuple[object, bytes, Any] = None, b"", b""  # a scene, its bytes, and what stands for them at workers
+        self.sent: dict[Future[Made], tuple[float, float]] = {}  # seconds: when it was sent, how long that may take
+        self.tasks: dict[Future[Made], Future[Made]] = {}  # at workers, and whose result is theirs
+        self.has_late, self.longest = False, 0.0  # seconds from sending a band to its end
 
     @property
     def count(self) -> int:
@@ -76,11 +71,13 @@ class Dispatcher:
                     if kept := restore(band):
                         future.set_result(kept)
                     else:
-                        self.send(band, future)
+                        self.send(band, future, LATE)
                 if not running:
                     return
                 future = self.first_made(dict(islice(running.items(), 1)) if in_order else running)
-                self.longest = max(self.longest, perf_counter() - self.sent.pop(future, inf))
+                for task in [task for task, owner in self.tasks.items() if owner is future][1:]:
+                    task.cancel()  # but not the first: a worker that hangs should not get another
+                self.sent.pop(future, None)
                 band = running.pop(future)
                 yield band, self.made_of(band, future)
         finally:
@@ -96,12 +93,13 @@ class Dispatcher:
             if now - seen > DESERTED:
                 raise RenderError(f"{self.where} has had no workers for {DESERTED:.0f} s")
             for future, band in running.items():
-                if self.longest and now - self.sent[future] > max(LATE, LONGER * self.longest):
+                sent, patience = self.sent[future]
+                if now - sent > max(patience, LONGER * (self.longest or LATE)):
                     self.has_late = True
-                    self.send(band, future)
+                    self.send(band, future, 2 * patience)
         return next(iter(made))
 
-    def send(self, band: Job, future: Future[Made]) -> None:
+    def send(self, band: Job, future: Future[Made], patience: float) -> None:
         """Send a band to a worker, whose result will be that of a future unless another one's is first. Scenes that
         differ in the camera alone are packed once."""
         scene, settings = band.scene, band.settings
@@ -122,9 +120,20 @@ class Dispatcher:
             task = self.executor.submit(work, *arguments, band._replace(scene=nowhere, settings=settings), **how)
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
-        self.sent[future] = perf_counter()
-        self.tasks = [*(each for each in self.tasks if not each.done()), task]
-        task.add_done_callback(partial(hand_over, future))
+        self.sent[future] = perf_counter(), patience
+        self.tasks = {each: owner for each, owner in self.tasks.items() if not each.done()} | {task: future}
+        task.add_done_callback(partial(self.hand_over, future, perf_counter()))
+
+    def hand_over(self, future: Future[Made], sent: float, task: Future[Made]) -> None:
+        """Give a future the result of a task, unless it has that of another one."""
+        with suppress(InvalidStateError):
+            if task.cancelled():
+                future.set_exception(BrokenExecutor("has ended, or has cancelled the work"))
+            elif error := task.exception():
+                future.set_exception(error)
+            else:
+                future.set_result(task.result())
+                self.longest = max(self.longest, perf_counter() - sent)
 
     def made_of(self, band: Job, future: Future[Made]) -> Made:
         """Return what is made of a band; RenderError where that has failed."""
@@ -150,17 +159,6 @@ class Dispatcher:
         for process in list((vars(self.executor).get("_processes") or {}).values()):
             process.kill()  # also one that is stopped
         self.executor.shutdown(wait=not unfinished, cancel_futures=True)
-
-
-def hand_over(future: Future[Made], task: Future[Made]) -> None:
-    """Give a future the result of a task, unless it has that of another one."""
-    with suppress(InvalidStateError):
-        if task.cancelled():
-            future.set_exception(BrokenExecutor("has ended, or has cancelled the work"))
-        elif error := task.exception():
-            future.set_exception(error)
-        else:
-            future.set_result(task.result())
 
 
 def local_pool() -> Executor:

@@ -50,8 +50,8 @@ class Journal:
         """Go on with the journal of an output, or delete it.
 
         One that `keeps_all` bands, of which the output is put together, begins anew where it is of other work. Without
-        parts it has what is done, and not what was rendered. `again` and `what` are words of the note: who goes on, and
-        with what. RenderError where another program writes it, and where it is of other work.
+        parts it has what is done, and not what was rendered. `again` and `what` are words of the note. RenderError
+        where another program writes it, and where it is of other work.
         """
         self.path = path_for(output)
         self.start = TITLE + work.encode() + b"\n"

@@ -139,20 +139,16 @@ def decode_xpm(path: Path, data: bytes) -> np.ndarray:
         raise FileError(path, f"is a damaged XPM picture: {error}") from None
 
 
-class LimitError(ValueError):
-    """A file has more parts than a picture needs."""
-
-
 class Parts(io.BytesIO):
     """The bytes of a file. Pillow takes 1 us for each part of it, and a file may have a part for each byte."""
 
     reads = 0
 
     def read(self, size: int | None = -1) -> bytes:
-        """Return the next bytes; LimitError after `MOST_PARTS` calls."""
+        """Return the next bytes; TooLargeError after `MOST_PARTS` calls."""
         self.reads += 1
         if self.reads > MOST_PARTS:
-            raise LimitError(f"it has more than {MOST_PARTS:,} parts")
+            raise TooLargeError(f"is a damaged picture (it has more than {MOST_PARTS:,} parts)")
         return super().read(size)
 
 
@@ -170,7 +166,7 @@ def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
             image = pillow.open(Parts(data), formats=FORMATS)  # reads the header alone
             check_size(path, *image.size)
             if image.format == "JPEG" and data.count(SCAN) > MOST_SCANS:
-                raise LimitError(f"it has more than {MOST_SCANS:,} scans")
+                raise TooLargeError(f"is a damaged picture (it has more than {MOST_SCANS:,} scans)")
             pixels = np.asarray(image if image.mode in DEEP_MODES else image.convert("RGB"))
     except (FileError, TooLargeError):
         raise
@@ -180,8 +176,6 @@ def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
         raise FileError(path, "is not a picture") from None
     except MemoryError:
         raise FileError(path, "needs more memory than there is to decode it") from None
-    except LimitError as error:
-        raise FileError(path, f"is a damaged picture ({error})") from None
     except Exception as error:  # damaged files make decoders raise anything, and quote what they have read
         is_cut = isinstance(error, EOFError) or "truncated" in str(error)
         raise FileError(path, "is a damaged picture" + is_cut * ": the file ends too early") from None

@@ -13,7 +13,7 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 import numpy as np
 
 from minirt.element import Element, fields_of
-from minirt.errors import RenderError, check_whole, check_whole_numbers
+from minirt.errors import RenderError, check_whole
 from minirt.fields import MeshFile
 from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
@@ -151,8 +151,7 @@ def render(
     if rows is not None:
         if settings.get("region") is not None:
             raise RenderError("a picture has a region or rows, not both")
-        first, end = check_whole_numbers("rows", rows, 2)
-        settings["region"] = (0, first, size[0], end - first)
+        settings["region"] = (0, rows[0], size[0], rows[1] - rows[0])
     return rendered(scene, size, RenderSettings(linear=linear, **settings))
 
 

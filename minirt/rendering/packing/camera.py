@@ -12,11 +12,12 @@ from __future__ import annotations
 
 from functools import cache, lru_cache
 from math import cos, pi, radians, sin, tan
+from operator import index
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.errors import RenderError, check_whole_numbers
+from minirt.errors import RenderError
 from minirt.fields import Triple, clamp, upright
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.lanes import width
@@ -69,7 +70,10 @@ def cut_for(region: tuple[int, int, int, int] | None, width: int, height: int) -
     if region is None:
         region = Region(0, 0, width, height)
         return Cut(Crop(width, height), (height, width), (slice(None), slice(None)), region)
-    x, y, across, down = check_whole_numbers("region", region, 4)
+    try:
+        x, y, across, down = map(index, region)
+    except (TypeError, ValueError):
+        raise RenderError(f"region must be 4 whole numbers, got {region!r}") from None
     if across < 1 or down < 1:
         raise RenderError(f"a region has at least 1x1 pixels, got {across}x{down}")
     if x < 0 or y < 0 or x + across > width or y + down > height:

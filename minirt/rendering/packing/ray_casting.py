@@ -41,7 +41,7 @@ def packed_columns(rows: Any, *extra: int) -> Any:
     )
 
 
-def packed_shape(shape: Shape) -> Any:
+def pack_one(shape: Shape) -> Any:
     """Pack a shape, or the triangles of a mesh, as numbers of numpy: their quotients by 0 are infinite."""
     packed = shape.pack()
     parts = (Vec(*map(np.asarray, (v.x, v.y, v.z))) if isinstance(v, Vec) else np.asarray(v) for v in packed)
@@ -58,7 +58,7 @@ def cast(packed: Any, origin: Vec, direction: Vec) -> np.ndarray:
 def distances_of(shape: Shape, origin: Vec, direction: Vec) -> np.ndarray:
     """Return the distances at which rays hit a shape, infinite where they do not."""
     if not isinstance(shape, Mesh):
-        return cast(packed_shape(shape), origin, direction)
+        return cast(pack_one(shape), origin, direction)
     arrays = ShapeArrays()
     arrays.update((shape,))
     return nearest_hits(arrays, origin, direction)[0]
