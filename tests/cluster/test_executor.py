@@ -94,12 +94,8 @@ def dask_cluster(folder: Path) -> Iterator[Cluster]:
 
     def process(name: str, *arguments: str) -> subprocess.Popen[Any]:
         command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments, "--no-dashboard"]
-        how = {
-            "env": os.environ | {"PYTHONPATH": str(ROOT)},
-            "stdout": subprocess.DEVNULL,
-            "stderr": subprocess.DEVNULL,
-        }
-        return stack.enter_context(started(command, **how))
+        silent = dict.fromkeys(("stdout", "stderr"), subprocess.DEVNULL)
+        return stack.enter_context(started(command, env=os.environ | {"PYTHONPATH": str(ROOT)}, **silent))
 
     with ExitStack() as stack:
         scheduler = process("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
@@ -118,30 +114,6 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     """A cluster of these tests."""
     with dask_cluster(tmp_path_factory.mktemp("dask")) as made:
         yield made
-
-
-@pytest.fixture
-def client(cluster: Cluster) -> Any:
-    """The client of the cluster."""
-    return cluster.client
-
-
-@OF_DASK
-@pytest.mark.parametrize("large", [False, True])
-def test_a_worker_that_hangs_is_passed_over(
-    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, large: bool
-) -> None:
-    """A large scene is sent to one worker, which hands it to the others, and may hang."""
-    monkeypatch.setattr(executor, "LATE", 0.1)
-    monkeypatch.setattr(executor, "LARGE", 0 if large else 2**30)
-    scenes = [BALL.replace(BALL.spheres[0], diameter=2 + n / 9 + large) for n in range(9)]
-    cluster.workers[0].send_signal(signal.SIGSTOP)
-    try:
-        pictures = list(minirt.render_all(scenes, 80, 60, executor=cluster.client))
-    finally:
-        cluster.workers[0].send_signal(signal.SIGCONT)
-    for scene, image in zip(scenes, pictures, strict=True):
-        assert np.array_equal(image.array, minirt.render(scene, 80, 60).array)
 
 
 @OF_DASK
@@ -165,43 +137,48 @@ def test_the_end_of_a_cluster_is_told_with_what_is_kept(
         monkeypatch.setattr(render.Share, "note", end)
         assert main([*arguments, "--cluster", address]) == 1
     why = "has ended, or .*" if ending == "scheduler" else "has had no workers for 0 s"
-    told = (
-        rf"Error\nthe scheduler at {address} {why}\n\d of \d+ bands of the picture are kept in \.a\.tif\.journal; .*\n"
-    )
-    assert re.fullmatch(told, capsys.readouterr().err)
+    kept = r"\d of \d+ bands of the picture are kept in \.a\.tif\.journal; .*\n"
+    assert re.fullmatch(rf"Error\nthe scheduler at {address} {why}\n{kept}", capsys.readouterr().err)
     assert main(arguments) == 0
     assert np.array_equal(tifffile.imread("a.tif"), minirt.render(BALL, 300, 1200).array)
 
 
 @OF_DASK
-def test_bands_are_those_of_one_machine_though_a_worker_is_killed(client: Any, tmp_path: Path) -> None:
-    scene = with_files(tmp_path / "home")
+@pytest.mark.parametrize(("harm", "when", "large"), [("STOP", 0, False), ("STOP", 0, True), ("KILL", 2, False)])
+def test_bands_are_those_of_one_machine_though_a_worker_hangs_or_is_killed(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, harm: str, when: int, large: bool
+) -> None:
+    """After so many bands. A large scene is sent to one worker, which hands it to the others, and may hang."""
+    monkeypatch.setattr(executor, "LATE", 0.1)
+    monkeypatch.setattr(executor, "LARGE", 0 if large else 2**30)
+    scene, victim = with_files(tmp_path / "home"), cluster.workers[0]
+    picture = minirt.render(scene, 300, 500, samples=4)
 
-    def kill(done: int, _: int) -> None:
-        if done == 2:
-            os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+    def attack(done: int, _: int) -> None:
+        if done == when:
+            victim.send_signal(getattr(signal, f"SIG{harm}"))
 
-    for workers in (client, client.get_executor()):
-        minirt.render_to(tmp_path / "a.tif", scene, 300, 500, samples=4, executor=workers, on_progress=kill)
-        picture = minirt.render(scene, 300, 500, samples=4)
+    for workers in (cluster.client, cluster.client.get_executor()):
+        minirt.render_to(tmp_path / "a.tif", scene, 300, 500, samples=4, executor=workers, on_progress=attack)
         assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture.array)
         (tmp_path / "a.tif").unlink()
+    victim.send_signal(signal.SIGCONT)
 
 
 @OF_DASK
-def test_a_worker_uses_its_share_of_the_processors(client: Any) -> None:
-    assert client.submit(share_of_cores, pure=False).result() == 1
+def test_a_worker_uses_its_share_of_the_processors(cluster: Cluster) -> None:
+    assert cluster.client.submit(share_of_cores, pure=False).result() == 1
     assert share_of_cores() is None  # outside of workers: all of them
 
 
 @OF_DASK
 def test_the_program_sends_a_film_to_the_workers(
-    client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    cluster: Cluster, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     BALL.save(tmp_path / "ball.rt")
     monkeypatch.chdir(tmp_path)
     arguments = "ball.rt", "--turntable", "5", "--size", "60x30", "-o"
-    assert main([*arguments, "a.gif", "--cluster", client.scheduler.address]) == 0
+    assert main([*arguments, "a.gif", "--cluster", cluster.client.scheduler.address]) == 0
     assert main([*arguments, "b.gif"]) == 0
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert capsys.readouterr() == ("", "")
