@@ -66,6 +66,7 @@ def refuse(path: Path, _: bytes) -> None:
 
 
 TABLE = obj_lines.corner_table
+LENS = "# --precision single -o out.png\n" + FRAME.replace("60", "60 lens:1 focus:1e-50") + "sp 0,0,5 1 1,2,3"
 FAR = f"# -o out.png\n{FRAME}sp -1e15,0,-9e14 1e15 9,9,9"
 LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
 
@@ -78,7 +79,7 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
         ("pictures", "", "minirt.materials.pictures.decode_by_pillow", refuse, AssertionError),
         ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),
         ("arguments", "", "minirt.cli.MiniRTError", SceneError, MiniRTError),
-        ("extremes", "", "minirt.rendering.packing.camera.CLOSEST", 0.0, Warning),
+        ("extremes", LENS, "minirt.rendering.packing.camera.CLOSEST", 0.0, Warning),
         ("extremes", "", "minirt.rendering.queries.preview.FARTHEST", inf, AssertionError),
     ],
 )

@@ -21,7 +21,7 @@ from minirt.materials import Placement, pictures
 from minirt.materials.pictures import check_textures
 from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, PLAIN
 from minirt.rendering.packing.lights import Colours, colours_of
-from minirt.rendering.packing.ray_casting import cast, pack_one
+from minirt.rendering.packing.ray_casting import cast
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
@@ -197,7 +197,7 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
     plane = shape.flat()
     if plane:
         return bool(np.dot(np.subtract(point, plane[0]), plane[1]) < 0.0)
-    packed, origin = pack_one(shape), Vec(*point)
+    packed, origin = shape.pack(), Vec(*point)
     kind = kind_of_packed(type(packed))
     distances = np.atleast_1d(cast(packed, origin, TOWARDS))
     first = np.argmin(distances)

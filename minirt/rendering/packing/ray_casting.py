@@ -41,13 +41,6 @@ def packed_columns(rows: Any, *extra: int) -> Any:
     )
 
 
-def pack_one(shape: Shape) -> Any:
-    """Pack a shape, or the triangles of a mesh, as numbers of numpy: their quotients by 0 are infinite."""
-    packed = shape.pack()
-    parts = (Vec(*map(np.asarray, (v.x, v.y, v.z))) if isinstance(v, Vec) else np.asarray(v) for v in packed)
-    return type(packed)(*parts)
-
-
 def cast(packed: Any, origin: Vec, direction: Vec) -> np.ndarray:
     """Return the distances at which rays hit packed shapes, infinite where they do not."""
     with np.errstate(all="ignore"):
@@ -58,7 +51,7 @@ def cast(packed: Any, origin: Vec, direction: Vec) -> np.ndarray:
 def distances_of(shape: Shape, origin: Vec, direction: Vec) -> np.ndarray:
     """Return the distances at which rays hit a shape, infinite where they do not."""
     if not isinstance(shape, Mesh):
-        return cast(pack_one(shape), origin, direction)
+        return cast(shape.pack(), origin, direction)
     arrays = ShapeArrays()
     arrays.update((shape,))
     return nearest_hits(arrays, origin, direction)[0]

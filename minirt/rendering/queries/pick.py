@@ -15,7 +15,7 @@ from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.trace import COINCIDENT, closer_hit
 from minirt.lanes import Vec
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, pack_one, packed_columns
+from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
@@ -62,9 +62,9 @@ def surface_normal(shape: Shape, point: Triple, direction: Triple) -> Triple:
     """The unit normal of a shape at a point of its surface, towards where a ray of this direction comes from."""
     with np.errstate(all="ignore"):
         if isinstance(shape, Mesh):
-            t = cast(pack_one(shape), Vec(*point) - Vec(*direction), Vec(*direction))
+            t = cast(shape.pack(), Vec(*point) - Vec(*direction), Vec(*direction))
             shape = shape.some(np.array([np.argmin(np.abs(t - 1.0))]))
-        packed = pack_one(shape)
+        packed = shape.pack()
         _, normal = kind_of_packed(type(packed)).surface(packed, Vec(*point))
     x, y, z = (float(np.ravel(part)[0]) for part in (normal.x, normal.y, normal.z))
     facing = -1.0 if x * direction[0] + y * direction[1] + z * direction[2] > 0 else 1.0
