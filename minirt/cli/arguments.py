@@ -115,8 +115,8 @@ output:
     linear light; - writes PNG to standard output; out/{{name}}.png is for several scenes
 --size=WxH  size of the picture in pixels
 --region=X,Y,W,H  with -o: render this rectangle of the picture alone, at column X and row Y
---samples=N  rays for each pixel ({SAMPLES}), or auto: as many as each part of the picture needs; in the window: rays at
-    edges while nothing moves ({WINDOW_SAMPLES})
+--samples=N  rays for each pixel ({SAMPLES}), or auto: as many as each part of the picture needs, 4096 at most;
+    in the window: rays at edges while nothing moves ({WINDOW_SAMPLES})
 --turntable=N  with -o: N pictures from all around the scene; .gif, .webp, .apng, .mp4 and .webm are one file, spin.png
     is spin-0001.png, ...
 --frames=A-B  with --turntable: only these of its pictures

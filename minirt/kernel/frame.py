@@ -8,6 +8,7 @@ from typing import Any
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, fetch_add, store_estimate, store_packet
 from minirt.kernel.scene_arrays import SceneArrays, vector
 from minirt.kernel.shading.lights import remember_sample, sampled_eye
+from minirt.kernel.shading.patterns import remember_spacing
 from minirt.kernel.shading.texturing import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.trace import is_empty
@@ -118,6 +119,7 @@ def frame(
                     if empty:
                         store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
                         continue
+                    remember_spacing(scene, memory, samples, estimate)
                     radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
                     if rarely(samples > 1):
                         radiance = accumulate(radiance, sums, place, sample) / samples

@@ -138,8 +138,8 @@ class Marble(Pattern):
     They cover its texture and checkerboard, and lie below wood and clouds, if it has those, too.
 
     The surface is lit as if it were higher where the second colour is, by `height` sizes; a negative height makes
-    grooves. `octaves` are levels of detail, each twice as fine as the one before; those that are finer than a pixel
-    fade.
+    grooves. `octaves` are levels of detail, each twice as fine as the one before; those that are finer than the
+    spacing of a pixel's samples fade.
 
         sp 0,0,20 8 235,232,225 marble:1.5,70,75,90
     """

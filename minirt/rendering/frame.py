@@ -15,6 +15,7 @@ import numpy as np
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT, SUMS
+from minirt.kernel.shading.patterns import SPACING
 from minirt.lanes import width
 from minirt.rendering.packing import camera
 from minirt.rendering.packing.camera import GOLDEN_RATIO, Crop
@@ -119,33 +120,40 @@ def sum_buffer(arrays: Any) -> np.ndarray:
 def thread_memory(arrays: Any) -> np.ndarray:
     """Allocate the memory of a thread from one packet to the next, still empty: see `minirt.kernel.trace`."""
     kept = 2 * width(arrays.camera) if arrays.soft is not None else 0
-    return np.zeros((len(arrays.lights) + 1, 4 + kept), arrays.lights.dtype)
+    memory = np.zeros((len(arrays.lights) + 1, 4 + kept), arrays.lights.dtype)
+    memory[-1, SPACING] = 1.0
+    return memory
 
 
 # Numbers of samples that a packet may have, two for each doubling; a level is an index of them.
-COUNTS = np.array([1, 2, *(size * 2**k for k in range(1, 16) for size in (1.5, 2))], np.int32)
+COUNTS = np.array([1, 2, *(size * 2**k for k in range(1, 12) for size in (1.5, 2))], np.int32)
 VARIANTS = 16  # pairs of references for few samples, so that an edge along a row of pixels is met at many distances
 REFERENCE_ROWS = 256  # of the table, for one number of samples, that more than one pair may take
 
 
 class SampleTable:
-    """Sample positions (rows, pixels of a packet, 2) for some levels, and where each begins.
+    """Sample positions (rows, pixels of a packet, 2) for packets of some levels, and where each level begins.
 
     `with_places` gives each sample places in the discs of lens and lights, too: (rows, pixels, 6). Drawn samples then
-    have variants, too: see `minirt.rendering.packing.camera`.
+    have variants, too: see `minirt.rendering.packing.camera`. There are no more variants than packets.
     """
 
-    def __init__(self, levels: np.ndarray, pixels: int, with_places: bool = False) -> None:
+    def __init__(
+        self, levels: np.ndarray, pixels: int, with_places: bool = False, with_references: bool = True
+    ) -> None:
         self.first = np.zeros(len(COUNTS), np.int32)  # row of the drawn samples of a level
         self.reference = np.zeros(len(COUNTS), np.int32)  # row of its first pair of references
         self.variants = np.ones(len(COUNTS), np.int32)
         self.drawn_variants = np.ones(len(COUNTS), np.int32)
         parts, rows = [], 0
-        for level in levels.tolist():
-            count = int(COUNTS[level])
-            self.variants[level] = min(max(REFERENCE_ROWS // (2 * REFERENCE_SAMPLES * count), 1), VARIANTS)
-            self.drawn_variants[level] = camera.variants_of(count) if with_places else 1
-            drawn, pairs = int(self.drawn_variants[level]), int(self.variants[level])
+        for level, packets in enumerate(np.bincount(levels).tolist()):
+            count, most = int(COUNTS[level]), 2 ** (packets - 1).bit_length()
+            if not packets:
+                continue
+            pairs = min(max(REFERENCE_ROWS // (2 * REFERENCE_SAMPLES * count), 1), VARIANTS, most)
+            drawn = min(camera.variants_of(count), most) if with_places else 1
+            self.variants[level], self.drawn_variants[level] = pairs, drawn
+            pairs *= with_references
             self.first[level], self.reference[level] = rows, rows + count * drawn
             parts.append(positions_of(count, drawn, pairs, pixels, with_places))
             rows += count * (drawn + 2 * REFERENCE_SAMPLES * pairs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from minirt.rendering.sampling.auto import AutoSampler, CancelledError
 from minirt.rendering.sampling.packets import EDGE, Packets, contrast_classes
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.threads import Job, ThreadPool
+
+Kernel = tuple[Choice, list[Any]]  # a kernel, and the scene in the words that it takes
 
 
 class FrameRunner:
@@ -47,15 +50,17 @@ class FrameRunner:
         self.next_row = np.zeros(frames, np.int64)
         return self.next_row
 
-    def run(self, frames: list[Frame], threads: int) -> None:
+    def run(self, frames: list[Frame], threads: int, kernel: Kernel | None = None) -> Kernel:
         """Render frames of one scene, one after the other, on so many threads, which share the rows of each; an error
-        of any thread is raised.
+        of any thread is raised. Return the kernel, for further frames of the scene.
 
         A thread that finds no more rows of a frame goes on with the next one. The caller's thread only waits, so that
         Ctrl+C reaches it.
         """
-        choice = self.choice = self.kernels.choose(frames[0])
-        scene = words_of(choice.scene)  # which holds for all frames
+        if kernel is None:
+            self.choice = self.kernels.choose(frames[0])
+            kernel = self.choice, words_of(self.choice.scene)  # which holds for all frames
+        choice, scene = kernel
         memories = [(thread_memory(frames[0].scene), sum_buffer(frames[0].scene)) for _ in range(threads)]
         start = perf_counter()
         jobs: list[Job] = []
@@ -65,6 +70,7 @@ class FrameRunner:
         self.run_jobs(jobs)
         self.kernels.count(choice, perf_counter() - start)
         self.not_finite += int(sum(memory[-1, 1] for memory, _ in memories))
+        return kernel
 
     def cancel(self) -> None:
         """End the frames that are being rendered, soon and incomplete; callable from any thread."""
@@ -103,18 +109,19 @@ class FrameRunner:
         with_places = has_apertures(arrays)
         lanes = width(arrays.camera)
         packet_width = lanes // PACKET_HEIGHT
+        kernel: Kernel | None = None
 
-        def draw(positions: np.ndarray, plan: np.ndarray, errors: np.ndarray, is_first: bool) -> None:
-            counters = self.new_counters(1 + is_first)
+        def draw(positions: np.ndarray, plan: np.ndarray, errors: np.ndarray) -> None:
+            nonlocal kernel
+            counter = self.new_counters(1)
             if self.cancellations != cancellations:
                 raise CancelledError
             rays = packet_rays(arrays.camera, positions[..., :2])
             if with_places:
                 rays = with_apertures(rays, positions[..., 2:], arrays.lens)
-            planned = frame._replace(next_row=counters[-1:], rays=rays, plan=plan, errors=errors)
-            whole = [frame._replace(next_row=counters[:1], rays=rays[:1])] if is_first else []
-            self.run([*whole, planned], self.threads)
-            if (counters >= CANCELLED).any():
+            planned = frame._replace(next_row=counter, rays=rays, plan=plan, errors=errors)
+            kernel = self.run([planned], self.threads, kernel)
+            if counter[0] >= CANCELLED:
                 raise CancelledError
 
         classify = partial(contrast_classes, pixels, packet_width, self.run_jobs, self.threads)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 ROUNDING = 1 / sqrt(12) / 255  # RMSE of rounding light to 8 bits, where all fractions of a level are as likely
 ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
-MOST_SAMPLES = 2**16  # of a pixel
+MOST_SAMPLES = 2**12  # of a pixel, by `--samples auto`
 
 
 class Outcome(NamedTuple):

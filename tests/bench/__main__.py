@@ -1,4 +1,4 @@
-"""`python -m tests.bench [--quick]`: measure miniRT beside other renderers: frames, starts, and growing scenes."""
+"""`python -m tests.bench [--quick]`: measure frames, starts, and growing scenes beside others, and sampling."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from minirt.rendering import Renderer
 from minirt.rendering.threads import usable_cores
 from minirt.report.bench import moved, runs
 from minirt.report.findings import processor
-from tests.bench import scenes, starts
+from tests.bench import sampling, scenes, starts
 from tests.bench.measure import Setting, System, available, table, take_turns
 from tests.bench.peers.embree import Embree
 from tests.bench.peers.programs import PovRay, Tachyon
@@ -84,6 +84,8 @@ def main(quick: bool) -> None:
     grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= most]
     growth = take_turns(own, grown, grown_rounds, seconds)
     print(table(growth, "spheres in view"), end="\n\n")
+
+    print(sampling.summary(sampling.cells(9 if quick else 100)), end="\n\n", flush=True)
 
     for system in systems:
         print(f"{system.name}: {system.how}")

@@ -257,7 +257,7 @@ def test_errors_are_those_of_light_and_of_the_levels_that_stand_for_it(tone: str
         assert outcome.error <= error
         shown = np.minimum(tone_named(tone).light, 1.0)[pixels[..., 2::-1]]
         true = np.sqrt(np.square(shown - truth).mean())
-        assert 1 / 1.5 < outcome.error_of_bytes / true < 1.5
+        assert 1 / 1.5 < outcome.error_of_bytes / true < 2.5  # in doubt the estimate is too large
         assert outcome.rounding > 0
 
 

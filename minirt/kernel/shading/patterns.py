@@ -4,15 +4,16 @@ A pattern gives each point of space a share from 0 to 1. By this share a second 
 the surface is raised, as a bump map raises it. A texture of space needs no coordinates on the surface: it has no seams.
 
 The share follows from fractal noise: octaves of gradient noise, each twice as fine and half as high as the one before.
-Octaves, veins and rings that are finer than a pixel fade to their mean, as in Advanced RenderMan (Apodaca and Gritz
-1999): distant patterns neither flicker nor show a moire.
+Octaves, veins and rings that are finer than the spacing of samples fade to their mean, as in Advanced RenderMan
+(Apodaca and Gritz 1999): distant patterns neither flicker nor show a moire. A pattern with faded octaves has not quite
+its own mean: more samples fade less, and references, which tell the error of other samples, fade nothing.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import has_rows, vector
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
 from minirt.lanes import (
     Number,
@@ -59,6 +60,7 @@ MARBLE, WOOD, CLOUDS = 0, 1, 2  # kinds of patterns
 KIND, COLOUR, OCTAVES, PER_SIZE, ORIGIN, FRAME = 0, 1, 4, 5, 6, 9  # columns of `Patterns.rows`
 COLUMNS = 18
 FLATTEST = 2.0**-10  # least cosine between a ray and a normal for the footprint of a pixel
+SPACING = 2  # column of the last row of `memory` with the distance of samples, in pixels
 
 
 class Fractal(NamedTuple):
@@ -73,8 +75,8 @@ class Fractal(NamedTuple):
 def fractal_noise(p: Vec, footprint: Number, octaves: int, frequency: float, stretch: float, fold: float) -> Fractal:
     """Sum octaves of noise at p. A cell of the first one is 1 / `frequency` wide, and along z `stretch` times as long.
 
-    With a `fold` of 1 it is turbulence: the sum of absolute values, less their mean. `footprint` is the width of a
-    pixel.
+    With a `fold` of 1 it is turbulence: the sum of absolute values, less their mean. `footprint` is the distance of
+    samples.
     """
     zero = splat(0.0, p.x)
     total, fine, slope, fine_slope = zero, zero, Vec(zero, zero, zero), Vec(zero, zero, zero)
@@ -97,7 +99,7 @@ def fractal_noise(p: Vec, footprint: Number, octaves: int, frequency: float, str
 
 
 def faded(footprint: Number) -> Number:
-    """Return how much of a wave is lost, from 0 to 1, to a pixel that is `footprint` wavelengths wide."""
+    """Return how much of a wave is lost, from 0 to 1, to samples that are `footprint` wavelengths apart."""
     return smoothstep(clamp_to_unit((footprint - SHARP) * (1.0 / (GONE - SHARP))))
 
 
@@ -155,7 +157,7 @@ def apply_patterns(
 ) -> tuple[Vec, Vec]:
     """Apply the patterns of shape `index`, one after the other, to its shading normals and colours at some points.
 
-    `footprint` is the width of a pixel on the surface.
+    `footprint` is the distance of samples on the surface.
     """
     if has_rows(patterns.ranges):
         for i in range(patterns.ranges[index, 0], patterns.ranges[index, 1]):
@@ -176,6 +178,12 @@ def raised(normal: Vec, gradient: Vec) -> Vec:
     return unit(normal - (gradient - dot(gradient, normal) * normal))
 
 
+def remember_spacing(scene: SceneArrays, memory: Any, samples: int, estimate: int) -> None:
+    """Remember the distance, in pixels, of so many samples of a pixel; 0 for those of references, estimates after 0."""
+    if scene.patterns is not None:
+        memory[scene.lights.shape[0], SPACING] = 1.0 / sqrt(1.0 * samples) if estimate == 0 else 0.0
+
+
 def pixel_footprint(camera: Any, point: Vec, t: Number, direction: Vec, normal: Vec) -> Number:
     """Return the width of a pixel on a surface that a ray meets after the distance t: of a square of the same area.
 
@@ -188,7 +196,7 @@ def pixel_footprint(camera: Any, point: Vec, t: Number, direction: Vec, normal: 
 
 
 def pattern_at(row: Any, point: Vec, footprint: Number) -> tuple[Number, Vec]:
-    """Return the share of a pattern at some points, and its gradient; `footprint` is the width of a pixel there."""
+    """Return the share of a pattern at some points, and its gradient; `footprint` is the distance of samples there."""
     per_size = row[PER_SIZE]
     x, y, z = vector(row, FRAME), vector(row, FRAME + 3), vector(row, FRAME + 6)
     offset = per_size * (point - vector(row, ORIGIN))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, shading, surface, vector
-from minirt.kernel.shading.patterns import apply_patterns, pixel_footprint
+from minirt.kernel.shading.patterns import SPACING, apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
 from minirt.kernel.trace import ROUNDING, of_shape
 from minirt.lanes import (
@@ -136,17 +136,17 @@ def surfaces(
     if rarely(remaining) and not any(hit & (owner == index)):
         index = int(lane(owner, first(hit)))
         remaining = hit & (owner != index)
-    result = surface_at(scene, index, point, t, direction)
+    result = surface_at(scene, memory, index, point, t, direction)
     while rarely(remaining):
         index = int(lane(owner, first(remaining)))
         owned = remaining & (owner == index)
-        result = where(owned, surface_at(scene, index, point, t, direction), result)
+        result = where(owned, surface_at(scene, memory, index, point, t, direction), result)
         remaining = remaining & ~owned
     memory[scene.lights.shape[0], 0] = index
     return result
 
 
-def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction: Vec) -> Surface:
+def surface_at(scene: SceneArrays, memory: Any, index: int, point: Vec, t: Number, direction: Vec) -> Surface:
     """Compute the surface of one shape for all rays of the packet, which come in a `direction` from a distance t."""
     on, normal, base_normal = surface_of(scene, index, point)
     colour = row_of(scene.colours_and_extents, index, point.x)
@@ -156,7 +156,8 @@ def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction:
             scene.surface_maps, scene.groups, index, scene.slots[index], on, base_normal, colour
         )
     if scene.patterns is not None:
-        footprint = pixel_footprint(scene.camera, on, t, direction, normal)
+        spacing = memory[scene.lights.shape[0], SPACING]
+        footprint = spacing * pixel_footprint(scene.camera, on, t, direction, normal)
         shading_normal, colour = apply_patterns(scene.patterns, index, on, footprint, shading_normal, colour)
     side = where(dot(normal, direction) > 0.0, splat(-1.0, point.x), 1.0)
     behind = side < 0.0

@@ -1,23 +1,26 @@
-"""The packets of a picture in the making: their contrast classes, numbers of samples, errors, and what more they need.
+"""The packets of a picture in the making: their contrast classes, numbers of samples, and what error they leave.
 
 Errors of few samples sit at edges of objects, shadows and textures, all of which show as contrast between neighbouring
 pixels (Whitted, An improved illumination model for shaded display, 1980, takes more samples where neighbours differ).
 
 Where n samples lie evenly in a pixel with an edge, the squared error is about c / n^1.5 (Mitchell, Consequences of
-stratified sampling in graphics, 1996). To reach a sum of such errors at the least cost, the sum of n, each packet gets
-a number of samples in proportion to c^0.4.
+stratified sampling in graphics, 1996). To reach a sum of such errors at the least cost, the sum of n, each class of
+packets with about as much contrast gets a number of samples in proportion to c^0.4.
 
-c is the mean of the probes of all packets of a class, those with about as much contrast. A class of which few were
-probed may have missed something, so that some probes as one expects from the other classes, in proportion to the
-square of the contrast, are counted with its own. And since all samples of a picture may have missed something, one
-sample more than they are counts as if it differed.
+c is the mean of the probes of a class and of some more that found what its contrast lets expect. So few probes suffice,
+and none that met no edge says that there is none. How far the sum of all errors is right is told by a pilot: probes
+that have the samples of the finished picture. Some are chosen in proportion to the error that they are expected to
+have, some evenly, so that a class that was misjudged is found, too (Hesterberg, Weighted average importance sampling
+and defensive mixture distributions, 1995). All packets get a share of what uniform sampling would need, since a few
+whose first sample missed an edge can have most of the error.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from math import sqrt
+from math import inf, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +29,6 @@ from minirt.kernel.machine_code.library import Call
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering.frame import COUNTS, random_numbers
 from minirt.rendering.outcome import ERROR_EXPONENT
-from minirt.rendering.packing.camera import GOLDEN_RATIO
 from minirt.rendering.threads import Job
 from minirt.rendering.tone_mapping import PLAIN, rounding_error, tone_named
 
@@ -98,55 +100,71 @@ def estimated_error(
     return sqrt(total / (before.size * 3 / 4) / (1 + ratio) + rounding) / 255
 
 
-# Squared error of a picture of which one sample differs from all others, by a quarter in one of three colours.
-UNSEEN_ERROR = 1 / 16
-PRIOR = 4.0  # probes that the expectation of a class counts as
-EXPECTED = 4.0 ** np.arange(CLASSES)  # ratios of c
+# Measured on scenes drawn at random: c grows about threefold from class to class, and the time of a sample by a fifth,
+# since mirrors, glass and many shapes make contrast.
+EXPECTED = 3.0 ** np.arange(1 - CLASSES, 1)  # ratios of c, to that of the highest class
+EDGE_ERROR = 0.04  # c of the highest class, for each pixel of a packet; about the upper quartile
+SECONDS = 2.0 ** (np.arange(CLASSES) / 4)  # ratios of the time of a sample
+PRIOR = 4.0  # probes that what is expected counts as: c of a class, or the sum of the errors of a pilot
+SPREAD = 3.0  # standard deviation of the error of a packet by what is expected of it, at least
+CERTAINTY = 2.0  # standard errors of the estimate that are added to it
+EVENLY = 0.6  # share of the pilot that is chosen evenly
+LEAST_SHARE = 1 / 6  # of what uniform samples would be, for each packet
+WORTH = 0.8  # time of samples by class, as a share of that of uniform ones, from which on they are not worth it
+MOST_CHANGE = 4.0  # factor by which a pilot changes c of one class beside the others
+LEAST = 1e-12  # of a class as a share of the greatest
+EVEN = 0.4  # square of the mean error of packets, as a share of the mean square, from which on they are all alike
+MUCH = 4.0  # squared error of one sample a pixel, as a multiple of the goal, that needs several samples
+NEAR = 2  # classes by which a packet may be below its neighbours
 SEARCHES, PRICES = 3, 24  # for the price of an error: so many times among so many prices
-LEAST = 1e-12  # c of a class as a share of the greatest, and the greatest c of a picture without any error
 
 
-def coefficients(classes: np.ndarray, counts: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Estimate c of every class from probes: their classes, numbers of samples and squared errors."""
-    found = errors * counts**ERROR_EXPONENT
-    expected = EXPECTED * max(found.sum() / EXPECTED[classes].sum(), LEAST / EXPECTED[-1])
-    total = np.bincount(classes, found, CLASSES) + PRIOR * expected
-    c: np.ndarray = total / (np.bincount(classes, minlength=CLASSES) + PRIOR)
-    positive: np.ndarray = np.maximum(c, LEAST * max(float(c.max()), LEAST))
-    return positive
+def allocate(
+    c: np.ndarray, sizes: np.ndarray, error: float, budget: float = inf, least: float = 1.0, work: Any = None
+) -> np.ndarray:
+    """The numbers of samples, not whole, for the packets of each class, at least so many, which leave a sum of squared
+    errors; or, if those cost more than the budget, the most that the budget pays for.
 
-
-def allocate(c: np.ndarray, packets: np.ndarray, error: float, budget: float) -> np.ndarray:
-    """The numbers of samples, not whole, for the packets of each class and level, which leave a sum of squared errors;
-    or, if those cost more than the budget, in samples of a packet, the most that the budget pays for.
-
-    `packets` (classes, levels) counts the packets. Those that get no more samples than they have cost nothing; the
-    others are drawn anew.
+    `sizes` count the packets of the classes, and `work` is the time that one sample of all of them takes, by default
+    their number. All have a sample, so that a class that gets no more costs nothing.
     """
-    group, level = np.nonzero(packets)
-    number = packets[group, level]
+    work = sizes if work is None else work
+    value = c * sizes / np.maximum(work, LEAST)
     # At the lowest price the class with the most error gets one sample, at the highest that with the least gets all.
-    low, high = float(-np.log2(c.max())), float(np.log2(COUNTS[-1]) * (ERROR_EXPONENT + 1) - np.log2(c.min()))
+    most = float(np.log2(COUNTS[-1]) * (ERROR_EXPONENT + 1))
+    low, high = float(-np.log2(value.max())), most - float(np.log2(np.maximum(value, LEAST * value.max()).min()))
     for _ in range(SEARCHES):
         prices = np.linspace(low, high, PRICES)
-        new = at_price(prices[:, None], c[group], COUNTS[level])
-        is_too_much = np.where(new > COUNTS[level], new, 0.0) @ number > budget
-        is_enough = is_too_much | (new**-ERROR_EXPONENT @ (number * c[group]) <= error)
+        new = at_price(prices[:, None], value, least)
+        is_too_much = cost(new, work) > budget
+        is_enough = is_too_much | (new**-ERROR_EXPONENT @ (sizes * c) <= error)
         first = int(is_enough.argmax()) if is_enough.any() else PRICES - 1
         low, high = prices[max(first - 1, 0)], prices[first]
-    return at_price(np.array(low if is_too_much[first] else high), c[:, None], COUNTS)
+    return at_price(np.array(low if is_too_much[first] else high), value, least)
 
 
-def at_price(price: np.ndarray, c: np.ndarray, now: np.ndarray) -> np.ndarray:
-    """The numbers of samples for classes and for packets that have some now, at the logarithm of the price of error."""
-    ideal = 2.0 ** ((price + np.log2(c)) / (ERROR_EXPONENT + 1))
-    samples: np.ndarray = np.maximum(np.minimum(ideal, COUNTS[-1]), now)
+def at_price(price: np.ndarray, value: np.ndarray, least: float) -> np.ndarray:
+    """The numbers of samples for classes at the logarithm of the price of error; `value` is c by a sample's time."""
+    ideal = 2.0 ** ((price + np.log2(np.maximum(value, LEAST * value.max()))) / (ERROR_EXPONENT + 1))
+    samples: np.ndarray = np.clip(ideal, least, COUNTS[-1])
     return samples
 
 
-def squared_error(c: np.ndarray, packets: np.ndarray) -> float:
-    """The sum of the squared errors of packets, which are counted by class and level."""
-    return float((packets * c[:, None] * COUNTS**-ERROR_EXPONENT).sum())
+def cost(samples: np.ndarray, work: np.ndarray) -> np.ndarray:
+    """The time of the samples of classes beyond the first sweep, in that of a sample of a packet on average. Of 1 to 2
+    samples some packets get 2, others none."""
+    taken: np.ndarray = np.where(samples < 2, 2 * np.log2(samples), samples) @ work
+    return taken
+
+
+def with_neighbours(classes: np.ndarray) -> np.ndarray:
+    """Raise classes (rows, columns) to those of the eight neighbours less `NEAR`: a neighbour's sample may have met a
+    thin wire that only other samples of the packet meet."""
+    padded = np.pad(classes, 1)
+    beside = np.maximum(np.maximum(padded[:, :-2], padded[:, 1:-1]), padded[:, 2:])
+    around = np.maximum(np.maximum(beside[:-2], beside[1:-1]), beside[2:])
+    raised: np.ndarray = np.maximum(classes, np.maximum(around, NEAR) - NEAR)
+    return raised
 
 
 def places_of(samples: np.ndarray) -> np.ndarray:
@@ -156,84 +174,101 @@ def places_of(samples: np.ndarray) -> np.ndarray:
 
 
 class Packets:
-    """The packets of a picture, counted from 0, row by row. All of them begin in class 0, with one sample."""
+    """The packets of a picture, counted from 0, row by row. All of them begin with one sample."""
 
     def __init__(self, height: int, width: int, packet_width: int) -> None:
         self.columns = -(-width // packet_width)
         self.count = -(-height // PACKET_HEIGHT) * self.columns
         self.random = random_numbers(self.count)
-        self.turn = 0  # times that `dither` gave other numbers
         self.levels, self.classes = np.zeros((2, self.count), np.uint8)
-        self.histogram = np.zeros((CLASSES, len(COUNTS)), np.int64)  # packets by class and level
-        self.histogram[0, 0] = self.count
-        self.probes = np.zeros(0, np.intp)  # packets whose error with the samples that they have is known
-        self.errors = np.zeros(0)  # squared errors of the probes
+        self.sizes = np.zeros(CLASSES, np.int64)  # of the classes
+        self.work = np.zeros(CLASSES)  # time of a sample of all packets of each class, whose sum is that of all packets
+        self.c = EDGE_ERROR * PACKET_HEIGHT * packet_width * EXPECTED
+        self.weight = PRIOR  # probes that the sum of the expected errors counts as
+        self.doubt = 0.0  # standard error of the estimated sum of squared errors, as a share of it
 
-    def classify(self, classes: np.ndarray, sizes: np.ndarray) -> None:
-        """Sort all packets, of which none has more than one sample, into classes of these sizes."""
-        self.classes = classes.ravel()
-        self.histogram[:, 0] = sizes
+    def choose(self, number: float, chances: np.ndarray | None = None) -> np.ndarray:
+        """Choose about so many packets at random, evenly or in proportion to the chances of classes: one of each run of
+        packets whose chances have the same sum."""
+        number = max(1, min(round(number), self.count))
+        places = (np.arange(number) + self.random[:number]) / number
+        ends = np.arange(1.0, self.count + 1) if chances is None else np.cumsum(chances[self.classes])
+        chosen: np.ndarray = np.unique(np.searchsorted(ends, places * ends[-1], "right"))
+        return chosen
 
-    def members(self, wanted: int) -> np.ndarray:
-        """The packets of a class."""
-        return np.flatnonzero(self.classes == wanted)
+    def learn_evenly(self, errors: np.ndarray, goal: float) -> bool:
+        """Whether all packets need several samples, and about as many: by probes with one sample. Then they are one
+        class."""
+        squares, each = float(errors @ errors), float(errors.mean())
+        if each * abs(each) * len(errors) < EVEN * squares or each * self.count < MUCH * goal:
+            return False
+        self.sizes = np.bincount(self.classes, minlength=CLASSES)
+        self.work, self.c = self.sizes.astype(float), np.full(CLASSES, each)
+        self.doubt = SPREAD / sqrt(len(errors))
+        return True
 
-    def some_of_each_class(self, numbers: np.ndarray) -> np.ndarray:
-        """Choose packets evenly from each class, about so many, at random places."""
-        parts = [np.zeros(0, np.intp)]
-        for wanted, number in enumerate(np.ceil(numbers).astype(int).tolist()):
-            if number:
-                members = self.members(wanted)
-                most = min(number, len(members))
-                places = (np.arange(most) + self.random[:most]) * (len(members) / max(most, 1))
-                parts.append(members[places.astype(np.intp)])
-        return np.concatenate(parts)
+    def learn(self, contrasts: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
+        """Sort the packets, of which all have one sample, into classes by their contrasts (rows, columns) and those of
+        their neighbours; estimate c of the classes from probes."""
+        self.classes = with_neighbours(contrasts).ravel()
+        sizes = self.sizes = np.bincount(self.classes, minlength=CLASSES)
+        self.work = sizes * SECONDS * (self.count / (sizes @ SECONDS))
+        number = np.bincount(self.classes[probes], minlength=CLASSES) + PRIOR
+        found = np.bincount(self.classes[probes], errors, CLASSES) + PRIOR * self.c
+        self.c = np.maximum(found / number, self.c / number)  # products of differences may be negative
+        self.doubt = SPREAD * float(np.linalg.norm(sizes * self.c / np.sqrt(number)) / (sizes @ self.c))
 
-    def count_some(self, packets: np.ndarray) -> np.ndarray:
-        """Count some packets by class and level."""
-        slots = self.classes[packets].astype(np.intp) * len(COUNTS) + self.levels[packets]
-        counts: np.ndarray = np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
-        return counts
+    def plan(self, goal: float, budget: float = inf) -> np.ndarray:
+        """The numbers of samples of the classes that leave the squared error `goal`, in doubt included, or cost no more
+        than a budget: the same for all, unless numbers by class leave as little error for less."""
+        goal, whole = goal / (1 + CERTAINTY * self.doubt), float(self.sizes @ self.c)
+        needed = (whole / goal) ** (1 / ERROR_EXPONENT) if goal else inf
+        uniform = max(min(needed, COUNTS[-1], budget / self.count), 1.0)
+        least = max(LEAST_SHARE * uniform, 1.0)
+        samples = allocate(self.c, self.sizes, whole * uniform**-ERROR_EXPONENT, inf, least, self.work)
+        if cost(samples, self.work) > WORTH * uniform * self.count:
+            return np.full(CLASSES, uniform)
+        return samples if needed <= uniform else allocate(self.c, self.sizes, goal, budget, least, self.work)
 
-    def drawn(self, packets: np.ndarray, levels: np.ndarray) -> None:
-        """Note that packets are drawn with new levels, after which they are no probes any more."""
-        self.histogram -= self.count_some(packets)
-        self.levels[packets] = levels
-        self.histogram += self.count_some(packets)
-        kept = ~np.isin(self.probes, packets)
-        self.probes, self.errors = self.probes[kept], self.errors[kept]
+    def bound(self, samples: np.ndarray) -> float:
+        """The most that the sum of squared errors may be with so many samples for each class."""
+        return float((self.sizes * self.c) @ samples**-ERROR_EXPONENT) * (1 + CERTAINTY * self.doubt)
 
-    def probed(self, packets: np.ndarray, errors: np.ndarray) -> None:
-        """Note that packets were probed, and their squared errors."""
-        self.probes = np.concatenate([self.probes, packets])
-        self.errors = np.concatenate([self.errors, errors])
-        self.turn += 1
+    def chances(self, samples: np.ndarray) -> np.ndarray:
+        """The chance of a packet of each class to be the next in a pilot, with so many samples for each class."""
+        expected = self.c * samples**-ERROR_EXPONENT
+        chances: np.ndarray = (1 - EVENLY) * expected / (self.sizes @ expected) + EVENLY / self.count
+        return chances
 
-    @property
-    def known(self) -> int:
-        """The number of probes that have more than one sample."""
-        return int(np.count_nonzero(self.levels[self.probes]))
+    def correct(self, samples: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
+        """Multiply c by what a pilot with so many samples for each class found, as a multiple of what was expected:
+        c of all classes, and that of each beside the others."""
+        classes = self.classes[probes]
+        weights = 1 / self.chances(samples)[classes]
+        found = weights * errors
+        expected = weights * self.c[classes] * COUNTS[self.levels[probes]] ** -ERROR_EXPONENT
+        total = float(expected.sum())
+        number = total**2 / float(expected @ expected)  # of probes that would tell as much by equal weights (Kish 1965)
+        ratio = max((number * float(found.sum()) / total + self.weight) / (number + self.weight), 1 / PRIOR)
+        self.weight += number
+        self.doubt = max(SPREAD / sqrt(self.weight), float(np.linalg.norm(found / ratio - expected)) / total)
+        each = total / number
+        by_class = [np.bincount(classes, values, CLASSES) + PRIOR * each for values in (found / ratio, expected)]
+        c = self.c * np.clip(by_class[0] / by_class[1], 1 / MOST_CHANGE, MOST_CHANGE)
+        left = self.sizes * samples**-ERROR_EXPONENT
+        self.c = c * (ratio * (left @ self.c) / (left @ c))
 
-    def dither(self, packets: np.ndarray, salt: int = 2**10) -> np.ndarray:
-        """A random number in [0, 1) for each of some packets, another at each turn."""
-        numbers = self.random[packets] * salt + self.turn * GOLDEN_RATIO
-        dither: np.ndarray = numbers - np.floor(numbers)
-        return dither
-
-    def coefficients(self) -> np.ndarray:
-        """Estimate c of every class from all probes, and from what no sample met: with n samples in all packets, these
-        together have an error of `UNSEEN_ERROR` / n^2."""
-        known = coefficients(self.classes[self.probes], COUNTS[self.levels[self.probes]], self.errors)
-        samples = np.maximum(self.histogram @ COUNTS / np.maximum(self.histogram.sum(axis=1), 1), 1.0)
-        found: np.ndarray = known + UNSEEN_ERROR * samples ** (ERROR_EXPONENT - 2) / self.count
-        return found
+    def wanted(self, samples: np.ndarray) -> np.ndarray:
+        """The levels of all packets that have so many samples for each class on average."""
+        levels: np.ndarray = (places_of(samples)[self.classes] + self.random).astype(np.uint8)
+        return levels
 
     def total(self) -> float:
         """Estimate the sum of the squared errors of all packets."""
-        return squared_error(self.coefficients(), self.histogram)
+        return float((self.c[self.classes] * (COUNTS**-ERROR_EXPONENT)[self.levels]).sum())
 
     @property
     def samples(self) -> tuple[float, int]:
         """The average number of samples of a packet, and the greatest."""
-        packets = self.histogram.sum(axis=0)
-        return float(packets @ COUNTS / self.count), int(COUNTS[packets > 0].max())
+        counts = COUNTS[self.levels]
+        return float(counts.mean()), int(counts.max())

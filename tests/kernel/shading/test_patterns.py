@@ -8,12 +8,14 @@ import mpmath
 import numpy as np
 import pytest
 
+import minirt
 from minirt.kernel.shading import patterns
 from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply_patterns, share_and_slope
 from minirt.lanes import Vec, load
 from minirt.materials import Clouds, Marble, Wood
 from minirt.rendering.packing.lights import Colours
 from minirt.rendering.packing.materials import pack_patterns
+from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -173,6 +175,17 @@ def test_a_far_floor_has_its_mean_colour_and_no_moire(kind: Any) -> None:
     assert abs(faded.mean() - truth.mean()) < 0.02
     aliased = np.sqrt(np.mean((far_floor(kind, rows, 1, 0.0) - truth) ** 2))
     assert np.sqrt(np.mean((faded - truth) ** 2)) < 0.3 * aliased
+
+
+@EACH
+def test_many_samples_show_a_far_floor_as_it_is(kind: Any) -> None:
+    """Octaves fade by the spacing of samples: by the width of pixels, the picture would not near the truth."""
+    floor = Plane((0, -2, 0), (0, 1, 0), (0, 0, 0), **{kind.title: kind(1.0, WHITE)})
+    camera = Camera((0, 0, 0), (0, 0, 1), 2 * np.degrees(np.arctan(0.7)))
+    light = minirt.render(Scene((Ambient(1.0, WHITE), camera, floor)), 96, 16, samples=1024).linear[11:15, ::-1, 0]
+    rows = 3, 7
+    truth, faded = far_floor(kind, rows, 32, 0.0), far_floor(kind, rows, 32, 1.0)
+    assert np.abs(light - truth).mean() < 0.3 * np.abs(faded - truth).mean()
 
 
 def test_a_mesh_of_many_primitives_has_one_row() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 from math import sqrt
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,10 +11,13 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.kernel.frame import REFERENCE_SAMPLES
+from minirt.cli.arguments import OPTIONS
 from minirt.rendering import Renderer
+from minirt.rendering.frame import COUNTS
 from minirt.rendering.outcome import MOST_SAMPLES, Outcome
-from minirt.rendering.sampling.auto import FIRST_PROBES, AutoSampler
+from minirt.rendering.sampling import packets as sampling
+from minirt.rendering.sampling.auto import LEAST_PROBES, PROBES, REFERENCES, AutoSampler
+from minirt.rendering.sampling.packets import CLASSES, Packets
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -29,7 +31,8 @@ from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 160, 90
-FACTOR = 1.5  # between promised and true errors
+FACTOR = 1.5  # between estimated and true errors
+EXCESS = 1.3  # of a true error over the wanted one, in none of all
 VIEW = (Ambient(0.2, (255, 255, 255)), Camera((0, 1, -10), (0, -0.05, 1), 60), Light((-6, 9, -6), 0.7, (255, 255, 255)))
 FLOOR = Plane((0, -2, 0), (0, 1, 0), (200, 200, 200))
 FAR = (Sphere((0, 0, -50), 0.1, (9, 9, 9)), Cylinder((0, 0, -50), (0, 1, 0), 0.1, 0.1, (9, 9, 9)))  # behind the eye
@@ -99,22 +102,22 @@ def test_the_true_error_is_as_requested_and_as_estimated(name: str, requested: f
     reached, pixels, linear = reach(KNOWN[name], requested)
     true = rms(np.clip(linear, 0, 1) - reference(name))
     assert reached.error <= requested
-    assert 1 / FACTOR < reached.error / true < FACTOR
-    assert true < FACTOR * requested
-    assert true > requested / FACTOR or reached.most <= 3
+    assert 0.6 < reached.error / true < 3  # so small a picture has few probes, and doubt leans to one side
+    assert true < EXCESS * requested
+    assert true > requested / 4 or reached.most <= 4
     assert 1 <= reached.samples <= reached.most
     shown = pixels[..., 2::-1] / 255
     assert np.abs(shown - np.clip(linear, 0, 1)).max() < 0.501 / 255
 
 
-def test_estimated_errors_are_true_on_average() -> None:
+def test_estimated_errors_are_true_on_average_or_a_little_too_large() -> None:
     """Without independent judges, the estimates of pictures that stop too early would all be too small."""
     ratios = []
     for name, scene in KNOWN.items():
         for requested in (0.01, 0.003, 0.0015):
             reached, _, linear = reach(scene, requested)
             ratios.append(reached.error / rms(np.clip(linear, 0, 1) - reference(name)))
-    assert 0.9 < np.median(ratios) < 1.1
+    assert 0.9 < np.median(ratios) < 1.5
 
 
 def test_a_picture_may_be_good_enough_after_the_first_round() -> None:
@@ -156,8 +159,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 COUNT = packets(WIDTH, HEIGHT)
-# Of the clock for the first sweep: a sample of each packet, and for those that are probed another and two references.
-FIRST = (COUNT + (1 + 2 * REFERENCE_SAMPLES) * FIRST_PROBES) * PACKET_SECONDS
+FIRST = (COUNT + round(PROBES / (1 + REFERENCES) * COUNT) * (1 + REFERENCES)) * PACKET_SECONDS  # the first sweep
 
 
 @pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])
@@ -200,55 +202,63 @@ def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -
     renderer = Renderer(2)
     sweep = AutoSampler.sweep
 
-    def cancelled(self: AutoSampler, *arguments: Any) -> None:
+    def cancelled(self: AutoSampler, *arguments: Any, **more: Any) -> Any:
         renderer.cancel()
-        sweep(self, *arguments)
+        return sweep(self, *arguments, **more)
 
     monkeypatch.setattr(AutoSampler, "sweep", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
 
 
-# When automatic sampling ends with its first sweep: by how much the mean of the probes may be in doubt.
+# Pictures of known errors: each packet leaves c / n^1.5 with n samples, and probes are as noisy as those of edges.
 
 
-PACKETS = 100  # all of them are probed
-EVEN = np.full(PACKETS, 0.04)
-UNEVEN = np.repeat([1.0, 0.0], [4, 96])  # the same mean, with a standard error of 0.0196
+def excesses(seed: int, pictures: int = 120) -> np.ndarray:
+    """The true errors of pictures, in those that were asked for; classes have other errors than is expected of them."""
+    random, found, shares = np.random.default_rng(seed), [], []
+    for _ in range(pictures):
+        grid = Packets(4 * random.integers(10, 60), 4 * random.integers(10, 60), 4)
+        classes = random.integers(random.integers(CLASSES), CLASSES, grid.count)
+        c = (grid.c * random.lognormal(-0.5, 0.8, CLASSES))[classes] * random.exponential(1, grid.count)
+
+        def draw(_: object, plan: Array, errors: Array, *__: object, grid: Packets = grid, c: Array = c) -> None:
+            packet = plan[:, 1] * grid.columns + plan[:, 0]
+            errors[:] = c[packet] * plan[:, 3] ** -1.5 * random.normal(1, 0.7, len(plan))
+
+        contrasts = classes.reshape(-1, grid.columns), classes
+        sampler = AutoSampler(draw, lambda contrasts=contrasts: contrasts, grid, grid.count, 16)
+        goal = sqrt(c.mean() * random.uniform(0.01, 1) ** 1.5)
+        sampler.reach(goal, np.inf)
+        drawn = COUNTS[grid.levels]
+        shares.append(sampler.probed / (grid.count + drawn.sum() + LEAST_PROBES * REFERENCES * drawn.max()))
+        found.append(sqrt((c * COUNTS[grid.levels] ** -1.5).mean()) / goal)
+    assert np.median(shares) < 0.12, "probes take a tenth"
+    return np.array(found)
 
 
-class FirstSweep(AutoSampler):
-    """A sampler whose first sweep finds these squared errors, and that only notes whether it refines them."""
-
-    def __init__(self, errors: np.ndarray) -> None:
-        packets: Any = SimpleNamespace(errors=errors, count=PACKETS, samples=(1.0, 1))
-        super().__init__(lambda _: True, lambda: (errors, errors), packets, PACKETS, 1)
-        self.refines = False
-
-    def draw_first(self) -> None:
-        pass
-
-    def refine(self, goal: float, end: float) -> float:
-        self.refines = True
-        return goal
+def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytest.MonkeyPatch) -> None:
+    seed = int(np.random.default_rng().integers(2**32))
+    kept = excesses(seed)
+    assert (kept <= 1).mean() > 0.9, seed
+    assert np.quantile(kept, 0.97) < EXCESS, seed
+    assert np.median(kept) > 0.5, seed
+    monkeypatch.setattr(sampling, "CERTAINTY", 0.0)  # estimates as they are
+    assert (excesses(seed) <= 1).mean() < 0.85, seed
 
 
-@pytest.mark.parametrize(
-    ("errors", "squared_goal", "refines"),
-    [
-        (EVEN, 0.03, True),
-        (EVEN, 0.05, False),
-        (UNEVEN, 0.05, True),
-        (UNEVEN, 0.08, True),  # above mean and standard error, but the doubt is vague: 0.0792 / 0.7 = 0.113 counts
-        (UNEVEN, 0.11, True),
-        (UNEVEN, 0.12, False),
-    ],
-)
-def test_the_first_sweep_is_enough_where_its_doubt_leaves_the_goal_certain(
-    errors: np.ndarray, squared_goal: float, refines: bool
-) -> None:
-    sampler = FirstSweep(errors)
-    assert sampler.reach(sqrt(squared_goal), 1e9)
-    assert sampler.refines is refines
+@pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (5.0, 0.01, 1), (0.2, 0.9, 1)])
+def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: float, sweeps: int) -> None:
+    """Where they all need several samples, these are drawn at once: the picture is a uniform one."""
+    grid, plans = Packets(80, 200, 4), []
+    c = np.random.default_rng().lognormal(0, spread, grid.count)
+
+    def draw(_: object, plan: Array, errors: Array) -> None:
+        plans.append(plan)
+        errors[:] = c[plan[:, 1] * grid.columns + plan[:, 0]] * plan[:, 3] ** -1.5
+
+    reached = AutoSampler(draw, lambda: (np.full((20, 50), 8), c), grid, grid.count, 16).reach(goal, np.inf)
+    assert sum(not len(plan) for plan in plans) == sweeps
+    assert sweeps or reached.most <= 1.5 * reached.samples
 
 
 # Outcomes of automatic sampling: whether the goal was reached, and what is said about it.
@@ -277,5 +287,6 @@ REACHED = Outcome(4.0, 16, 0.002, 0.1, goal=0.003)
     ],
 )
 def test_a_goal_that_is_not_reached_is_said_with_the_reason(outcome: Outcome, is_reached: bool, notice: str) -> None:
+    assert f" {MOST_SAMPLES} at most" in OPTIONS
     assert outcome.is_reached is is_reached
     assert outcome.notice == notice

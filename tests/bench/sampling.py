@@ -1,0 +1,155 @@
+"""Automatic beside uniform sampling, on scenes drawn at random: `python -m tests.bench.sampling [CELLS [SEED]]`.
+
+A cell is a scene and an error that is asked for. Its ratio is the processor time of automatic sampling by that of the
+smallest uniform number of samples with at most the same true error: the RMSE against a picture of many samples.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import partial
+from math import inf
+from time import process_time
+from typing import NamedTuple
+
+import numpy as np
+
+import minirt
+from minirt.rendering import Renderer
+from tests.paths import SCENES
+from tests.test_random_materials import material_scene
+
+WIDTH, HEIGHT = 320, 180
+GOALS, LEAST, MOST = 3, 0.002, 0.02  # errors of a scene, from the least to the most
+REFERENCE = 512  # samples of the picture that tells true errors
+COUNTS = sorted({round(2 ** (k / 5)) for k in range(51)})  # uniform numbers of samples
+TURNS, SECONDS = 3, 0.02  # of each way to sample, and how long a turn takes at least
+
+
+class Cell(NamedTuple):
+    """Automatic sampling of a scene for an error that was asked for."""
+
+    seed: int
+    goal: float
+    excess: float  # the true error by the goal
+    samples: float  # of a pixel, on average
+    uniform: int  # samples of a pixel with the same error
+    ratio: float  # of processor times
+
+    def __str__(self) -> str:
+        return (
+            f"seed {self.seed}: {self.excess:.2f} of the error {self.goal:.4f}, {self.samples:.1f} samples beside "
+            f"{self.uniform} uniform ones, {self.ratio:.2f} of their time"
+        )
+
+
+def drawn_scene(seed: int) -> minirt.Scene:
+    """Draw some of the shapes, materials and lights of a scene with all of them, and maybe a fence of thin cylinders, a
+    mesh, lights with a size and a lens."""
+    random, made = np.random.default_rng([seed, 1]), material_scene(seed)
+
+    def maybe(share: float, low: float, high: float) -> float | None:
+        return float(np.exp(random.uniform(np.log(low), np.log(high)))) if random.random() < share else None
+
+    floor, *solids = made.shapes
+    shapes = [floor if random.random() < 0.5 else floor.replace(clouds=None)]
+    shapes += [solids[i] for i in random.permutation(len(solids))[: random.integers(1, 9)]]
+    if thin := maybe(0.3, 0.01, 0.2):
+        xs, axis = np.arange(-6, 6, random.uniform(0.2, 0.8)), (random.uniform(-0.6, 0.6), 0.8, 0.0)
+        shapes += [minirt.Cylinder((float(x), 0.0, 0.0), axis, thin, 6.0, (255, 255, 255)) for x in xs]
+    if size := maybe(0.3, 1, 4):
+        name = ("icosphere", "knot", "teapot")[random.integers(3)]
+        shapes.append(
+            minirt.Mesh(str(SCENES / f"meshes/{name}.obj"), tuple(random.normal(size=3)), size, (220, 180, 90))
+        )
+    lights = [each.replace(size=maybe(0.3, 0.3, 4)) for each in made.lights[: random.integers(1, 5)]]
+    sky = [made.background] if made.background and random.random() < 0.5 else []
+    camera = made.camera.replace(lens=maybe(0.3, 0.05, 0.5))
+    return minirt.Scene([made.ambient, camera, *sky, *lights, *shapes], made.file)
+
+
+def renderer(threads: int | None) -> Renderer:
+    """Return a renderer beside which no compiler works."""
+    made = Renderer(threads)
+    made.kernels.specialised_after = inf
+    return made
+
+
+class Measured:
+    """A scene with its true picture."""
+
+    def __init__(self, seed: int) -> None:
+        self.seed, self.scene, self.renderer = seed, drawn_scene(seed), renderer(1)
+        self.pixels, self.light = np.zeros((HEIGHT, WIDTH, 4), np.uint8), np.zeros((HEIGHT, WIDTH, 3))
+        self.errors: dict[int, float] = {}  # of uniform samples
+        renderer(None).render(self.scene, self.pixels, REFERENCE, self.light)
+        self.truth = np.clip(self.light, 0, 1)
+
+    def draw(self, samples: int) -> None:
+        """Render with so many samples a pixel."""
+        self.renderer.render(self.scene, self.pixels, samples, self.light)
+
+    def draw_auto(self, goal: float) -> float:
+        """Render until an error is reached; return the samples of a pixel, on average."""
+        reached = self.renderer.reach(self.scene, self.pixels, goal, linear=self.light)
+        return reached.samples if reached else 0.0
+
+    def error(self) -> float:
+        """Return the true error of the light that was rendered."""
+        return float(np.sqrt(np.square(np.clip(self.light, 0, 1) - self.truth).mean()))
+
+    def is_enough(self, samples: int, error: float) -> bool:
+        """Whether so many uniform samples have at most an error."""
+        if samples not in self.errors:
+            self.draw(samples)
+            self.errors[samples] = self.error()
+        return self.errors[samples] <= error
+
+    def cell(self, goal: float) -> Cell:
+        """Measure a cell; both ways take turns."""
+        samples, true = self.draw_auto(goal), self.error()
+        low, high = -1, len(COUNTS) - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (low, middle) if self.is_enough(COUNTS[middle], true) else (middle, high)
+        ways = partial(self.draw_auto, goal), partial(self.draw, COUNTS[high])
+        auto, uniform = np.array([list(map(seconds, ways)) for _ in range(TURNS)]).min(axis=0)
+        return Cell(self.seed, goal, true / goal, samples, COUNTS[high], auto / uniform)
+
+
+def seconds(work: Callable[[], object]) -> float:
+    """Return the processor time of some work."""
+    start, runs = process_time(), 0
+    while not runs or process_time() - start < SECONDS:
+        work()
+        runs += 1
+    return (process_time() - start) / runs
+
+
+def cells(count: int, seed: int | None = None) -> list[Cell]:
+    """Measure cells of scenes, drawn from a seed on, and print them."""
+    seed = int(np.random.default_rng().integers(10**6)) if seed is None else seed
+    found: list[Cell] = []
+    while len(found) < count:
+        measured, random = Measured(seed), np.random.default_rng([seed, 2])
+        for goal in np.exp(random.uniform(np.log(LEAST), np.log(MOST), GOALS)):
+            found.append(measured.cell(float(goal)))
+            print(found[-1], file=sys.stderr, flush=True)
+        seed += 1
+    return found
+
+
+def summary(found: list[Cell]) -> str:
+    """Return what cells have in common."""
+    ratios, excesses = (np.array([getattr(cell, name) for cell in found]) for name in ("ratio", "excess"))
+    return (
+        f"Automatic sampling in {len(found)} cells from seed {found[0].seed} on; uniform sampling has the same error:\n"
+        f"time: median {np.median(ratios):.2f}, worst {ratios.max():.2f}, at most 1.1 in {(ratios <= 1.1).mean():.0%}\n"
+        f"true error by the wanted one: median {np.median(excesses):.2f}, worst {excesses.max():.2f}, "
+        f"at most 1 in {(excesses <= 1).mean():.0%}"
+    )
+
+
+if __name__ == "__main__":
+    print(summary(cells(*map(int, sys.argv[1:] or ["100"]))))
