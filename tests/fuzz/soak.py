@@ -13,7 +13,7 @@ import random
 import sys
 import time
 from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from tests.fuzz.mutations import seeded
 from tests.fuzz.scenes import make_extreme, read
 from tests.usage import Record, Usage
 
-PRECISIONS = ("double", "single")
+RENDERERS = [Renderer(1, precision) for precision in ("double", "single")]
 LARGEST = (320, 240)  # pixels of a picture; small ones are as frequent
 
 
@@ -43,18 +43,10 @@ def soak(share: Callable[[int], float], seed: int, record: Record) -> int:
     return pictures
 
 
-@cache
-def renderer(precision: str) -> Renderer:
-    """Return a renderer that compiles nothing."""
-    made = Renderer(1, precision)
-    made.kernels.specialised_after = float("inf")
-    return made
-
-
 def render(scene: Scene, chance: random.Random) -> None:
     """Render a scene in some size and precision."""
     width, height = (int(most ** chance.random()) for most in LARGEST)
-    assert renderer(chance.choice(PRECISIONS)).render(scene, np.zeros((height, width, 4), np.uint8))
+    assert chance.choice(RENDERERS).render(scene, np.zeros((height, width, 4), np.uint8))
 
 
 def share_of_time(seconds: float) -> Callable[[int], float]:
@@ -65,6 +57,8 @@ def share_of_time(seconds: float) -> Callable[[int], float]:
 
 if __name__ == "__main__":
     environment.prepare()
+    for each in RENDERERS:
+        each.kernels.specialised_after = float("inf")  # compiles nothing
     minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
     record = Record(max(6, round(minutes)), Usage.of, partial(print, flush=True))
     number = soak(share_of_time(60 * minutes), seed, record)
