@@ -96,8 +96,9 @@ class Measurement:
             self.keep(found, *stage.measured(setting, right))
         brute, culled = ([self.pictures.get(f"{knob} {count}", nan) for count in COUNTS] for knob in CULLING)
         found.same += [count for count, a, b in zip(COUNTS, brute, culled, strict=True) if np.array_equal(a, b)]
-        if "single 1" in self.pictures:
-            found.single = changed(self.pictures["single 1"], self.pictures["uniform 1"])
+        one, other = (self.pictures.get(f"{knob} 1") for knob in ("single", "uniform"))
+        if one is not None and other is not None:
+            found.single = changed(one, other)
         if plan.others:
             try:
                 program = povray.PovRay(scene, width, height, self.threads, files)
