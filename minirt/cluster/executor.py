@@ -79,7 +79,7 @@ class Dispatcher:
                     task.cancel()  # but not the first: a worker that hangs should not get another
                 self.sent.pop(future, None)
                 band = running.pop(future)
-                yield band, self.made_of(band, future)
+                yield band, made_of(band, future)
         finally:
             self.close()
 
@@ -128,25 +128,12 @@ class Dispatcher:
         """Give a future the result of a task, unless it has that of another one."""
         with suppress(InvalidStateError):
             if task.cancelled():
-                future.set_exception(BrokenExecutor("has ended, or has cancelled the work"))
+                future.set_exception(RenderError(f"{self.where} has ended, or has cancelled the work"))
             elif error := task.exception():
                 future.set_exception(error)
             else:
                 future.set_result(task.result())
                 self.longest = max(self.longest, perf_counter() - sent)
-
-    def made_of(self, band: Job, future: Future[Made]) -> Made:
-        """Return what is made of a band; RenderError where that has failed."""
-        try:
-            return future.result()
-        except MiniRTError:
-            raise
-        except Exception as error:
-            if type(error) is BrokenExecutor:  # of `hand_over`
-                raise RenderError(f"{self.where} {error}") from error
-            if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
-                raise RenderError(f"{band.what}: its worker died") from error
-            raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
 
     def close(self) -> None:
         """Cancel what has not been made, and end the executor if it was made here."""
@@ -159,6 +146,18 @@ class Dispatcher:
         for process in list((vars(self.executor).get("_processes") or {}).values()):
             process.kill()  # also one that is stopped
         self.executor.shutdown(wait=not unfinished, cancel_futures=True)
+
+
+def made_of(band: Job, future: Future[Made]) -> Made:
+    """Return what is made of a band; RenderError where that has failed."""
+    try:
+        return future.result()
+    except MiniRTError:
+        raise
+    except Exception as error:
+        if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
+            raise RenderError(f"{band.what}: its worker died") from error
+        raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
 
 
 def local_pool() -> Executor:

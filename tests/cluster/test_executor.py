@@ -149,8 +149,8 @@ def test_bands_are_those_of_one_machine_though_a_worker_hangs_or_is_killed(
     cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, harm: str, when: int, large: bool
 ) -> None:
     """After so many bands. A large scene is sent to one worker, which hands it to the others, and may hang."""
-    monkeypatch.setattr(executor, "LATE", 0.1)
-    monkeypatch.setattr(executor, "LARGE", 0 if large else 2**30)
+    for name, value in {"WATCH": 0.1, "LATE": 0.1, "LONGER": 2, "LARGE": 0 if large else 2**30}.items():
+        monkeypatch.setattr(executor, name, value)
     scene, victim = with_files(tmp_path / "home"), cluster.workers[0]
     picture = minirt.render(scene, 300, 500, samples=4)
 
