@@ -33,7 +33,7 @@ for _file in map(file_of, (kind.element for kind in KINDS)):
     if find_spec(_file):
         import_module(_file)
 
-__all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal", "onward"]
+__all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
 
 
 def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpfr | None:
@@ -43,13 +43,6 @@ def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell
     """
     hits = crossings(body(shape, mpfr(swell)), list(origin), list(direction))
     return next((t for t in hits if t > 0), None)
-
-
-def onward(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpfr | None:
-    """The `nearest` hit of a ray that starts on the surface, to rounding, without the crossing at its start."""
-    hits = crossings(body(shape, mpfr(swell)), list(origin), list(direction))
-    start = min(hits, key=abs, default=None)
-    return next((t for t in hits if t > 0 and t != start), None)
 
 
 def normal(shape: Shape, point: Sequence[Any]) -> Vector:

@@ -119,7 +119,7 @@ class Along(Polynomial):
         top = np.abs(self.coefficients[-1].high)
         degree = len(self.coefficients) - 1
         shares = [(np.abs(c.high) / top) ** (1 / (degree - k)) for k, c in enumerate(self.coefficients[:-1])]
-        end = np.asarray(1 + 2 * np.maximum.reduce(np.broadcast_arrays(*shares)))
+        end = np.asarray(4 * np.maximum.reduce(np.broadcast_arrays(*shares)))  # twice Fujiwara's bound, see `body`
         ends = [-end, *np.where(np.isnan(turns), end, turns), end]
         found = []
         for low, high in pairwise(ends):

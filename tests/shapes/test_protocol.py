@@ -101,25 +101,13 @@ def test_nan_is_a_miss(kind: Kind, mode: str) -> None:
     assert np.isinf(t[:6]).all()
 
 
-def test_the_three_modes_agree(kind: Kind) -> None:
-    random = np.random.default_rng(5)
-    shapes = [example(kind, random) for _ in range(20)]
-    origins, aside = random.normal(size=(2, 20, 16, 3)) * [[[[5.0]]], [[[0.5]]]]
-    directions = unit(np.stack([place(shape) for shape in shapes])[:, None] + aside - origins)
-    numbers, arrays, compiled = (mode(shapes, origins, directions) for mode in MODES.values())
-    assert np.array_equal(numbers, arrays)
-    assert np.array_equal(np.isinf(numbers), np.isinf(compiled))
-    seen = np.isfinite(numbers)
-    assert np.abs(compiled[seen] / numbers[seen] - 1).max() <= 1e-12
-
-
 def test_it_scales_exactly(kind: Kind) -> None:
     random = np.random.default_rng(6)
     shapes = [example(kind, random) for _ in range(20)]
     origins, directions = random.normal(size=(2, 20, 16, 3)) * 5
     directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
     t = MODES["compiled"](shapes, origins, directions)
-    for power in (-40, -1, 30):
+    for power in (-160, -40, -1, 44):  # from the least length to the greatest
         scale = 2.0**power
         larger = [scaled(shape, scale) for shape in shapes]
         assert np.array_equal(MODES["compiled"](larger, origins * scale, directions), t * scale)

@@ -16,7 +16,7 @@ from gmpy2 import sqrt
 import minirt
 from minirt.element import fields_of
 from minirt.errors import ElementError
-from minirt.fields import Length, Lengths
+from minirt.fields import FARTHEST, SMALLEST, Length, Lengths
 from minirt.scene import Camera, Scene
 from minirt.shapes import Kind, Shape
 from minirt.shapes.cone import Cone
@@ -26,7 +26,6 @@ from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.torus import Torus
-from tests import oracle
 from tests.oracle.body import body, dot, exact, gradient
 from tests.shapes.examples import example, on_surface, place
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays
@@ -136,24 +135,24 @@ def common(kind: Kind) -> list[Regime]:
         Regime("a scene at 1e6", partial(made, 10, offset=1e6)),
         Regime("a scene at 1e8", partial(made, 3, offset=1e8)),
         Regime("a size of 1e-6, seen from 1e6", partial(made, 4, (1e11, 1e12), 1e-6)),
-        Regime("a size of 1e-12", partial(made, 5, size=1e-12)),
-        Regime("a size of 1e12", partial(made, 6, size=1e12)),
+        Regime("the least size", partial(made, 5, size=5 * SMALLEST)),
+        Regime("the greatest size", partial(made, 6, size=FARTHEST / 5)),
         Regime("from the middle", partial(made, 7, (1e-9, 0.1))),
     ]
     if solid:
         regimes += [
             Regime("along the surface", partial(shots, 8, plain, touching)),
-            Regime("beside the surface", partial(shots, 9, plain, leaving), blur=np.inf),
+            Regime("beside the surface", partial(shots, 9, plain, leaving)),
         ]
     if kind.element in CURVED:
         far = partial(example, kind, size=1.0, offset=1e4)
         regimes += [
-            Regime("on the surface", partial(shots, 12, plain, starting), nearest=oracle.onward),
-            Regime("on the surface, a scene at 1e4", partial(shots, 13, far, starting), nearest=oracle.onward),
+            Regime("on the surface", partial(shots, 12, plain, starting), nearest=1e-9),
+            Regime("on the surface, a scene at 1e4", partial(shots, 13, far, starting), nearest=1e-9),
         ]
     if kind.element in QUADRICS:
         huge = partial(example, kind, size=1e9)
-        regimes.append(Regime("just above a huge one", partial(shots, 14, huge, from_above), 1e-9, 0.0))
+        regimes.append(Regime("just above a huge one", partial(shots, 14, huge, from_above), 1e-9))
     return regimes
 
 
@@ -248,5 +247,5 @@ def stretched_regimes(kind: Kind) -> list[Regime]:
             with suppress(ElementError):
                 stretched(example(kind, np.random.default_rng(1)), field.name, factor)
                 make = partial(seen, kind, 21, field.name, factor)
-                found.append(Regime(f"{field.title} times {factor:g}", make, blur=np.inf))
+                found.append(Regime(f"{field.title} times {factor:g}", make))
     return found

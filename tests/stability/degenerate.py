@@ -31,7 +31,7 @@ from tests.oracle.many import crossed
 from tests.shapes.execution_modes import Intersect
 from tests.shapes.regimes import Array, Rays
 from tests.stability.places import pose, snapped
-from tests.stability.regime import U, points, size
+from tests.stability.regime import BOUND, Regime, U, away_from_surface, points, rays_of, size
 
 SLACK = 64.0
 START = 16.0  # roundings of the largest coordinate of an origin, by which it may be on a surface
@@ -102,9 +102,12 @@ def until(facts: Facts) -> tuple[Array, Array]:
 def swell(shape: Shape, origins: Array, t: Array, exact: Array) -> Array:
     """64 roundings for each ray."""
     far = np.where(np.isfinite(t), t, np.where(np.isfinite(exact), exact, 0.0))
-    away = np.linalg.norm(origins - points(shape)[0], axis=-1)
-    found: Array = SLACK * U * (far + away + size(shape))
-    return found
+    return np.asarray(SLACK * U * (far + away(shape, origins) + size(shape)))
+
+
+def away(shape: Shape, origins: Array) -> Array:
+    """The distances of origins from the first point that a shape is given by."""
+    return np.linalg.norm(origins - points(shape)[0], axis=-1)
 
 
 def facts_of_many(shape: Shape, origins: Array, directions: Array, t: Array) -> Facts:
@@ -201,6 +204,22 @@ def wrong_of(rays: Rays, *answers: Array) -> list[Wrong]:
         origins, directions, *ts = (part[i] for part in parts)
         given = (np.tile(part, (len(ts), 1)) for part in (origins, directions))
         found += judged(shape, *given, np.concatenate(ts))
+    return found
+
+
+def wrong_in(regime: Regime, t: Array) -> list[str]:
+    """Complaints about answers t to the rays of a regime. A sheet holds the backward bound without its size."""
+    rays = rays_of(regime)
+    found = [*map(str, wrong_of(rays, t)), *away_from_surface(rays, t)]
+    for i, (shape, origins, directions) in enumerate(zip(*rays, strict=True)):
+        ray = crossed(shape, origins, directions)
+        with np.errstate(all="ignore"):
+            exact, far = ray.nearest(), t[i] < regime.nearest * size(shape)
+            if not ray.solid:
+                far |= np.abs(ray.height(t[i])) > BOUND * U * (t[i] + away(shape, origins))
+            if regime.tolerance is not None:
+                far |= ~((t[i] == exact) | (np.abs(t[i] - exact) <= regime.tolerance * exact))
+        found += [f"t = {t[i, j]!r}, not {exact[j]!r}: {shape} from {origins[j]}" for j in np.flatnonzero(far)]
     return found
 
 

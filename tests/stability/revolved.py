@@ -184,7 +184,7 @@ REGIMES: dict[type[Shape], list[Regime]] = {
         Regime("a half-angle of 1e-4", partial(at, 16, partial(cone, angle=NEEDLE), anywhere, (1e-6, 1e-5))),
         Regime("a half-angle of 89.94 degrees", partial(at, 17, partial(cone, angle=FLAT), anywhere, (1e-3, 1e-1))),
         Regime("along the axis", partial(shots, 19, lying, down_the_axis)),
-        Regime("past the apex, from beside the side", partial(shots, 20, cone, past_the_apex), blur=np.inf),
+        Regime("past the apex, from beside the side", partial(shots, 20, cone, past_the_apex)),
         Regime("at the mirror image", partial(shots, 18, cone, at_the_mirror_image)),
     ],
     Paraboloid: [

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from minirt.shapes import KINDS, Kind
-from tests.shapes.execution_modes import Intersect, on_arrays
+from tests.shapes.execution_modes import Intersect
 from tests.stability import mutants
-from tests.stability.common import MODES, towards
-from tests.stability.degenerate import facts_of_each, facts_of_many, groups, wrong
+from tests.stability.common import MODES
+from tests.stability.degenerate import groups, wrong
 from tests.stability.places import places, pose
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
@@ -46,13 +46,3 @@ def test_a_wrong_formula_is_found(name: str) -> None:
     title, intersect = mutants.VARIANTS[name]
     kind = next(each for each in KINDS if each.element.title == title)
     assert next(complaints(intersect, kind, 10 * SHAPES), "")
-
-
-@KIND
-def test_many_rays_at_once_are_judged_as_each_alone(kind: Kind) -> None:
-    rays = towards(kind, 1)
-    t = on_arrays(*rays)
-    for given in zip(*rays, t, strict=True):
-        with np.errstate(all="ignore"):
-            many, each = (facts(*given).exact for facts in (facts_of_many, facts_of_each))
-        assert np.allclose(many, each, rtol=2.0**-52, atol=0.0)

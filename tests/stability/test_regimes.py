@@ -22,10 +22,12 @@ from minirt.rendering.packing.shape_arrays import bounding_boxes
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from tests.oracle.body import body, normals
+from tests.oracle.many import crossed
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays, surfaces
 from tests.stability import mutants
 from tests.stability.common import MODES, common, towards
-from tests.stability.regime import Array, Regime, Right, U, away_from_surface, posed, size
+from tests.stability.degenerate import wrong_in
+from tests.stability.regime import Array, Regime, U, rays_of, size
 from tests.stability.table import REGIMES
 
 
@@ -45,24 +47,22 @@ fixed = partial(settings, deadline=None, derandomize=True)
 @pytest.mark.parametrize("way", MODES)
 @EACH
 def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
-    right = posed(regime)
-    assert {type(shape) for shape in right.rays.shapes} == {kind.element}
-    assert np.isfinite(right.t).sum() >= 20
-    t = MODES[way](*right.rays)
-    wrong = right.wrong(t)
-    assert not wrong, f"{len(wrong)} of {right.t.size}, the first: {wrong[0]}"
-    if way == "compiled":
-        away = away_from_surface(right.rays, t)
-        assert not away, f"{len(away)}, the first: {away[0]}"
+    rays = rays_of(regime)
+    assert {type(shape) for shape in rays.shapes} == {kind.element}
+    t = MODES[way](*rays)
+    assert np.isfinite(t).sum() >= 20
+    wrong = wrong_in(regime, t)
+    assert not wrong, f"{len(wrong)} of {t.size}, the first: {wrong[0]}"
 
 
 @pytest.mark.parametrize("way", ["arrays", "compiled"])
 @KIND
 def test_usual_rays_are_exact_to_a_few_roundings(kind: Kind, way: str) -> None:
     (regime,) = regimes(kind, ["usual"])
-    right = posed(regime)
-    hit = np.isfinite(right.t)
-    errors = np.abs(MODES[way](*right.rays)[hit] - right.t[hit]) / right.t[hit]
+    rays = rays_of(regime)
+    exact = np.array([crossed(*each).nearest() for each in zip(*rays, strict=True)])
+    hit = np.isfinite(exact)
+    errors = np.abs(MODES[way](*rays)[hit] - exact[hit]) / exact[hit]
     assert np.sqrt((errors**2).mean()) <= 1e-15
 
 
@@ -72,9 +72,9 @@ def test_usual_rays_are_exact_to_a_few_roundings(kind: Kind, way: str) -> None:
 def test_hits_at_random_sizes_are_exact(kind: Kind, seed: int, size: float, far: float, offset: float | None) -> None:
     place = 0.0 if offset is None else min(10 ** (size + offset), 1e14)
     rays = towards(kind, seed, (10**far, 3 * 10**far), 10**size, place, count=1)
-    right = Right(Regime("", lambda: rays, tolerance=1e-14, blur=np.inf), rays)
-    assert right.wrong(on_arrays(*rays)) == []
-    assert right.wrong(compiled(*rays)) == []
+    regime = Regime("", lambda: rays)
+    assert wrong_in(regime, on_arrays(*rays)) == []
+    assert wrong_in(regime, compiled(*rays)) == []
 
 
 @KIND
@@ -117,7 +117,7 @@ def traced(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Arra
 @pytest.mark.parametrize("way", [interpreted, traced])
 @pytest.mark.parametrize(("kind", "regime"), [(kind, each) for kind in KINDS for each in common(kind)], ids=label)
 def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: Regime, way: Way) -> None:
-    rays = posed(regime).rays
+    rays = rays_of(regime)
     for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):
         distances, points, found = way(shape, origins, directions)
         for i in np.flatnonzero(np.isfinite(distances))[::3]:
@@ -137,8 +137,7 @@ def regimes(kind: Kind, names: Iterable[str]) -> list[Regime]:
 
 
 def errors(regime: Regime, intersect: Intersect) -> int:
-    right = posed(regime)
-    return len(right.wrong(intersect(*right.rays)))
+    return len(wrong_in(regime, intersect(*rays_of(regime))))
 
 
 @pytest.mark.parametrize("name", mutants.ANY)

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Angle, Direction, Length, Lengths, Point, cos_and_sin
 from minirt.lanes import Vec, dot, sqrt, where
+from minirt.lanes import unit as unit_vector
 from minirt.shapes import ALL_KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary, DoubleDouble, hypotenuse, unit
 from minirt.shapes.compensated import two_sum
@@ -138,11 +139,11 @@ ROUNDED = 16  # roundings of the coordinates by which the point of a normal may 
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 
 
-def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tuple[Array, Vec, Vec]:
+def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tuple[Array, Vec, Array]:
     """Find the nearest point of the nearest face.
 
     Returns its distance, or that of the face's end where the point lies beyond it; the face's unit normal there; and
-    of the faces that are nearer than `rounding` the unit normal that is closest to `normal`, else that of the nearest.
+    the distance of `normal` from it, or from that of another face within `rounding`.
     Each step linearises the face about the last foot: the next one lies on that tangent plane, straight below the
     point. Where that ends the foot is on the face, and the face's normal at the foot leads to the point.
     """
@@ -153,7 +154,7 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tu
     farther = [np.fmax(np.abs(amount), end) for amount, end in zip(amounts, ends, strict=False)]
     face = np.argmin(farther, axis=0)
     beyond = np.choose(face, ends)
-    fitting = fitting_face(boundary, normal, [away <= rounding for away in farther], face)
+    limit = np.fmax(rounding, np.fmin.reduce(farther))
     way = Vec(flat, flat, flat)  # from the point to its foot
     for step in range(STEPS):
         if step:
@@ -163,23 +164,15 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tu
         change = way - before
         if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
             break
-    fitted = height_and_slope(boundary, fitting)[1]
-    normals = (each * (1.0 / sqrt(dot(each, each))) for each in (slope, fitted))
-    return np.fmax(sqrt(dot(way, way)), beyond), *normals
+    off = [normal - unit_vector(each.slope) for each in boundary.faces]
+    turned = [np.where(away <= limit, sqrt(dot(v, v)), np.inf) for away, v in zip(farther, off, strict=True)]
+    return np.fmax(sqrt(dot(way, way)), beyond), unit_vector(slope), np.minimum.reduce(turned)
 
 
 def seeded(point: Vec) -> Vec:
     """The point, its coordinates as the variables that gradients are taken by."""
     parts = (point.x, point.y, point.z)
     return Vec(*(DoubleDouble(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
-
-
-def fitting_face(boundary: Boundary, normal: Vec, near: list[Array], nearest: Integers) -> Integers:
-    """The index of the face, of those that are `near`, whose normal is closest to `normal`; the nearest if none is."""
-    slopes = [face.slope for face in boundary.faces]
-    cosines = [dot(slope, normal) / sqrt(dot(slope, slope)) + 0.0 * normal.x for slope in slopes]
-    fits = np.where(near, np.nan_to_num(cosines, nan=-2.0), -3.0)
-    return np.where(np.any(near, axis=0), np.argmax(fits, axis=0), nearest)
 
 
 def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
@@ -249,11 +242,10 @@ def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) ->
     point = exact_point(rays.origins, first, power) + distances * d
     shape = fields.shape(rows, first, power)
     normal = Vec(*rays.normals.T)
-    distance, exact, fitted = foot(kind, shape, point, normal, rounding)
+    distance, exact, turned = foot(kind, shape, point, normal, rounding)
     slope = exact.x * d.x.high + exact.y * d.y.high + exact.z * d.z.high
-    off = normal - fitted
     return Certificate(
         distance / (U * magnitude),
         magnitude / (distances * np.abs(slope)),
-        sqrt(dot(off, off)),
+        turned,
     )

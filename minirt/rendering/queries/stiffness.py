@@ -43,6 +43,7 @@ def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
 
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
+LEAST_IN_SINGLE = 2.0**-60  # scene units; squares of smaller numbers leave the range of float32
 VISIBLE = 1 / 255  # relative error of a hit that turns a normal enough to change a level of a colour
 LISTED = 3  # shapes that are named, the worst first; the rest is counted
 
@@ -70,7 +71,7 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
     single = ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, tables.boxes))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = np.minimum(size, distance)
-        double, single = double / scale, single / scale
+        double, single = double / scale, np.where(scale < LEAST_IN_SINGLE, np.inf, single / scale)
         pixels = size / (distance * 2 * np.linalg.norm(right) / width)
         thinness = np.where((way @ forward > 0) & (pixels > 0), 1 / pixels, 0.0)
     for index, element in worst(tables, np.maximum(double, single), VISIBLE):

@@ -67,6 +67,13 @@ def test_tiny_and_far() -> None:
     assert thin.figures == {"pixels": pytest.approx(1e-6 / 2e3)}
 
 
+def test_squares_of_tiny_lengths_leave_the_range_of_float32() -> None:
+    (tiny,) = stiff(Sphere((0, 0, 6e-24), 2e-24, GREY))
+    assert tiny.figures["single"] == np.inf
+    assert tiny.figures[HIT] < 1e-13
+    assert stiff(Sphere((0, 0, 6e-15), 2e-15, GREY)) == []
+
+
 def test_far_from_the_origin_only_double_suffers() -> None:
     at = 1e13
     (far,) = stiff(Sphere((at, 0, 5), 2, GREY), eye=Camera((at, 0, 0), (0, 0, 1), 90))
