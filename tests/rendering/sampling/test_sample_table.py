@@ -154,7 +154,7 @@ def test_equal_classes_get_uniform_samples_and_others_what_is_cheaper() -> None:
     assert np.ptp(steep.plan(9.0)) > 0
     for packets in (even, steep):
         assert packets.bound(packets.plan(9.0)) <= 9.0 * (1 + 1e-9)
-        assert packets.plan(9.0).max() <= 6.5 * packets.plan(9.0).mean()
+        assert packets.plan(9.0).max() <= 20 * packets.plan(9.0).mean()
         assert (packets.plan(1e9) == 1).all()
 
 
