@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from minirt.rendering.queries.preview import notice_about
-from minirt.rendering.queries.stiffness import lost_in_single
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.settings import RenderSettings, rendered
 from minirt.rendering.tone_mapping import clipped_pixels
@@ -26,6 +25,8 @@ def notices_about(
     """
     try:
         if single:
+            from minirt.rendering.queries.stiffness import lost_in_single
+
             for each in lost_in_single(scene, single, *size):
                 yield f"single precision cannot show {each}"
         if pixels.shape[1::-1] == size and (text := notice_about(scene, pixels)):
