@@ -7,16 +7,16 @@ smallest uniform number of samples with at most the same true error: the RMSE ag
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from bisect import bisect_left
 from functools import partial
 from math import inf
-from time import process_time
 from typing import NamedTuple
 
 import numpy as np
 
 import minirt
 from minirt.rendering import Renderer
+from minirt.report.bench import runs
 from tests.paths import SCENES
 from tests.test_random_materials import material_scene
 
@@ -33,15 +33,8 @@ class Cell(NamedTuple):
     seed: int
     goal: float
     excess: float  # the true error by the goal
-    samples: float  # of a pixel, on average
     uniform: int  # samples of a pixel with the same error
     ratio: float  # of processor times
-
-    def __str__(self) -> str:
-        return (
-            f"seed {self.seed}: {self.excess:.2f} of the error {self.goal:.4f}, {self.samples:.1f} samples beside "
-            f"{self.uniform} uniform ones, {self.ratio:.2f} of their time"
-        )
 
 
 def drawn_scene(seed: int) -> minirt.Scene:
@@ -69,72 +62,45 @@ def drawn_scene(seed: int) -> minirt.Scene:
     return minirt.Scene([made.ambient, camera, *sky, *lights, *shapes], made.file)
 
 
-def renderer(threads: int | None) -> Renderer:
-    """Return a renderer beside which no compiler works."""
-    made = Renderer(threads)
-    made.kernels.specialised_after = inf
-    return made
-
-
 class Measured:
     """A scene with its true picture."""
 
     def __init__(self, seed: int) -> None:
-        self.seed, self.scene, self.renderer = seed, drawn_scene(seed), renderer(1)
+        self.scene, self.renderer, self.errors = drawn_scene(seed), Renderer(1), dict[int, float]()
+        self.renderer.kernels.specialised_after = inf  # no compiler works beside it
         self.pixels, self.light = np.zeros((HEIGHT, WIDTH, 4), np.uint8), np.zeros((HEIGHT, WIDTH, 3))
-        self.errors: dict[int, float] = {}  # of uniform samples
-        renderer(None).render(self.scene, self.pixels, REFERENCE, self.light)
+        self.draw(REFERENCE)
         self.truth = np.clip(self.light, 0, 1)
 
-    def draw(self, samples: int) -> None:
-        """Render with so many samples a pixel."""
-        self.renderer.render(self.scene, self.pixels, samples, self.light)
+    def draw(self, samples: int | float) -> object:
+        """Render with so many samples a pixel, or until an error is reached, which is not whole."""
+        way = self.renderer.render if isinstance(samples, int) else self.renderer.reach
+        return way(self.scene, self.pixels, samples, linear=self.light)
 
-    def draw_auto(self, goal: float) -> float:
-        """Render until an error is reached; return the samples of a pixel, on average."""
-        reached = self.renderer.reach(self.scene, self.pixels, goal, linear=self.light)
-        return reached.samples if reached else 0.0
-
-    def error(self) -> float:
-        """Return the true error of the light that was rendered."""
-        return float(np.sqrt(np.square(np.clip(self.light, 0, 1) - self.truth).mean()))
-
-    def is_enough(self, samples: int, error: float) -> bool:
-        """Whether so many uniform samples have at most an error."""
+    def error(self, samples: int | float) -> float:
+        """Return the true error of a way to sample."""
         if samples not in self.errors:
             self.draw(samples)
-            self.errors[samples] = self.error()
-        return self.errors[samples] <= error
+            self.errors[samples] = float(np.sqrt(np.square(np.clip(self.light, 0, 1) - self.truth).mean()))
+        return self.errors[samples]
 
-    def cell(self, goal: float) -> Cell:
+    def cell(self, seed: int, goal: float) -> Cell:
         """Measure a cell; both ways take turns."""
-        samples, true = self.draw_auto(goal), self.error()
-        low, high = -1, len(COUNTS) - 1
-        while high - low > 1:
-            middle = (low + high) // 2
-            low, high = (low, middle) if self.is_enough(COUNTS[middle], true) else (middle, high)
-        ways = partial(self.draw_auto, goal), partial(self.draw, COUNTS[high])
-        auto, uniform = np.array([list(map(seconds, ways)) for _ in range(TURNS)]).min(axis=0)
-        return Cell(self.seed, goal, true / goal, samples, COUNTS[high], auto / uniform)
-
-
-def seconds(work: Callable[[], object]) -> float:
-    """Return the processor time of some work."""
-    start, runs = process_time(), 0
-    while not runs or process_time() - start < SECONDS:
-        work()
-        runs += 1
-    return (process_time() - start) / runs
+        true = self.error(goal)
+        uniform = COUNTS[bisect_left(COUNTS[:-1], -true, key=lambda count: -self.error(count))]
+        ways = partial(self.draw, goal), partial(self.draw, uniform)
+        times = [[min(run.cpu for run in runs(way, 1, SECONDS)) for way in ways] for _ in range(TURNS)]
+        auto, plain = np.min(times, axis=0)
+        return Cell(seed, goal, true / goal, uniform, auto / plain)
 
 
 def cells(count: int, seed: int | None = None) -> list[Cell]:
     """Measure cells of scenes, drawn from a seed on, and print them."""
-    seed = int(np.random.default_rng().integers(10**6)) if seed is None else seed
-    found: list[Cell] = []
+    seed, found = int(np.random.default_rng().integers(10**6)) if seed is None else seed, list[Cell]()
     while len(found) < count:
         measured, random = Measured(seed), np.random.default_rng([seed, 2])
-        for goal in np.exp(random.uniform(np.log(LEAST), np.log(MOST), GOALS)):
-            found.append(measured.cell(float(goal)))
+        for goal in np.exp(random.uniform(np.log(LEAST), np.log(MOST), GOALS)).tolist():
+            found.append(measured.cell(seed, goal))
             print(found[-1], file=sys.stderr, flush=True)
         seed += 1
     return found
@@ -144,10 +110,10 @@ def summary(found: list[Cell]) -> str:
     """Return what cells have in common."""
     ratios, excesses = (np.array([getattr(cell, name) for cell in found]) for name in ("ratio", "excess"))
     return (
-        f"Automatic sampling in {len(found)} cells from seed {found[0].seed} on; uniform sampling has the same error:\n"
-        f"time: median {np.median(ratios):.2f}, worst {ratios.max():.2f}, at most 1.1 in {(ratios <= 1.1).mean():.0%}\n"
-        f"true error by the wanted one: median {np.median(excesses):.2f}, worst {excesses.max():.2f}, "
-        f"at most 1 in {(excesses <= 1).mean():.0%}"
+        f"{len(found)} cells from seed {found[0].seed} on. Time of automatic by that of uniform sampling of its error: "
+        f"median {np.median(ratios):.2f}, worst {ratios.max():.2f}, at most 1.1 in {(ratios <= 1.1).mean():.0%}.\n"
+        f"True error by the wanted one: median {np.median(excesses):.2f}, worst {excesses.max():.2f}, at most 1 in "
+        f"{(excesses <= 1).mean():.0%}."
     )
 
 
