@@ -79,14 +79,16 @@ def measured(case: Case, seed: int, shapes: int) -> Row:
         starts = np.where(np.isfinite(distances)[..., None], points, rays.origins)
         random = np.random.default_rng(seed)
         ways = [onward(random, each, within(shape, random)) for shape, each in zip(rays.shapes, starts, strict=True)]
+        for shape, way in zip(rays.shapes, ways, strict=True):
+            way[0] = getattr(shape, "axis", way[0])  # one ray exactly along the axis
         rays = Rays(rays.shapes, starts, np.stack(ways))
     t, _, normals = traced(rays)
     found = certified(rays, t, normals)
     errors, slope = np.nan_to_num(found.backward_error), np.abs((before * rays.directions).sum(axis=-1))
     along = np.abs((normals * rays.directions).sum(axis=-1))
-    magnitude = found.condition * t * along  # t, the way to the shape and its size
     same = (normals * before).sum(axis=-1) > 0.5
     with np.errstate(invalid="ignore"):
+        magnitude = found.condition * t * along  # t, the way to the shape and its size
         again = same & (slope > STEEP) & (t * slope <= AGAIN * U * magnitude)
     for i, j in np.argwhere(again):
         again[i, j] = is_start(t[i, j], rays.shapes[i], rays.origins[i, j], rays.directions[i, j])
