@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.lanes import Vec, cross, dot, where
-from minirt.shapes.compensated import two_product, two_sum
+from minirt.shapes.compensated import Pair, minus, plus, quick_two_sum, times, two_product, value
 
 Roll = tuple[Any, Any]  # cosine and sine of a shape's turn about its own axis; their squares add up to exactly 1
 NO_SLOPE = Vec(0.0, 0.0, 0.0)
@@ -40,30 +40,27 @@ class DoubleDouble:
     def __init__(self, high: Any, low: Any = 0.0, slope: Vec = NO_SLOPE) -> None:
         self.high, self.low, self.slope = high, low, slope
 
+    @property
+    def pair(self) -> Pair:
+        """The number without its gradient."""
+        return self.high, self.low
+
     def __add__(self, other: Any) -> DoubleDouble:
         other = as_double_double(other)
-        high, error = two_sum(self.high, other.high)
-        low, last = two_sum(self.low, other.low)
-        high, error = quick_two_sum(high, error + low)
-        return DoubleDouble(*quick_two_sum(high, error + last), self.slope + other.slope)
+        return DoubleDouble(*plus(self.pair, other.pair), self.slope + other.slope)
 
     def __mul__(self, other: Any) -> Any:
         if isinstance(other, Vec):
             return NotImplemented  # a Vec multiplies its components
         other = as_double_double(other)
-        high, error = two_product(self.high, other.high)
-        error = error + (self.high * other.low + self.low * other.high)
-        return DoubleDouble(*quick_two_sum(high, error), other.high * self.slope + self.high * other.slope)
+        return DoubleDouble(*times(self.pair, other.pair), other.high * self.slope + self.high * other.slope)
 
     def __truediv__(self, other: Any) -> DoubleDouble:
         other = as_double_double(other)
-        constant = DoubleDouble(other.high, other.low)
         first = self.high / other.high
-        rest = DoubleDouble(self.high, self.low) - constant * first
-        second = rest.high / other.high
-        third = (rest - constant * second).high / other.high
-        high, low = quick_two_sum(first, second)
-        return DoubleDouble(*quick_two_sum(high, low + third), (self.slope - high * other.slope) / other.high)
+        rest = minus(self.pair, times(other.pair, (first, 0.0 * first)))
+        quotient = quick_two_sum(first, value(rest) / other.high)
+        return DoubleDouble(*quotient, (self.slope - quotient[0] * other.slope) / other.high)
 
     def __neg__(self) -> DoubleDouble:
         return DoubleDouble(-self.high, -self.low, -self.slope)
@@ -87,9 +84,8 @@ class DoubleDouble:
         """The square root; that of 0, and of rounding errors below it, is 0 with the gradient 0."""
         root = np.sqrt(np.maximum(self.high, 0.0))
         per_root = np.where(root > 0.0, 0.5 / np.where(root > 0.0, root, 1.0), 0.0)
-        square, error = two_product(root, root)
-        rest = DoubleDouble(self.high, self.low) - DoubleDouble(square, error)
-        return DoubleDouble(*quick_two_sum(root, rest.high * per_root), per_root * self.slope)
+        rest = value(minus(self.pair, two_product(root, root)))
+        return DoubleDouble(*quick_two_sum(root, rest * per_root), per_root * self.slope)
 
     def scaled(self, power: Any) -> DoubleDouble:
         """The number times 2^power, for any power."""
@@ -98,18 +94,12 @@ class DoubleDouble:
 
     def rounded(self) -> Any:
         """The number in float64."""
-        return self.high + self.low
+        return value(self.pair)
 
 
 def as_double_double(x: Any) -> DoubleDouble:
     """Return a number as a DoubleDouble: a float64 as a constant."""
     return x if isinstance(x, DoubleDouble) else DoubleDouble(np.asarray(x, np.float64))
-
-
-def quick_two_sum(a: Any, b: Any) -> tuple[Any, Any]:
-    """The rounded sum a + b and its rounding error, for |a| >= |b| (Dekker 1971)."""
-    total = a + b
-    return total, b - (total - a)
 
 
 class Boundary(NamedTuple):

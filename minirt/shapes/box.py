@@ -18,8 +18,9 @@ from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
+from minirt.shapes.compensated import position_error
 from minirt.shapes.frames import in_scene, own_direction, own_point
-from minirt.shapes.plane import CLOSE, start_error
+from minirt.shapes.plane import CLOSE
 from minirt.shapes.shape import Axial, Ball, Position, point_along
 
 
@@ -80,7 +81,7 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec, anywhere: bool | None
     if anywhere is not None:
         close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
         if rarely(close):
-            error = where(close, start_error(origin, origin - box.centre), -1.0)
+            error = where(close, position_error(origin, origin - box.centre), -1.0)
             enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
             enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
             enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)

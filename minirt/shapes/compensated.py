@@ -8,13 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from decimal import Context, Decimal, localcontext
-from math import copysign, inf, isfinite, prod
+from math import copysign
+from typing import Any
 
 from minirt.fields import Triple, cos_and_sin
-from minirt.lanes import Number, Vec, product_error, rounded_product
+from minirt.lanes import (
+    Number,
+    Vec,
+    fabs,
+    max_norm,
+    maximum,
+    product_error,
+    rounded_product,
+    splat,
+    unit_roundoff,
+    where,
+)
 
 EXACT = Context(prec=60)  # digits
+POSITION = 8.0  # unit roundoffs of the largest coordinate, by which a point that was computed may be off its surface
 Pair = tuple[Number, Number]  # a number of twice the precision: its rounded value, and what that lacks
+Pairs = tuple[Pair, Pair, Pair]  # a vector: x, y and z
 
 
 def two_sum(a: Number, b: Number) -> tuple[Number, Number]:
@@ -29,34 +43,27 @@ def two_product(a: Number, b: Number) -> tuple[Number, Number]:
     return rounded_product(a, b), product_error(a, b)
 
 
-def power_of_point(point: Vec, centre: Vec, radius: Number) -> Number:
-    """Power of a point with respect to a sphere, |point - centre|^2 - radius^2, to nearly full precision.
+def quick_two_sum(a: Any, b: Any) -> tuple[Any, Any]:
+    """The rounded sum a + b and its rounding error, for |a| >= |b| (Dekker 1971)."""
+    total = a + b
+    return total, b - (total - a)
 
-    It is the product of the distances to both hits of any line through the point. Near the surface, where the plain
-    difference cancels, all digits are kept.
-    """
-    (x, x_low), (y, y_low), (z, z_low) = offset(point, centre)
-    xx, xx_low = two_product(x, x)
-    yy, yy_low = two_product(y, y)
-    zz, zz_low = two_product(z, z)
-    rr, rr_low = two_product(radius, radius)
-    total, low_1 = two_sum(xx, yy)
-    total, low_2 = two_sum(total, zz)
-    squares = xx_low + yy_low + zz_low - rr_low
-    mixed = 2.0 * (x * x_low + y * y_low + z * z_low)
-    return (total - rr) + (low_1 + low_2 + squares + mixed)  # near the sphere that difference is exact
+
+def pair(high: Number, low: Number, like: Number) -> Pair:
+    """A number and what it lacks, as a pair of lanes as `like` is."""
+    return splat(high, like), splat(low, like)
 
 
 def plus(a: Pair, b: Pair) -> Pair:
     """The sum of two pairs."""
     total, error = two_sum(a[0], b[0])
-    return total, error + (a[1] + b[1])
+    return quick_two_sum(total, error + (a[1] + b[1]))
 
 
 def times(a: Pair, b: Pair) -> Pair:
     """The product of two pairs."""
     product, error = two_product(a[0], b[0])
-    return product, error + (a[0] * b[1] + a[1] * b[0])
+    return quick_two_sum(product, error + (a[0] * b[1] + a[1] * b[0]))
 
 
 def minus(a: Pair, b: Pair) -> Pair:
@@ -64,10 +71,17 @@ def minus(a: Pair, b: Pair) -> Pair:
     return plus(a, (-b[0], -b[1]))
 
 
-def divided(a: Pair, b: Number, per_b: Number) -> Pair:
-    """The quotient a / b of a pair and a number, where `per_b` is 1 / b, rounded."""
+def divided(a: Pair, b: Number) -> Pair:
+    """The quotient a / b of a pair and a number."""
+    per_b = 1.0 / b
     high = a[0] * per_b
     return high, value(minus(a, two_product(high, b))) * per_b
+
+
+def square_of(x: Number, like: Number) -> Pair:
+    """The square of a number, as a pair of lanes as `like` is."""
+    lanes = splat(x, like)
+    return two_product(lanes, lanes)
 
 
 def value(a: Pair) -> Number:
@@ -75,21 +89,47 @@ def value(a: Pair) -> Number:
     return a[0] + a[1]
 
 
-def offset(point: Vec, centre: Vec) -> tuple[Pair, Pair, Pair]:
+def offset(point: Vec, centre: Vec) -> Pairs:
     """The exact vector from `centre` to `point`, as pairs x, y and z."""
     return two_sum(point.x, -centre.x), two_sum(point.y, -centre.y), two_sum(point.z, -centre.z)
 
 
-def along(f: tuple[Pair, Pair, Pair], axis: Vec, low: Vec) -> Pair:
+def pairs(v: Vec) -> Pairs:
+    """A vector as pairs."""
+    zero = splat(0.0, v.x)
+    return (v.x, zero), (v.y, zero), (v.z, zero)
+
+
+def unit_pairs(v: Vec) -> Pairs:
+    """A rounded unit vector, scaled to a length of exactly 1."""
+    raw = pairs(v)
+    half = -0.5 * value(minus(scalar_product(raw, raw), pair(1.0, 0.0, v.x)))  # Newton's step
+    return two_sum(v.x, half * v.x), two_sum(v.y, half * v.y), two_sum(v.z, half * v.z)
+
+
+def rounded(v: Pairs) -> Vec:
+    """A vector of pairs as one of numbers."""
+    return Vec(value(v[0]), value(v[1]), value(v[2]))
+
+
+def along(f: Pairs, axis: Vec, low: Vec) -> Pair:
     """The component of the vector f along a unit vector, of which `low` is what the rounded `axis` lacks."""
-    x, y, z = f
-    return plus(plus(times(x, (axis.x, low.x)), times(y, (axis.y, low.y))), times(z, (axis.z, low.z)))
+    return scalar_product(f, ((axis.x, low.x), (axis.y, low.y), (axis.z, low.z)))
 
 
-def squared_length(f: tuple[Pair, Pair, Pair]) -> Pair:
-    """|f|^2."""
-    x, y, z = f
-    return plus(plus(times(x, x), times(y, y)), times(z, z))
+def scalar_product(f: Pairs, g: Pairs) -> Pair:
+    """The scalar product of two vectors."""
+    return plus(plus(times(f[0], g[0]), times(f[1], g[1])), times(f[2], g[2]))
+
+
+def position_error(origin: Vec, p: Vec) -> Number:
+    """Distance to a surface below which a ray starts on it. p is the way to the origin from the shape's centre."""
+    return POSITION * unit_roundoff(p.x) * maximum(max_norm(origin), max_norm(p))
+
+
+def zero_within(x: Number, error: Number) -> Number:
+    """Return x, or exactly 0 where x is no more than its error."""
+    return where(fabs(x) <= error, 0.0, x)
 
 
 # Low parts of rounded numbers in packed shapes: what the numbers lack. With them a shape is known to 32 digits. Where a
@@ -110,12 +150,6 @@ def lacking(exact: Iterable[Decimal], rounded: Vec) -> Vec:
     return Vec(*(float(part - Decimal(number)) for part, number in parts))
 
 
-def axis_low(axis: Triple) -> Vec:
-    """What an axis lacks to be exactly as long as 1."""
-    with localcontext(EXACT):
-        return lacking(scaled_to_unit(*axis), Vec(*axis))
-
-
 def basis_low(axis: Triple, roll: float, u: Vec, v: Vec, w: Vec) -> tuple[Vec, Vec, Vec]:
     """What the vectors u, v, w of `minirt.shapes.frames.basis` lack."""
     with localcontext(EXACT):
@@ -126,21 +160,3 @@ def basis_low(axis: Triple, roll: float, u: Vec, v: Vec, w: Vec) -> tuple[Vec, V
         pairs = ((sign * z * x * a, sign + x * x * a), (-sign * z, -x), (1 + sign * z * z * a, z * x * a))
         rolled_u, rolled_v = [c * p + s * q for p, q in pairs], [c * q - s * p for p, q in pairs]
         return lacking(rolled_u, u), lacking(rolled_v, v), lacking((x, y, z), w)
-
-
-def quotient_low(above: tuple[float, ...], below: tuple[float, ...], rounded: float) -> float:
-    """What the rounded quotient of two products lacks."""
-    if not isfinite(rounded):
-        return 0.0
-    with localcontext(EXACT):
-        top, bottom = (prod(map(Decimal, each), start=Decimal(1)) for each in (above, below))
-        return float(top / bottom - Decimal(rounded))
-
-
-def root_low(diameter: float, waist: float, height: float, rounded: float) -> float:
-    """What sqrt(diameter^2 - waist^2) / height, rounded, lacks."""
-    if not 0.0 < rounded < inf:
-        return 0.0
-    with localcontext(EXACT):
-        wide, thin, high, root = map(Decimal, (diameter, waist, height, rounded))
-        return float(((wide * wide - thin * thin) / (high * high) - root * root) / (2 * root))  # Newton's step

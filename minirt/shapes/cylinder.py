@@ -15,7 +15,7 @@ from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, ra
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
-from minirt.shapes.compensated import axis_low, minus, two_product, value
+from minirt.shapes.compensated import pair, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import Ball, Capped, Position, point_along
 
@@ -33,7 +33,7 @@ class Cylinder(Capped):
 
     def pack(self) -> PackedCylinder:
         sizes = self.diameter / 2, self.height / 2
-        return PackedCylinder(Position(Vec(*self.centre)), *self.frame(), axis_low(self.axis), *sizes)
+        return PackedCylinder(Position(Vec(*self.centre)), *self.frame(), *sizes)
 
     def balls(self) -> tuple[Ball, ...]:
         up = self.height / 2
@@ -47,7 +47,6 @@ class PackedCylinder(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
-    w_low: Vec  # what the rounded axis lacks
     radius: float
     half: float  # of the height
 
@@ -71,25 +70,17 @@ def intersect(
     start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
     half_b = q.x * d.x + q.y * d.y
-    product = c = q.x * q.x + q.y * q.y - squared
+    c = q.x * q.x + q.y * q.y - squared
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
     if anywhere is not None:
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - cylinder.half
         close = quadrics.starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)
         if rarely(close):
-            height, power = quadrics.axial(cylinder, origin, a)
-            radius = splat(cylinder.radius, a)
-            exact_level = value(minus(power, two_product(radius, radius)))
-            error = quadrics.error_of_start(origin, p, level, cylinder.radius, over)
-            low, high = quadrics.between_caps(height, -cylinder.half, cylinder.half, per_height, error)
-            first, last = where(close, low, first), where(close, high, last)
-            beside = close & quadrics.beside_side(level, squared, over, cylinder.half)
-            start = where(beside, 0.0, where(close, quadrics.clamped_minimum(per_a, b, low, high), start))
-            q = p + start * d
-            half_b = q.x * d.x + q.y * d.y
-            c = where(beside, exact_level, q.x * q.x + q.y * q.y - squared)
-            product = where(beside, quadrics.zero_within(c, 2.0 * cylinder.radius * error), c)
-    return quadrics.first_overlap(a, per_a, half_b, c, product, start, first, last)
+            square, zero = square_of(cylinder.radius, a), pair(0.0, 0.0, a)
+            exact = quadrics.exact_span(cylinder, origin, direction, square, zero, zero, -cylinder.half, cylinder.half)
+            span = where(close, exact, span)
+    return quadrics.first_overlap(span)
 
 
 def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:

@@ -18,9 +18,22 @@ from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
-from minirt.shapes.compensated import along, basis_low, divided, minus, offset, plus, times, value
+from minirt.shapes.compensated import (
+    Pairs,
+    along,
+    basis_low,
+    divided,
+    minus,
+    offset,
+    pair,
+    pairs,
+    position_error,
+    rounded,
+    scalar_product,
+    value,
+)
 from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, own_direction, own_point, scene_direction
-from minirt.shapes.quadrics import CLOSE, ROUNDING, negative_interval, position_error, zero_within
+from minirt.shapes.quadrics import CLOSE, ROUNDING, exact_ends, negative_interval
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, point_along
 
 SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
@@ -96,35 +109,37 @@ def intersect(
     approach = -b * per_a
     q = p + approach * d
     half_b = dot(q, d)
-    product = c = dot(q, q) - 1.0
+    below, above = negative_interval(a, per_a, half_b, dot(q, q) - 1.0, approach)
     if anywhere is not None:
         level = dot(p, p) - 1.0
         if rarely(fabs(level) <= CLOSE):
             close = (fabs(level) <= CLOSE) & ((b < 0.0) | (level <= ROUNDING * unit_roundoff(a)))
             if any(close):
-                exact_level = level_of(ellipsoid, origin, a)
-                error = position_error(origin, scaled(p, ellipsoid.semi))
-                slope = scaled(p, ellipsoid.scale)
-                approach, half_b, c = where(close, 0.0, approach), where(close, b, half_b), where(close, exact_level, c)
-                product = where(close, zero_within(c, 2.0 * sqrt(dot(slope, slope)) * error), c)
-    hit, enter, leave = negative_interval(a, per_a, half_b, c, product)
-    t = approach
-    if any(hit):
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
-        hit = hit & (t > 0.0)
-    return hit, t
+                exact_below, exact_above = exact_interval(ellipsoid, origin, direction, a)
+                below, above = where(close, exact_below, below), where(close, exact_above, above)
+    t = where(below > 0.0, below, above)
+    return t > 0.0, t  # NaN where there is no hit
 
 
-def level_of(ellipsoid: PackedEllipsoid, point: Vec, like: Number) -> Number:
-    """Return |p|^2 - 1 of the point p on the scale of the unit sphere, to nearly full precision next to it too."""
-    f = offset(splat(point, like), splat(ellipsoid.centre, like))
-    semi, scale = splat(ellipsoid.semi, like), splat(ellipsoid.scale, like)
-    x = divided(along(f, splat(ellipsoid.u, like), splat(ellipsoid.u_low, like)), semi.x, scale.x)
-    y = divided(along(f, splat(ellipsoid.v, like), splat(ellipsoid.v_low, like)), semi.y, scale.y)
-    z = divided(along(f, splat(ellipsoid.w, like), splat(ellipsoid.w_low, like)), semi.z, scale.z)
-    zero = splat(0.0, like)
-    return value(plus(minus(plus(times(x, x), times(y, y)), (zero + 1.0, zero)), times(z, z)))
+def exact_interval(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, like: Number) -> tuple[Number, Number]:
+    """Where a line enters and leaves the ellipsoid, without any cancellation (`minirt.shapes.quadrics`)."""
+    f = offset(splat(origin, like), splat(ellipsoid.centre, like))
+    p, d = in_unit_sphere(ellipsoid, f), in_unit_sphere(ellipsoid, pairs(splat(direction, like)))
+    slope, turn = scaled(rounded(p), ellipsoid.scale), scaled(rounded(d), ellipsoid.scale)
+    c = minus(scalar_product(p, p), pair(1.0, 0.0, like))
+    error = position_error(splat(origin, like), rounded(f))
+    on = fabs(value(c)) <= 2.0 * sqrt(dot(slope, slope)) * error
+    return exact_ends(scalar_product(d, d), scalar_product(p, d), c, on, sqrt(dot(turn, turn)) * error)
+
+
+def in_unit_sphere(ellipsoid: PackedEllipsoid, v: Pairs) -> Pairs:
+    """Transform a vector into the own frame of an ellipsoid, divided by its semi-axes."""
+    like = v[0][0]
+    semi = splat(ellipsoid.semi, like)
+    x = along(v, splat(ellipsoid.u, like), splat(ellipsoid.u_low, like))
+    y = along(v, splat(ellipsoid.v, like), splat(ellipsoid.v_low, like))
+    z = along(v, splat(ellipsoid.w, like), splat(ellipsoid.w_low, like))
+    return divided(x, semi.x), divided(y, semi.y), divided(z, semi.z)
 
 
 def surface(ellipsoid: PackedEllipsoid, point: Vec) -> tuple[Vec, Vec]:

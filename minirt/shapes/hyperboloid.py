@@ -18,7 +18,6 @@ from minirt.lanes import (
     Mask,
     Number,
     Vec,
-    any,
     copysign,
     fabs,
     inverse_root,
@@ -33,7 +32,7 @@ from minirt.lanes import (
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
-from minirt.shapes.compensated import axis_low, minus, root_low, times, two_product, value
+from minirt.shapes.compensated import divided, minus, pair, position_error, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import Ball, Capped, Position, point_along
 
@@ -58,9 +57,8 @@ class Hyperboloid(Capped):
     def pack(self) -> PackedHyperboloid:
         thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
         slope = root(thinner / self.height) * root(thicker / self.height)
-        slope_low = root_low(self.diameter, self.waist, self.height, slope)
-        sizes = self.waist / 2, slope, slope_low, self.height / 2
-        return PackedHyperboloid(Position(Vec(*self.centre)), *self.frame(), axis_low(self.axis), *sizes)
+        sizes = self.waist / 2, slope, self.diameter / 2, self.height / 2
+        return PackedHyperboloid(Position(Vec(*self.centre)), *self.frame(), *sizes)
 
     def balls(self) -> tuple[Ball, ...]:
         up = self.height / 2
@@ -74,10 +72,9 @@ class PackedHyperboloid(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
-    w_low: Vec  # what the rounded axis lacks
     waist: float  # its radius
     slope: float  # x^2 + y^2 = waist^2 + slope^2 z^2 on the side
-    slope_low: float  # what the rounded slope lacks
+    radius: float  # of the ends
     half: float  # of the height
 
 
@@ -93,7 +90,6 @@ def intersect(
     p, d = own_point(hyperboloid, origin), own_direction(hyperboloid, direction)
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
-    steep = a < 0.0
     reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     waist = hyperboloid.waist * hyperboloid.waist
@@ -102,53 +98,27 @@ def intersect(
     top = (hyperboloid.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
     # From here on t is counted from the plane of the waist or, for a flat ray, from the deepest point in the solid.
+    steep = a < quadrics.PARALLEL * (rise * rise)
     start = where(steep, -p.z * per_height, quadrics.clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = hyperboloid.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
-    product = c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
+    c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
     if anywhere is not None:
+        shell = 8.0 * position_error(origin, p)
         squared = reach * reach + waist
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - hyperboloid.half
         size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
-        close = quadrics.starts_close(a, b, level, squared, over, size, p.z * d.z)
+        close = quadrics.starts_close(a, b, level, squared + shell * shell, over, size, p.z * d.z)
         if rarely(close):
-            height, power = quadrics.axial(hyperboloid, origin, a)
-            side = times((splat(hyperboloid.slope, a), splat(hyperboloid.slope_low, a)), height)
-            at_waist = splat(hyperboloid.waist, a)
-            exact_level = value(minus(minus(power, times(side, side)), two_product(at_waist, at_waist)))
-            slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
-            error = quadrics.error_of_start(origin, p, level, slope, over)
-            low, high = quadrics.between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
-            first, last = where(close, low, first), where(close, high, last)
-            beside = close & quadrics.beside_side(level, squared, over, hyperboloid.half)
-            between = where(close & ~steep, quadrics.clamped_minimum(per_a, b, low, high), start)
-            start = where(beside, 0.0, between)
-            q = p + start * d
-            reach_q = hyperboloid.slope * where(beside, height[0], q.z)
-            half_b = q.x * d.x + q.y * d.y - reach_q * rise
-            c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q - waist)
-            product = where(beside, quadrics.zero_within(c, 2.0 * slope * error), c)
-    met, below, above = quadrics.negative_interval(a, per_a, half_b, c, product)
-    hit = met | steep
-    t = start
-    if any(hit):
-        first_met, t = first_end(steep, start + below, start + above, first, last)
-        hit = hit & first_met
-    return hit, t
-
-
-def first_end(steep: Mask, below: Number, above: Number, first: Number, last: Number) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the part between the caps of the interval or, if `steep`, the two intervals."""
-    again = maximum(below, first)
-    near = where(steep, first, again)
-    far = minimum(above, last)
-    over = steep & ((far < near) | (far <= 0.0))
-    near = where(over, again, near)
-    far = where(over, last, far)
-    t = where(near > 0.0, near, far)
-    return (near <= far) & (t > 0.0), t
+            narrow, half = square_of(hyperboloid.waist, a), splat(hyperboloid.half, a)
+            widening = minus(square_of(hyperboloid.radius, a), narrow)
+            slope, zero = divided(divided(widening, half), half), pair(0.0, 0.0, a)
+            exact = quadrics.exact_span(hyperboloid, origin, direction, narrow, zero, slope, -half, half)
+            span = where(close, exact, span)
+    return quadrics.first_overlap_of_steep(span)
 
 
 def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
@@ -185,9 +155,7 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)  # a waist of almost no width has points on the axis
     widening = hyperboloid.slope * (hyperboloid.slope * p.z * per_rho)  # by height
     rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
-    reach = hyperboloid.slope * hyperboloid.half
-    radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
-    return capped_mapping(hyperboloid, p, out, 0.5 + p.z / tall, rise, radius)
+    return capped_mapping(hyperboloid, p, out, 0.5 + p.z / tall, rise, hyperboloid.radius)
 
 
 def boundary(hyperboloid: Any, point: Vec) -> Boundary:

@@ -17,7 +17,7 @@ from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, maximum, minimum
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
-from minirt.shapes.compensated import axis_low, minus, quotient_low, times, value
+from minirt.shapes.compensated import divided, pair, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import (
     Axial,
@@ -45,9 +45,7 @@ class Paraboloid(Axial):
     def pack(self) -> PackedParaboloid:
         radius = self.diameter / 2
         focal = radius * (radius / self.height) / 2
-        focal_low = quotient_low((radius, radius), (2.0, self.height), focal)
-        sizes = focal, focal_low, self.height
-        return PackedParaboloid(Position(Vec(*self.vertex)), *self.frame(), axis_low(self.axis), *sizes)
+        return PackedParaboloid(Position(Vec(*self.vertex)), *self.frame(), focal, radius, self.height)
 
     def balls(self) -> tuple[Ball, ...]:
         # In directions below its vertex it reaches less far than a ball of half the radius of its rim.
@@ -73,9 +71,8 @@ class PackedParaboloid(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
-    w_low: Vec  # what the rounded axis lacks
     focal: float  # x^2 + y^2 = 2 focal z on the side: the radius of curvature of the vertex
-    focal_low: float  # what the rounded number lacks
+    radius: float  # of the rim
     height: float
 
 
@@ -98,7 +95,8 @@ def intersect(
     start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
     half_b = q.x * d.x + q.y * d.y - slant
-    product = c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
+    c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
     if anywhere is not None:
         across = p.x * p.x + p.y * p.y
         squared = across + paraboloid.focal * paraboloid.focal
@@ -107,20 +105,11 @@ def intersect(
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
         close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
         if rarely(close):
-            height, power = quadrics.axial(paraboloid, origin, a)
-            double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
-            exact_level = value(minus(power, times(double, height)))
-            slope = sqrt(squared)
-            error = quadrics.error_of_start(origin, p, level, slope, over)
-            low, high = quadrics.between_caps(height, 0.0, paraboloid.height, per_height, error)
-            first, last = where(close, low, first), where(close, high, last)
-            beside = close & quadrics.beside_side(level, squared, over, half)
-            start = where(beside, 0.0, where(close, quadrics.clamped_minimum(per_a, b, low, high), start))
-            q = p + start * d
-            half_b = q.x * d.x + q.y * d.y - slant
-            c = where(beside, exact_level, q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z)
-            product = where(beside, quadrics.zero_within(c, 2.0 * slope * error), c)
-    return quadrics.first_overlap(a, per_a, half_b, c, product, start, first, last)
+            focal = divided(square_of(paraboloid.radius, a), splat(2.0 * paraboloid.height, a))
+            zero = pair(0.0, 0.0, a)
+            exact = quadrics.exact_span(paraboloid, origin, direction, zero, focal, zero, zero[0], paraboloid.height)
+            span = where(close, exact, span)
+    return quadrics.first_overlap(span)
 
 
 def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
@@ -152,8 +141,8 @@ def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Numb
     """
     p, out = own_point(paraboloid, point), own_direction(paraboloid, normal)
     rho = sqrt(p.x * p.x + p.y * p.y)
-    radius = sqrt(2.0 * paraboloid.focal * paraboloid.height)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    radius = paraboloid.radius
     rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
     return capped_mapping(paraboloid, p, out, rho / radius, rise, radius)
 

@@ -14,14 +14,14 @@ from dataclasses import KW_ONLY
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot, fabs, max_norm, unit_roundoff
+from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
+from minirt.shapes.compensated import position_error
 from minirt.shapes.shape import Ball, Flat, Position
 
 CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
-ROUNDINGS = 4.0
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
@@ -59,10 +59,14 @@ class PackedPlane(NamedTuple):
 
 
 def intersect(plane: PackedPlane, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the plane; a ray parallel to it, within rounding, does not."""
-    slope = dot(plane.normal, direction)
-    t = dot(plane.normal, plane.point - origin) / slope
-    return (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0), t
+    """Whether and where a ray meets the plane; one that is parallel to it, or starts on it, to rounding, does not."""
+    f = origin - plane.point
+    height, slope = dot(plane.normal, f), dot(plane.normal, direction)
+    t = -height / slope
+    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
+    if anywhere is not None:
+        hit = hit & (fabs(height) > position_error(origin, f))
+    return hit, t
 
 
 def surface(plane: PackedPlane, point: Vec) -> tuple[Vec, Vec]:
@@ -80,12 +84,3 @@ def mapping(plane: PackedPlane, point: Vec, normal: Vec) -> tuple[Number, Number
 def boundary(plane: Any, point: Vec) -> Boundary:
     """Height above the plane."""
     return Boundary((dot(plane.normal, point - plane.point),))
-
-
-def start_error(origin: Vec, f: Vec) -> Number:
-    """Distance to a flat surface below which a ray starts on it, for all that rounding lets one know.
-
-    The roundings of the origin's coordinates, and of its height, which is computed from f, its difference from the
-    shape's centre.
-    """
-    return ROUNDINGS * unit_roundoff(f.x) * (max_norm(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))

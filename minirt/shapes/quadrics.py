@@ -1,9 +1,10 @@
-"""Quadratic equations of rays and quadrics, solved without cancellation, and rays that start on such a surface.
+"""Quadratic equations of rays and quadrics, solved without cancellation, and rays that start on or near such a surface.
 
 For rays that start on the surface of a quadric, or close to it on the scale of the solid, nearly everything cancels.
-The height of such a start above the surface is computed to 32 digits (`minirt.shapes.compensated`), and t is counted
-from the start. A start whose height is no more than the rounding of its coordinates is on the surface, and no ray hits
-the surface where it starts: one that goes inwards hits the other side, and one that goes outwards leaves the solid.
+Their equations are set up and solved with 32 digits (`minirt.shapes.compensated`) from the numbers that the scene
+declares, t counted from the start. A start whose height is no more than the rounding of its coordinates is on the
+surface, and no ray hits the surface where it starts: the nearer of the two ends is exactly 0. A ray that goes inwards
+hits the other side, and one that goes outwards leaves the solid.
 
 Shadow rays start clear of all surfaces and need none of this: where `anywhere` is None the formulas of quadrics leave
 it out, which saves a kernel a third of its size.
@@ -12,7 +13,7 @@ it out, which saves a kernel a third of its size.
 from __future__ import annotations
 
 from math import inf, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 from minirt.lanes import (
     Mask,
@@ -21,7 +22,6 @@ from minirt.lanes import (
     any,
     copysign,
     fabs,
-    max_norm,
     maximum,
     minimum,
     rarely,
@@ -30,35 +30,64 @@ from minirt.lanes import (
     unit_roundoff,
     where,
 )
-from minirt.shapes.compensated import Pair, along, minus, offset, squared_length, times
+from minirt.shapes.compensated import (
+    Pair,
+    minus,
+    offset,
+    pairs,
+    plus,
+    position_error,
+    rounded,
+    scalar_product,
+    times,
+    two_product,
+    unit_pairs,
+    value,
+    zero_within,
+)
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
-POSITION = 2.0  # unit roundoffs of the largest coordinate; rounding a point moves it by at most sqrt(3) of them
+PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a straight line of the surface differs
 ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
 
 
-def negative_interval(a: Number, per_a: Number, b: Number, c: Number, product: Number) -> tuple[Mask, Number, Number]:
-    """Solve a t^2 + 2 b t + c = 0: whether it has real roots, and where the parabola falls below 0 and rises above it.
+class Span(NamedTuple):
+    """Where a line is below a surface of revolution, and where it is between the planes of the solid's ends."""
+
+    a: Number  # of its quadratic equation; a line with a < 0 is steeper than the side
+    below: Number  # t at which it falls below the surface, as of `negative_interval`
+    above: Number  # t at which it rises above the surface
+    first: Number  # t at which it passes the planes of the ends, in ascending order
+    last: Number
+
+
+def negative_interval(a: Number, per_a: Number, b: Number, c: Number, start: Number) -> tuple[Number, Number]:
+    """Solve a x^2 + 2 b x + c = 0, x counted from `start`: where the parabola falls below 0 and where it rises above.
 
     For a > 0 the roots are in ascending order, for a < 0 in descending order; NaN where there are none. `per_a` is
     1 / a. q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al.,
-    Numerical Recipes, 5.6). `product` is c, or 0 where the root c / q is to be exactly 0. With q = 0 the parabola
-    touches zero at t = 0 or, if a = 0 too, is the constant c: below zero from -infinity or from infinity on.
+    Numerical Recipes, 5.6).
     """
     D = b * b - a * c
-    real = D >= 0.0
     below = splat(nan, D)
     above = below
-    if any(real):
+    if any(D >= 0.0):
         q = -(b + copysign(sqrt(D), b))
-        by_a, by_c = q * per_a, product / q
-        level = q == 0.0
-        if rarely(level):
-            by_c = where(level, where(a == 0.0, where(c > 0.0, inf, -inf), 0.0), by_c)
-        falling = q < 0.0
-        below = where(falling, by_a, by_c)
-        above = where(falling, by_c, by_a)
-    return real, below, above
+        below, above = in_order(q, q * per_a, c / q, a, c)
+        below, above = start + below, start + above
+    return below, above
+
+
+def in_order(q: Number, by_a: Number, by_c: Number, a: Number, c: Number) -> tuple[Number, Number]:
+    """Return of the roots q / a and c / q that at which the parabola falls below 0, and that at which it rises above.
+
+    With q = 0 it touches zero at 0 or, if a = 0 too, is the constant c: below zero from -infinity or from infinity on.
+    """
+    level = q == 0.0
+    if rarely(level):
+        by_c = where(level, where(a == 0.0, where(c > 0.0, inf, -inf), 0.0), by_c)
+    falling = q < 0.0
+    return where(falling, by_a, by_c), where(falling, by_c, by_a)
 
 
 def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Number:
@@ -71,18 +100,35 @@ def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Nu
     return minimum(maximum(-b * per_a, first), last)
 
 
-def first_overlap(
-    a: Number, per_a: Number, b: Number, c: Number, product: Number, start: Number, first: Number, last: Number
-) -> tuple[Mask, Number]:
-    """Whether the interval of `negative_interval` and the one from `first` to `last` overlap at t > 0, and where first.
+def first_overlap(span: Span) -> tuple[Mask, Number]:
+    """Whether a ray is below the surface and between the planes of the ends at the same time t > 0, and when first.
 
-    The quadratic equation counts t from `start`, the second interval from the ray's origin, as the result does.
+    For rays with a >= 0, which are below the surface for one interval.
     """
-    hit, below, above = negative_interval(a, per_a, b, c, product)
-    t = start
+    hit = span.below == span.below  # not NaN
+    t = span.first
     if any(hit):
-        near = maximum(start + below, first)
-        far = minimum(start + above, last)
+        near, far = maximum(span.below, span.first), minimum(span.above, span.last)
+        t = where(near > 0.0, near, far)
+        hit = hit & (near <= far) & (t > 0.0)
+    return hit, t
+
+
+def first_overlap_of_steep(span: Span) -> tuple[Mask, Number]:
+    """As `first_overlap`, for a surface that rays with a < 0 are below outside of an interval, which may be empty.
+
+    Between the planes of the ends that leaves up to two intervals; the first end of one with t > 0 is the hit.
+    """
+    steep = span.a < 0.0
+    hit = steep | (span.below == span.below)
+    t = span.first
+    if any(hit):
+        again = maximum(span.below, span.first)
+        near = where(steep, span.first, again)
+        far = minimum(span.above, span.last)
+        over = steep & ((far < near) | (far <= 0.0))
+        near = where(over, again, near)
+        far = where(over, span.last, far)
         t = where(near > 0.0, near, far)
         hit = hit & (near <= far) & (t > 0.0)
     return hit, t
@@ -107,45 +153,52 @@ def starts_close(
     return a > inf  # no ray
 
 
-def beside_side(level: Number, squared: Number, over: Number, half: Number) -> Mask:
-    """Whether a point is close to the side, on the scale of its squared distance from the axis and of half the height.
+def exact_span(
+    shape: Any, origin: Vec, direction: Vec, waist: Pair, focal: Pair, slope: Pair, bottom: Number, top: Number
+) -> Span:
+    """Compute the span of a line through a packed solid of revolution, without any cancellation.
 
-    There t is counted from the ray's start. For a start beyond the caps, or in the mirror image of a cone, it is not.
+    On its side x^2 + y^2 = waist + 2 focal z + slope z^2 in its own frame; it lies between the heights `bottom` and
+    `top`. All numbers become lanes as those of the pairs are, so that kernels compile these operations once.
     """
-    return (fabs(level) <= CLOSE * squared) & (over <= CLOSE * half)
-
-
-def position_error(origin: Vec, p: Vec) -> Number:
-    """Distance to a surface below which a ray starts on it. p is the origin in the frame of the solid."""
-    return POSITION * unit_roundoff(p.x) * maximum(max_norm(origin), max_norm(p))
-
-
-def error_of_start(origin: Vec, p: Vec, level: Number, slope: Number, over: Number) -> Number:
-    """Distance below which a ray starts on the side or on a cap, 0 for rays that start beyond the edge of one.
-
-    Twice the `slope` is the gradient of `level`.
-    """
-    error = position_error(origin, p)
-    return where((level <= 2.0 * slope * error) & (over <= error), error, 0.0)
-
-
-def zero_within(x: Number, error: Number) -> Number:
-    """Return x, or exactly 0 where x is no more than its error."""
-    return where(fabs(x) <= error, 0.0, x)
-
-
-def axial(shape: Any, origin: Vec, like: Number) -> tuple[Pair, Pair]:
-    """Compute the height of a ray's origin along the axis of a packed shape, and its squared distance from the axis.
-
-    All numbers become lanes as `like` is, so that kernels compile these operations once.
-    """
+    like = waist[0]
     f = offset(splat(origin, like), splat(shape.centre, like))
-    height = along(f, splat(shape.w, like), splat(shape.w_low, like))
-    return height, minus(squared_length(f), times(height, height))
+    d = pairs(splat(direction, like))
+    w = unit_pairs(splat(shape.w, like))
+    height, rise = scalar_product(f, w), scalar_product(d, w)
+    across = minus(scalar_product(f, f), times(height, height))
+    growth, spread = plus(focal, times(slope, height)), times(slope, rise)  # halves of the right side's derivative
+    a = minus(scalar_product(d, d), times(rise, plus(rise, spread)))
+    b = minus(scalar_product(f, d), times(rise, plus(height, growth)))
+    c = minus(minus(across, waist), times(height, plus(focal, growth)))
+    level, aside = value(c), value(across)
+    steepness = sqrt(aside + value(growth) * value(growth))  # half of the gradient of the level
+    error = position_error(splat(origin, like), rounded(f))
+    over = maximum(bottom - value(height), value(height) - top)
+    error = where((level <= error * (2.0 * steepness + error)) & (over <= error), error, 0.0)
+    on = fabs(level) <= error * (2.0 * steepness + error)
+    turn = sqrt(maximum(1.0 - value(rise) * value(rise), 0.0) + value(spread) * value(spread))
+    below, above = exact_ends(a, b, c, on, turn * error)
+    per_rise = 1.0 / value(rise)
+    one = zero_within((bottom - height[0]) - height[1], error) * per_rise
+    other = zero_within((top - height[0]) - height[1], error) * per_rise
+    return Span(value(a), below, above, minimum(one, other), maximum(one, other))
 
 
-def between_caps(height: Pair, bottom: Number, top: Number, per_height: Number, error: Number) -> tuple[Number, Number]:
-    """Return the t at which a ray from this height passes the planes of the caps, in ascending order."""
-    one = zero_within((bottom - height[0]) - height[1], error) * per_height
-    other = zero_within((top - height[0]) - height[1], error) * per_height
-    return minimum(one, other), maximum(one, other)
+def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number]:
+    """Solve as `negative_interval` does. Where a line starts `on` the surface the nearer end is exactly 0.
+
+    If the start is within rounding the middle between both ends, both are 0: `error` is that of b.
+    """
+    both = on & (fabs(value(b)) <= error)
+    touching = both | (on & (4.0 * fabs(value(a) * value(c)) > value(b) * value(b)))
+    b = where(both, 0.0, b[0]), where(both, 0.0, b[1])
+    c = where(touching, 0.0, c[0]), where(touching, 0.0, c[1])
+    D = minus(times(b, b), times(a, c))
+    root = sqrt(value(D))
+    rest = value(minus(D, two_product(root, root)))
+    low = where(root > 0.0, 0.5 * rest / root, 0.0)
+    sign = copysign(1.0, value(b))
+    q = -value(plus(b, (sign * root, sign * low)))
+    constant = where(both, 1.0, value(c))  # a line along the surface stays above it
+    return in_order(q, q / value(a), where(on, 0.0, value(c)) / q, value(a), constant)

@@ -15,9 +15,16 @@ from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
-from minirt.shapes.compensated import power_of_point
+from minirt.shapes.compensated import (
+    minus,
+    offset,
+    position_error,
+    scalar_product,
+    square_of,
+    value,
+    zero_within,
+)
 from minirt.shapes.frames import TWO_PI, angle_in_turns
-from minirt.shapes.quadrics import position_error, zero_within
 from minirt.shapes.shape import Ball, Bounds, Frame, Position, Turnable
 
 CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
@@ -82,7 +89,8 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, anywhere: bool 
         close = hit & close
         product = chord
         if rarely(close):
-            product = splat(power_of_point(origin, sphere.centre, sphere.radius), chord)
+            exact = offset(splat(origin, chord), splat(sphere.centre, chord))
+            product = value(minus(scalar_product(exact, exact), square_of(sphere.radius, chord)))
             chord = where(close, approach * approach - product, chord)
             product = zero_within(product, 2.0 * sphere.radius * position_error(origin, f))
         half = sqrt(chord)

@@ -16,7 +16,8 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, upright_frame
-from minirt.shapes.plane import CLOSE, PARALLEL, start_error
+from minirt.shapes.compensated import position_error
+from minirt.shapes.plane import CLOSE, PARALLEL
 from minirt.shapes.shape import Ball, Flat, Position, point_along
 
 
@@ -71,7 +72,7 @@ def meets_plane(flat: Any, origin: Vec, direction: Vec, anywhere: bool | None) -
     crosses = fabs(slope) > PARALLEL * unit_roundoff(slope)
     if anywhere is None:
         return crosses & (t > 0.0), t, f + t * direction
-    least = where(fabs(height) <= start_error(origin, f), CLOSE * flat.half, 0.0)
+    least = where(fabs(height) <= position_error(origin, f), CLOSE * flat.half, 0.0)
     return crosses & (t > least), t, f + t * direction
 
 

@@ -16,8 +16,8 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spe
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, maximum, minimum, rarely, splat, sqrt, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
+from minirt.shapes.compensated import position_error
 from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, longitude, own_direction, own_point, scene_direction
-from minirt.shapes.quadrics import position_error
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along
 
 PAD = 16.0  # unit roundoffs of a torus' outer radius by which a computed height may be off, and more
@@ -107,7 +107,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, anywhere: bool | 
             height_2 = where(second > first, height(torus, p + second * d), height_1)
             height_3 = where(third > second, height(torus, p + third * d), height_2)
             side_0, side_1, side_2, side_3 = side(start), side(height_1), side(height_2), side(height_3)
-            error = 2.0 * position_error(origin, f) + pad
+            error = position_error(origin, f) + pad
             on = fabs(start) <= error
             if rarely(on):
                 side_3 = where(on & (fabs(height_3) <= error), 1.0, side_3)

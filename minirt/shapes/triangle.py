@@ -29,14 +29,14 @@ from minirt.lanes import (
     rarely,
     rounded_product,
     splat,
+    sqrt,
     unit_roundoff,
     where,
 )
 from minirt.meshes.triangles import unit as unit_rows
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, triangle_boundary
-from minirt.shapes.compensated import Pair, minus, offset, times, value
-from minirt.shapes.plane import start_error
+from minirt.shapes.compensated import Pair, minus, offset, position_error, times, value
 from minirt.shapes.shape import Ball, Position, Shape
 
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
@@ -142,7 +142,7 @@ def intersect(triangle: Any, origin: Vec, direction: Vec, anywhere: bool | None 
             t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
             hit = hit & ~(grazing & (enter > leave)) & (extent != 0.0)  # not one that is seen edge on
             if anywhere is not None:
-                hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
+                hit = hit & ~(close & (fabs(height) <= position_error(origin, f)))
         hit = hit & (t > 0.0)
     return hit, t
 
@@ -154,7 +154,7 @@ def above(triangle: Any, origin: Vec, direction: Vec) -> tuple[Number, Number]:
     either side.
     """
     a, b, c, normal = triangle.a - origin, triangle.b - origin, triangle.c - origin, triangle.normal
-    pad = ROUNDINGS * unit_roundoff(a.x) * (taxicab(a) + taxicab(b) + taxicab(c))
+    pad = ROUNDINGS * unit_roundoff(a.x) * (length(a) + length(b) + length(c))
     first, second = between(a, b, c, normal, direction, pad), between(b, c, a, normal, direction, pad)
     third = between(c, a, b, normal, direction, pad)
     return maximum(maximum(first[0], second[0]), third[0]), minimum(minimum(first[1], second[1]), third[1])
@@ -164,16 +164,16 @@ def between(p: Vec, q: Vec, r: Vec, normal: Vec, direction: Vec, pad: Number) ->
     """Where a ray from 0 enters and leaves the strip between the edge from p to q and the corner r."""
     edge = q - p
     across = cross(edge, normal)
-    margin, rate = pad * taxicab(edge), dot(across, direction)
+    margin, rate = pad * length(edge), dot(across, direction)
     at_edge, at_corner = dot(across, p), dot(across, r)
     one = (minimum(at_edge, at_corner) - margin) / rate
     other = (maximum(at_edge, at_corner) + margin) / rate
     return minimum(one, other), maximum(one, other)
 
 
-def taxicab(v: Vec) -> Number:
-    """Sum of the absolute values of the coordinates, no less than the length."""
-    return fabs(v.x) + fabs(v.y) + fabs(v.z)
+def length(v: Vec) -> Number:
+    """The length of a vector."""
+    return sqrt(dot(v, v))
 
 
 def permuted_axes(by_x: Mask, by_y: Mask, v: Vec) -> Vec:

@@ -9,9 +9,10 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from minirt.lanes import Vec, dot, where
-from minirt.shapes import KINDS, Shape, quadrics, torus
-from minirt.shapes.cone import PackedCone, close_start, intersect
+from minirt.lanes import Vec
+from minirt.shapes import KINDS, Shape, compensated, torus
+from minirt.shapes.compensated import value
+from minirt.shapes.quadrics import exact_ends
 from minirt.shapes.sphere import Sphere
 from tests.shapes.execution_modes import Intersect, kind_of, on_arrays, vec
 from tests.shapes.regimes import Array
@@ -59,7 +60,7 @@ def as_of_a_shadow_ray(shapes: list[Shape], origins: Array, directions: Array) -
 def hits_its_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """The real formula of a torus, which trusts the rounded place where a ray starts."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(quadrics, "POSITION", 0.0)
+        patch.setattr(compensated, "POSITION", 0.0)
         patch.setattr(torus, "PAD", 0.0)
         return on_arrays(shapes, origins, directions)
 
@@ -75,17 +76,25 @@ ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
 CARELESS = [kind for kind in KINDS if kind.element in QUADRICS and kind.element is not Sphere]
 
 
-def cone_with_a_blurred_start(cone: PackedCone, origin: Vec, direction: Vec) -> Any:
-    """A cone whose rays that start at both ends have an end beside their start, or all of a generator for an end."""
+def with_rounded_equations(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """The real formulas, but the coefficients of equations are rounded to float64 before they are solved."""
 
-    def blurred(cone: PackedCone, origin: Vec, p: Vec, d: Vec, *others: Any) -> tuple[Any, ...]:
-        *ends, half_b, c, product = close_start(cone, origin, p, d, *others)
-        steep = d.x * d.x + d.y * d.y < (cone.slope * d.z) ** 2
-        blur = where(steep, 2.0**-52 * dot(p, p), 0.0)
-        return *ends, half_b, where((half_b == 0.0) & (product == 0.0), blur, c), product
+    def careless(a: Any, b: Any, c: Any, on: Any, error: Any) -> Any:
+        zero = 0.0 * value(a)
+        return exact_ends((value(a), zero), (value(b), zero), (value(c), zero), on, error)
 
-    with patch("minirt.shapes.cone.close_start", blurred):
-        return intersect(cone, origin, direction)
+    with patch("minirt.shapes.quadrics.exact_ends", careless):
+        return on_arrays(shapes, origins, directions)
+
+
+def with_ends_beside_the_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """The real formulas, but a ray that starts on a quadric, to rounding, may hit it there."""
+
+    def careless(a: Any, b: Any, c: Any, on: Any, error: Any) -> Any:
+        return exact_ends(a, b, c, on & False, error)
+
+    with patch("minirt.shapes.quadrics.exact_ends", careless):
+        return on_arrays(shapes, origins, directions)
 
 
 def a_rounding_farther(shapes: list[Any], origins: Array, directions: Array) -> Array:
@@ -102,6 +111,7 @@ EVERY: dict[str, Intersect] = {"a hundred roundings farther": a_rounding_farther
 VARIANTS: dict[str, tuple[str, Intersect]] = {
     **{f"{kind.element.title} {name}": (kind.element.title, way) for kind in KINDS for name, way in EVERY.items()},
     "cone with the formula of shadow rays": ("cone", as_of_a_shadow_ray),
-    "cone with a blurred start": ("cone", with_formula(cone_with_a_blurred_start)),
+    "cone with ends beside the start": ("cone", with_ends_beside_the_start),
+    "cone with rounded equations": ("cone", with_rounded_equations),
     "torus hit at the start": ("torus", hits_its_start),
 }

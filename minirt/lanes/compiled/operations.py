@@ -151,7 +151,7 @@ for _operation, _emit in (
 
 def where_type(mask: types.Type, a: types.Type, b: types.Type) -> types.Type | None:
     """Return the type of `where`: lanes if one of its arguments has lanes; of two NamedTuples alike, theirs."""
-    if isinstance(a, types.NamedTuple):
+    if isinstance(a, types.BaseNamedTuple):
         return a if a == b else None
     return elementwise_type(a, b, *([mask.lanes] if isinstance(mask, Mask) else []))
 
@@ -159,7 +159,7 @@ def where_type(mask: types.Type, a: types.Type, b: types.Type) -> types.Type | N
 @register(lanes.where, where_type)
 def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     select, kind = partial(builder.select, args[0]), sig.return_type
-    if not isinstance(kind, types.NamedTuple):
+    if not isinstance(kind, types.BaseNamedTuple):
         return on_each(context, builder, kind, sig.args[1:], args[1:], select)
     columns = zip(kind, *(cgutils.unpack_tuple(builder, each) for each in args[1:]), strict=True)
     parts = [on_each(context, builder, each, (each, each), (a, b), select) for each, a, b in columns]
