@@ -17,12 +17,14 @@ numba.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import numpy as np
 
 BYTES = 128  # size of all lanes of a number: 16 float64 or 32 float32
 Number = Any  # a numpy float64, an array with one for each ray, or a SIMD vector
+F = TypeVar("F", bound=Callable[..., Any])
 Mask = Any  # a numpy bool, an array with one for each ray, or a SIMD mask
 
 
@@ -55,6 +57,12 @@ class Vec:
 
     def __repr__(self) -> str:
         return f"Vec({self.x}, {self.y}, {self.z})"
+
+
+def outlined(function: F) -> F:
+    """Mark a large function that is rarely called: a kernel contains it once, and is not slowed down by its size."""
+    function.outlined = True  # type: ignore[attr-defined]
+    return function
 
 
 def cross(a: Vec, b: Vec) -> Vec:

@@ -30,7 +30,7 @@ NO_SLOPE = Vec(0.0, 0.0, 0.0)
 class DoubleDouble:
     """The number `high` + `low`, and its gradient `slope` with respect to a point; float64 arrays of one length.
 
-    `low` is at most half a unit in the last place of `high`. Sums, differences, products and quotients with float64
+    `low` is at most a few units in the last place of `high`. Sums, differences, products and quotients with float64
     take these as exact constants.
     """
 

@@ -63,7 +63,7 @@ def plus(a: Pair, b: Pair) -> Pair:
 def times(a: Pair, b: Pair) -> Pair:
     """The product of two pairs."""
     product, error = two_product(a[0], b[0])
-    return quick_two_sum(product, error + (a[0] * b[1] + a[1] * b[0]))
+    return product, error + (a[0] * b[1] + a[1] * b[0])
 
 
 def minus(a: Pair, b: Pair) -> Pair:
@@ -94,17 +94,15 @@ def offset(point: Vec, centre: Vec) -> Pairs:
     return two_sum(point.x, -centre.x), two_sum(point.y, -centre.y), two_sum(point.z, -centre.z)
 
 
-def pairs(v: Vec) -> Pairs:
-    """A vector as pairs."""
-    zero = splat(0.0, v.x)
-    return (v.x, zero), (v.y, zero), (v.z, zero)
+def pairs(v: Vec, low: Vec, like: Number) -> Pairs:
+    """A vector and what it lacks, as pairs of lanes as `like` is."""
+    return pair(v.x, low.x, like), pair(v.y, low.y, like), pair(v.z, low.z, like)
 
 
-def unit_pairs(v: Vec) -> Pairs:
-    """A rounded unit vector, scaled to a length of exactly 1."""
-    raw = pairs(v)
-    half = -0.5 * value(minus(scalar_product(raw, raw), pair(1.0, 0.0, v.x)))  # Newton's step
-    return two_sum(v.x, half * v.x), two_sum(v.y, half * v.y), two_sum(v.z, half * v.z)
+def along(f: Pairs, w: Pairs, excess: Number) -> Pair:
+    """The component of a vector along w, whose length exceeds 1 by `excess`, a rounding."""
+    high, low = scalar_product(f, w)
+    return high, low - excess * high
 
 
 def rounded(v: Pairs) -> Vec:
@@ -112,14 +110,12 @@ def rounded(v: Pairs) -> Vec:
     return Vec(value(v[0]), value(v[1]), value(v[2]))
 
 
-def along(f: Pairs, axis: Vec, low: Vec) -> Pair:
-    """The component of the vector f along a unit vector, of which `low` is what the rounded `axis` lacks."""
-    return scalar_product(f, ((axis.x, low.x), (axis.y, low.y), (axis.z, low.z)))
-
-
 def scalar_product(f: Pairs, g: Pairs) -> Pair:
     """The scalar product of two vectors."""
-    return plus(plus(times(f[0], g[0]), times(f[1], g[1])), times(f[2], g[2]))
+    x, y, z = times(f[0], g[0]), times(f[1], g[1]), times(f[2], g[2])
+    partly, error = two_sum(x[0], y[0])
+    total, last = two_sum(partly, z[0])
+    return quick_two_sum(total, (error + last) + (x[1] + y[1] + z[1]))
 
 
 def position_error(origin: Vec, p: Vec) -> Number:

@@ -78,7 +78,9 @@ def intersect(
         close = quadrics.starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)
         if rarely(close):
             square, zero = square_of(cylinder.radius, a), pair(0.0, 0.0, a)
-            exact = quadrics.exact_span(cylinder, origin, direction, square, zero, zero, -cylinder.half, cylinder.half)
+            exact = quadrics.exact_span(
+                cylinder.centre, cylinder.w, origin, direction, square, zero, zero, -cylinder.half, cylinder.half
+            )
             span = where(close, exact, span)
     return quadrics.first_overlap(span)
 

@@ -15,12 +15,11 @@ from sys import float_info
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, outlined, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import (
     Pairs,
-    along,
     basis_low,
     divided,
     minus,
@@ -121,24 +120,25 @@ def intersect(
     return t > 0.0, t  # NaN where there is no hit
 
 
+@outlined
 def exact_interval(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, like: Number) -> tuple[Number, Number]:
     """Where a line enters and leaves the ellipsoid, without any cancellation (`minirt.shapes.quadrics`)."""
     f = offset(splat(origin, like), splat(ellipsoid.centre, like))
-    p, d = in_unit_sphere(ellipsoid, f), in_unit_sphere(ellipsoid, pairs(splat(direction, like)))
+    p, d = in_unit_sphere(ellipsoid, f), in_unit_sphere(ellipsoid, pairs(direction, 0.0 * direction, like))
     slope, turn = scaled(rounded(p), ellipsoid.scale), scaled(rounded(d), ellipsoid.scale)
     c = minus(scalar_product(p, p), pair(1.0, 0.0, like))
     error = position_error(splat(origin, like), rounded(f))
-    on = fabs(value(c)) <= 2.0 * sqrt(dot(slope, slope)) * error
-    return exact_ends(scalar_product(d, d), scalar_product(p, d), c, on, sqrt(dot(turn, turn)) * error)
+    on = value(c) * value(c) <= 4.0 * dot(slope, slope) * error * error
+    return exact_ends(scalar_product(d, d), scalar_product(p, d), c, on, dot(turn, turn) * error * error)
 
 
 def in_unit_sphere(ellipsoid: PackedEllipsoid, v: Pairs) -> Pairs:
     """Transform a vector into the own frame of an ellipsoid, divided by its semi-axes."""
     like = v[0][0]
     semi = splat(ellipsoid.semi, like)
-    x = along(v, splat(ellipsoid.u, like), splat(ellipsoid.u_low, like))
-    y = along(v, splat(ellipsoid.v, like), splat(ellipsoid.v_low, like))
-    z = along(v, splat(ellipsoid.w, like), splat(ellipsoid.w_low, like))
+    x = scalar_product(v, pairs(ellipsoid.u, ellipsoid.u_low, like))
+    y = scalar_product(v, pairs(ellipsoid.v, ellipsoid.v_low, like))
+    z = scalar_product(v, pairs(ellipsoid.w, ellipsoid.w_low, like))
     return divided(x, semi.x), divided(y, semi.y), divided(z, semi.z)
 
 

@@ -107,7 +107,9 @@ def intersect(
         if rarely(close):
             focal = divided(square_of(paraboloid.radius, a), splat(2.0 * paraboloid.height, a))
             zero = pair(0.0, 0.0, a)
-            exact = quadrics.exact_span(paraboloid, origin, direction, zero, focal, zero, zero[0], paraboloid.height)
+            exact = quadrics.exact_span(
+                paraboloid.centre, paraboloid.w, origin, direction, zero, focal, zero, zero[0], paraboloid.height
+            )
             span = where(close, exact, span)
     return quadrics.first_overlap(span)
 

@@ -13,7 +13,7 @@ it out, which saves a kernel a third of its size.
 from __future__ import annotations
 
 from math import inf, nan
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from minirt.lanes import (
     Mask,
@@ -24,6 +24,7 @@ from minirt.lanes import (
     fabs,
     maximum,
     minimum,
+    outlined,
     rarely,
     splat,
     sqrt,
@@ -32,16 +33,16 @@ from minirt.lanes import (
 )
 from minirt.shapes.compensated import (
     Pair,
+    along,
     minus,
     offset,
+    pair,
     pairs,
     plus,
     position_error,
     rounded,
     scalar_product,
     times,
-    two_product,
-    unit_pairs,
     value,
     zero_within,
 )
@@ -153,8 +154,17 @@ def starts_close(
     return a > inf  # no ray
 
 
+@outlined
 def exact_span(
-    shape: Any, origin: Vec, direction: Vec, waist: Pair, focal: Pair, slope: Pair, bottom: Number, top: Number
+    centre: Vec,
+    axis: Vec,
+    origin: Vec,
+    direction: Vec,
+    waist: Pair,
+    focal: Pair,
+    slope: Pair,
+    bottom: Number,
+    top: Number,
 ) -> Span:
     """Compute the span of a line through a packed solid of revolution, without any cancellation.
 
@@ -162,24 +172,25 @@ def exact_span(
     `top`. All numbers become lanes as those of the pairs are, so that kernels compile these operations once.
     """
     like = waist[0]
-    f = offset(splat(origin, like), splat(shape.centre, like))
-    d = pairs(splat(direction, like))
-    w = unit_pairs(splat(shape.w, like))
-    height, rise = scalar_product(f, w), scalar_product(d, w)
+    f = offset(splat(origin, like), splat(centre, like))
+    d, w = pairs(direction, 0.0 * direction, like), pairs(axis, 0.0 * axis, like)
+    excess = 0.5 * value(minus(scalar_product(w, w), pair(1.0, 0.0, like)))  # of the length of the rounded axis
+    height, rise = along(f, w, excess), along(d, w, excess)
     across = minus(scalar_product(f, f), times(height, height))
     growth, spread = plus(focal, times(slope, height)), times(slope, rise)  # halves of the right side's derivative
     a = minus(scalar_product(d, d), times(rise, plus(rise, spread)))
     b = minus(scalar_product(f, d), times(rise, plus(height, growth)))
     c = minus(minus(across, waist), times(height, plus(focal, growth)))
-    level, aside = value(c), value(across)
-    steepness = sqrt(aside + value(growth) * value(growth))  # half of the gradient of the level
-    error = position_error(splat(origin, like), rounded(f))
+    level, bend, turn = value(c), value(growth), value(rise)
+    steepness = value(across) + bend * bend  # square of half of the gradient of the level
     over = maximum(bottom - value(height), value(height) - top)
-    error = where((level <= error * (2.0 * steepness + error)) & (over <= error), error, 0.0)
-    on = fabs(level) <= error * (2.0 * steepness + error)
-    turn = sqrt(maximum(1.0 - value(rise) * value(rise), 0.0) + value(spread) * value(spread))
-    below, above = exact_ends(a, b, c, on, turn * error)
-    per_rise = 1.0 / value(rise)
+    error = position_error(splat(origin, like), rounded(f))
+    within = error * error * (4.0 * steepness + error * error)  # square of the level at this height
+    error = where(((level <= 0.0) | (level * level <= within)) & (over <= error), error, 0.0)
+    on = (error > 0.0) & (level * level <= within)
+    turning = 1.0 - turn * turn + value(spread) * value(spread)
+    below, above = exact_ends(a, b, c, on, error * error * turning)
+    per_rise = 1.0 / turn
     one = zero_within((bottom - height[0]) - height[1], error) * per_rise
     other = zero_within((top - height[0]) - height[1], error) * per_rise
     return Span(value(a), below, above, minimum(one, other), maximum(one, other))
@@ -188,17 +199,14 @@ def exact_span(
 def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number]:
     """Solve as `negative_interval` does. Where a line starts `on` the surface the nearer end is exactly 0.
 
-    If the start is within rounding the middle between both ends, both are 0: `error` is that of b.
+    If the start is within rounding the middle between both ends, both are: `error` is the square of that of b.
     """
-    both = on & (fabs(value(b)) <= error)
-    touching = both | (on & (4.0 * fabs(value(a) * value(c)) > value(b) * value(b)))
+    square, half = value(a), value(b)
+    both = on & (half * half <= error)
+    touching = both | (on & (4.0 * fabs(square * value(c)) > half * half))
     b = where(both, 0.0, b[0]), where(both, 0.0, b[1])
     c = where(touching, 0.0, c[0]), where(touching, 0.0, c[1])
-    D = minus(times(b, b), times(a, c))
-    root = sqrt(value(D))
-    rest = value(minus(D, two_product(root, root)))
-    low = where(root > 0.0, 0.5 * rest / root, 0.0)
-    sign = copysign(1.0, value(b))
-    q = -value(plus(b, (sign * root, sign * low)))
+    D = value(minus(times(b, b), times(a, c)))
+    q = -(value(b) + copysign(sqrt(D), value(b)))
     constant = where(both, 1.0, value(c))  # a line along the surface stays above it
-    return in_order(q, q / value(a), where(on, 0.0, value(c)) / q, value(a), constant)
+    return in_order(q, q / square, where(on, 0.0, value(c)) / q, square, constant)

@@ -18,14 +18,18 @@ from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
 from minirt.shapes.boundary import DoubleDouble
 from minirt.shapes.compensated import (
+    along,
     basis_low,
     divided,
     minus,
+    pair,
+    pairs,
     plus,
+    scalar_product,
     times,
     two_product,
     two_sum,
-    unit_pairs,
+    value,
 )
 from minirt.shapes.frames import basis
 from minirt.shapes.quadrics import exact_ends, negative_interval
@@ -82,8 +86,11 @@ def missing(exact: list[mpfr], high: Vec, low: Vec) -> float:
 
 def test_an_axis_is_known_to_32_digits() -> None:
     for axis in LOW_AXES:
-        scaled = unit_pairs(Vec(*map(np.float64, axis)))
-        assert missing(exact_unit(axis), *(Vec(*(pair[i] for pair in scaled)) for i in (0, 1))) <= 2.0**-104
+        w = pairs(Vec(*map(np.float64, axis)), Vec(0.0, 0.0, 0.0), np.float64(0))
+        excess = 0.5 * value(minus(scalar_product(w, w), pair(1.0, 0.0, np.float64(0))))
+        for one, exact in zip(np.eye(3), exact_unit(axis), strict=True):
+            high, low = along(pairs(Vec(*one), Vec(0.0, 0.0, 0.0), np.float64(0)), w, excess)
+            assert abs(exact - mpfr(high) - mpfr(low)) <= 2.0**-103
 
 
 @pytest.mark.parametrize("roll", [0.0, 90.0, -270.0, 1e-7, 33.3, -200.0])
@@ -197,7 +204,7 @@ def test_the_end_at_which_a_line_starts_is_exactly_zero_and_the_other_one_stays(
     b: float, other: float, c: float
 ) -> None:
     one, half, level, zero = map(np.float64, (1.0, b, c, 0.0))
-    ends = exact_ends((one, zero), (half, zero), (level, zero), np.True_, np.float64(1e-16))
+    ends = exact_ends((one, zero), (half, zero), (level, zero), np.True_, np.float64(1e-32))
     assert sorted(ends) == sorted((0.0, other))
 
 
@@ -205,7 +212,7 @@ def test_the_end_at_which_a_line_starts_is_exactly_zero_and_the_other_one_stays(
 def test_a_line_that_touches_where_it_starts_has_both_ends_there(a: float, ends: tuple[float, float]) -> None:
     square, half, level, zero = map(np.float64, (a, 1e-17, -1e-30, 0.0))
     with np.errstate(all="ignore"):
-        below, above = exact_ends((square, zero), (half, zero), (level, zero), np.True_, np.float64(1e-16))
+        below, above = exact_ends((square, zero), (half, zero), (level, zero), np.True_, np.float64(1e-32))
     assert below == ends[0]
     assert above == ends[1] or a == 0.0
 

@@ -17,6 +17,8 @@ from numba.core.compiler_machinery import PassManager, _pass_registry, register_
 from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 
+from minirt.kernel.compiler.pipeline import keep_inside
+
 
 class InlinedCode(JITCodeLibrary):
     """LLVM code of one function, which becomes machine code only as a part of the kernel that links it."""
@@ -36,6 +38,7 @@ class InlinedCode(JITCodeLibrary):
             for each in reversed(all_callees(self, [])):  # LLVM links only what earlier code refers to
                 module = each._final_module if isinstance(each, InlinedCode) else each._get_module_for_linking()
                 self.linked.link_in(module, preserve=True)
+            keep_inside(self.linked, {each.name for each in self._final_module.functions if not each.is_declaration})
         return self.linked
 
 

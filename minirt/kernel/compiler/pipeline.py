@@ -103,11 +103,22 @@ INLINED: dict[str, Any] = {
 }
 
 
+def keep_inside(module: Any, seen: set[str]) -> None:
+    """Make all functions of an LLVM module its own, except those that are `seen` from outside.
+
+    The loader finds a function that a kernel calls, and did not inline, only so.
+    """
+    for each in module.functions:
+        if not each.is_declaration and each.name not in seen:
+            each.linkage = "internal"
+
+
 @cache
 def inline(function: FunctionType) -> None:
-    """Let compiled code inline a function, unless it has a compiled form of its own."""
+    """Let compiled code inline a function, or call it if it is outlined, unless it has a compiled form of its own."""
     if function not in REGISTERED:
-        register_jitable(**INLINED)(function)
+        options = {**INLINED, "forceinline": not hasattr(function, "outlined")}
+        register_jitable(**options)(function)
 
 
 def inline_functions_of(module: ModuleType) -> None:
