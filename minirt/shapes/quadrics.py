@@ -49,6 +49,7 @@ from minirt.shapes.compensated import (
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
 PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a straight line of the surface differs
+SQUARED = 64.0  # squares of the unit roundoff by which a pair of about 1 may be off
 ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
 
 
@@ -201,7 +202,7 @@ def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Numb
 
     If the start is within rounding the middle between both ends, both are: `error` is the square of that of b.
     """
-    square, half = value(a), value(b)
+    square, half = zero_within(value(a), SQUARED * unit_roundoff(b[0]) * unit_roundoff(b[0])), value(b)
     both = on & (half * half <= error)
     touching = both | (on & (4.0 * fabs(square * value(c)) > half * half))
     b = where(both, 0.0, b[0]), where(both, 0.0, b[1])

@@ -11,7 +11,6 @@ import pytest
 
 from minirt.lanes import Vec
 from minirt.shapes import KINDS, Shape, compensated, torus
-from minirt.shapes.compensated import value
 from minirt.shapes.quadrics import exact_ends
 from minirt.shapes.sphere import Sphere
 from tests.shapes.execution_modes import Intersect, kind_of, on_arrays, vec
@@ -76,17 +75,6 @@ ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
 CARELESS = [kind for kind in KINDS if kind.element in QUADRICS and kind.element is not Sphere]
 
 
-def with_rounded_equations(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """The real formulas, but the coefficients of equations are rounded to float64 before they are solved."""
-
-    def careless(a: Any, b: Any, c: Any, on: Any, error: Any) -> Any:
-        zero = 0.0 * value(a)
-        return exact_ends((value(a), zero), (value(b), zero), (value(c), zero), on, error)
-
-    with patch("minirt.shapes.quadrics.exact_ends", careless):
-        return on_arrays(shapes, origins, directions)
-
-
 def with_ends_beside_the_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """The real formulas, but a ray that starts on a quadric, to rounding, may hit it there."""
 
@@ -112,6 +100,5 @@ VARIANTS: dict[str, tuple[str, Intersect]] = {
     **{f"{kind.element.title} {name}": (kind.element.title, way) for kind in KINDS for name, way in EVERY.items()},
     "cone with the formula of shadow rays": ("cone", as_of_a_shadow_ray),
     "cone with ends beside the start": ("cone", with_ends_beside_the_start),
-    "cone with rounded equations": ("cone", with_rounded_equations),
     "torus hit at the start": ("torus", hits_its_start),
 }
