@@ -17,8 +17,6 @@ from numba.core.compiler_machinery import PassManager, _pass_registry, register_
 from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 
-from minirt.kernel.compiler.pipeline import keep_inside
-
 
 class InlinedCode(JITCodeLibrary):
     """LLVM code of one function, which becomes machine code only as a part of the kernel that links it."""
@@ -40,6 +38,16 @@ class InlinedCode(JITCodeLibrary):
                 self.linked.link_in(module, preserve=True)
             keep_inside(self.linked, {each.name for each in self._final_module.functions if not each.is_declaration})
         return self.linked
+
+
+def keep_inside(module: Any, seen: set[str]) -> None:
+    """Make all functions of an LLVM module its own, except those that are `seen` from outside.
+
+    The loader finds a function that a kernel calls, and did not inline, only so.
+    """
+    for each in module.functions:
+        if not each.is_declaration and each.name not in seen:
+            each.linkage = "internal"
 
 
 def all_callees(library: Any, callees: list[Any]) -> list[Any]:

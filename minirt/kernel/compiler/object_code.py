@@ -26,7 +26,7 @@ from minirt import kernel, lanes, shapes
 from minirt.kernel import scene_arrays, shading, trace
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import item_of, item_type
-from minirt.kernel.compiler.pipeline import FLAGS, INLINED, InlinedCompiler, inline, inline_functions_of, keep_inside
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED, InlinedCompiler, inline, inline_functions_of
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.kernel.shadow_rays import unoccluded_batched, unoccluded_by_kind, unoccluded_one_by_one
@@ -97,8 +97,7 @@ def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
     cpu, features = config.CPU_NAME or binding.get_host_cpu_name(), config.CPU_FEATURES
     features = binding.get_host_cpu_features().flatten() if features is None else features
     machine = binding.Target.from_default_triple().create_target_machine(cpu, features, opt=3)
-    module = binding.parse_assembly(compiled.inspect_llvm())
-    keep_inside(module, {compiled.native_name})
+    module = binding.parse_assembly(compiled.inspect_llvm().replace("define linkonce_odr", "define internal"))
     return ObjectCode(compiled.native_name, results, machine.emit_object(module))
 
 

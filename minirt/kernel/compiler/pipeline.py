@@ -103,16 +103,6 @@ INLINED: dict[str, Any] = {
 }
 
 
-def keep_inside(module: Any, seen: set[str]) -> None:
-    """Make all functions of an LLVM module its own, except those that are `seen` from outside.
-
-    The loader finds a function that a kernel calls, and did not inline, only so.
-    """
-    for each in module.functions:
-        if not each.is_declaration and each.name not in seen:
-            each.linkage = "internal"
-
-
 @cache
 def inline(function: FunctionType) -> None:
     """Let compiled code inline a function, or call it if it is outlined, unless it has a compiled form of its own."""
