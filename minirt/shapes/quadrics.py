@@ -180,6 +180,8 @@ def exact_span(
     across = minus(scalar_product(f, f), times(height, height))
     growth, spread = plus(focal, times(slope, height)), times(slope, rise)  # halves of the right side's derivative
     a = minus(scalar_product(d, d), times(rise, plus(rise, spread)))
+    parallel = fabs(value(a)) <= SQUARED * unit_roundoff(like) * unit_roundoff(like)  # to a straight line of the side
+    a = where(parallel, 0.0, a[0]), where(parallel, 0.0, a[1])
     b = minus(scalar_product(f, d), times(rise, plus(height, growth)))
     c = minus(minus(across, waist), times(height, plus(focal, growth)))
     level, bend, turn = value(c), value(growth), value(rise)
@@ -202,7 +204,7 @@ def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Numb
 
     If the start is within rounding the middle between both ends, both are: `error` is the square of that of b.
     """
-    square, half = zero_within(value(a), SQUARED * unit_roundoff(b[0]) * unit_roundoff(b[0])), value(b)
+    square, half = value(a), value(b)
     both = on & (half * half <= error)
     touching = both | (on & (4.0 * fabs(square * value(c)) > half * half))
     b = where(both, 0.0, b[0]), where(both, 0.0, b[1])
