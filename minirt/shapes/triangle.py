@@ -40,7 +40,7 @@ from minirt.shapes.compensated import Pair, minus, offset, position_error, times
 from minirt.shapes.shape import Ball, Position, Shape
 
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
-ROUNDINGS = 2.0  # by which a ray that hits a triangle may pass beside it
+ROUNDINGS = 1.5  # by which a ray that hits a triangle may pass beside it
 CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
 APART = 1024  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle

@@ -126,12 +126,14 @@ class Hits(ClosestHits):
 def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = None) -> Hits:
     """Find the closest hit with t > 0 of each of n rays through a scene.
 
-    `origins` and `directions` are (n, 3), in units of the scene; a direction may have any length but 0. A surface on
-    which a ray starts may be hit again: start it a little off. Where surfaces coincide the shape that comes first in
-    the scene is hit. The BVH of the last scene is kept, so that further rays through it start at once. Safe to call
-    from several threads. Where no kernel was compiled ahead of time, the first call for a combination of shapes
-    compiles for some seconds. ValueError, naming the argument, if an array has another shape, a number is infinite or
-    NaN, or a direction has length 0.
+    `origins` and `directions` are (n, 3), in units of the scene; a direction may have any length but 0. A ray from a
+    point that `trace` returned does not hit that surface there again: it starts on a surface where it is no farther
+    from it than 8 * 2^-53 of its largest coordinate, or of its largest distance from the shape's centre along an axis
+    of the scene, which is as exact as such points are. Where surfaces coincide the shape that comes first in the scene
+    is hit. The BVH of the last scene is kept, so that further rays through it start at once. Safe to call from several
+    threads. Where no kernel was compiled ahead of time, the first call for a combination of shapes compiles for some
+    seconds. ValueError, naming the argument, if an array has another shape, a number is infinite or NaN, or a direction
+    has length 0.
     """
     check_scene(scene, "trace")
     starts = checked_vectors(origins, "origins")
