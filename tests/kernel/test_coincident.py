@@ -67,13 +67,6 @@ def test_the_first_shape_owns_the_overlap_without_specks_of_shadow(name: str, ca
         assert wrong.sum() <= 2
 
 
-@pytest.mark.parametrize("name", ["cylinders", "spheres", "equal spheres", "planes"])
-def test_the_first_of_many_coincident_shapes_owns_the_overlap(name: str) -> None:
-    first, *others = [each.replace(colour=BLUE) for each in SAME[name] * 5]
-    picture = linear(scene(first.replace(colour=GREEN), *others), 60, 40)
-    assert np.abs(picture - linear(scene(first.replace(colour=GREEN)), 60, 40)).max() <= 1e-9
-
-
 def owners(best: np.ndarray, rival: Plane, origin: Vec, direction: Vec) -> np.ndarray:
     """Return the owner of each hit: 1, the shape that was hit at `best`, or 0, a plane that is tested after it."""
     state = best, np.ones_like(best), np.zeros_like(best)

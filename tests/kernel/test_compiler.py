@@ -7,7 +7,7 @@ import platform
 import struct
 import sys
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.kernel.machine_code.small_kernels import as_kernel, call, object_code_of
+from tests.kernel.machine_code.small_kernels import Inner, Outer, as_kernel, call, object_code_of
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 
 SYMBOL = struct.Struct("<IBBHQQ")  # of ELF for 64 bits: name, kind, visibility, section, value, size
@@ -136,19 +136,6 @@ def test_contraction_is_the_only_fast_math_of_instructions() -> None:
 
 
 # Passing by reference: a compiled function reads and writes the same numbers as an interpreted one.
-
-
-class Inner(NamedTuple):
-    line: Any
-    number: int
-
-
-class Outer(NamedTuple):
-    table: Any
-    deep: Any
-    inner: Inner
-    parts: Any
-    absent: Any = None
 
 
 def example() -> Outer:

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.scene import Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import reference
-from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, WHITE, linear, picture
+from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, WHITE, linear
 from tests.kernel.test_invariances import changed
 
 COMPASS = [  # above and below the eye: red towards +x, green towards +z
@@ -73,18 +73,8 @@ def test_the_field_of_view_is_what_the_camera_says(fov: float) -> None:
 
 @pytest.mark.parametrize(("fov", "same"), [(0, 1e-6), (180, 179.9999)])
 def test_extreme_fields_of_view_are_clamped_to_the_nearest_possible(fov: float, same: float) -> None:
-    assert np.array_equal(finite(scene_with_fov(fov)), finite(scene_with_fov(same)))
-
-
-def scene_with_fov(fov: float) -> Scene:
-    """A scene seen with a field of view, in degrees."""
-    return Scene((AMBIENT, LAMP, EYE.replace(fov=fov), *SHAPES))
-
-
-def test_a_field_of_view_of_179_999_shows_shapes_beside_the_eye() -> None:
-    walls = Plane((3, 0, 0), (1, 0, 0), RED), Plane((-3, 0, 0), (1, 0, 0), GREEN)
-    light = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, 0, 1), 179.999), *walls)), 48, 4)
-    assert ((light > 0) == np.repeat([[True, False, False], [False, True, False]], 24, axis=0)).all()  # +x is left
+    one, other = (finite(Scene((AMBIENT, LAMP, EYE.replace(fov=each), *SHAPES))) for each in (fov, same))
+    assert np.array_equal(one, other)
 
 
 @pytest.mark.parametrize("place", [1e9, 1e12, 0.99e15, -0.99e15])
@@ -95,22 +85,6 @@ def test_a_scene_far_from_the_origin_is_finite_and_a_large_one_looks_the_same(pl
     large = changed(ALL, lambda p: tuple(x * factor for x in p), lambda length: length * factor)
     light = finite(large)
     assert np.quantile(np.abs(light - linear(ALL)), 0.99) <= 1e-9
-
-
-def test_tiny_scenes_look_the_same() -> None:
-    for size in (1e-9, 1e-12):
-        tiny = changed(ALL, lambda p, size=size: tuple(x * size for x in p), lambda length, size=size: length * size)
-        assert np.quantile(np.abs(finite(tiny) - linear(ALL)), 0.99) <= 1e-9
-    speck = Sphere((0, 0, 1e6), 1e-9, WHITE), Cylinder((0, 0, 1e6), (0, 1, 0), 1e-9, 1e-9, WHITE)
-    finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 1e-6), *speck)))
-
-
-def test_thin_and_long_shapes_are_seen() -> None:
-    needle = Cylinder((0, 0, 5), (0.6, 0.8, 0), 1e-9, 1e9, WHITE)
-    disc = Cylinder((0, 0, 5), (0, 0.6, -0.8), 3, 1e-9, RED)
-    finite(Scene((AMBIENT, LAMP, EYE, needle, disc)))
-    light = finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 60), disc)))
-    assert (light[..., 0] > 0).sum() > 30
 
 
 @pytest.mark.parametrize(
@@ -138,9 +112,8 @@ def test_a_light_on_a_surface_does_not_light_that_surface() -> None:
     assert light.max() <= 0.15 + 1e-9
     floor = Plane((0, -1, 0), (0, 1, 0), WHITE)
     lit = finite(Scene((AMBIENT, Camera((0, 3, -5), (0, -0.6, 0.8), 60), Light((0, 1, 0), 1.0), ball, floor)), 48, 32)
-    assert lit.max() == pytest.approx(
-        0.15, abs=1e-9
-    )  # the top of the sphere occludes the floor from a light that stands on it
+    # The top of the sphere occludes the floor from a light that stands on it.
+    assert lit.max() == pytest.approx(0.15, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -162,27 +135,3 @@ def test_a_shape_beyond_a_light_occludes_nothing() -> None:
     open_sky, covered = (Scene((AMBIENT, below, lamp, floor, *more)) for more in ((), (ceiling,)))
     assert np.array_equal(finite(open_sky), finite(covered))
     assert np.array_equal(finite(covered), finite(Scene((AMBIENT, below, lamp, ceiling, floor))))
-
-
-def test_light_follows_the_cosine_law() -> None:
-    dark, above, floor = (
-        Ambient(0.0, WHITE),
-        Camera((0, 3, 0), (0, -1, 0), 90),
-        Plane((0, 0, 0), (0, 1, 0), (51, 102, 255)),
-    )
-    light = finite(Scene((dark, above, Light((1, 3, 2), 0.7), floor)), 9, 9)
-    x = 3 * (2 * (np.arange(9) + 0.5) / 9 - 1)
-    z = 3 * (2 * (np.arange(9) + 0.5) / 9 - 1)[:, None]  # looking down, up is -z
-    cosine = 3 / np.sqrt((x - 1) ** 2 + (z - 2) ** 2 + 9)
-    assert np.abs(light - 0.7 * cosine[..., None] * [0.2, 0.4, 1.0]).max() <= 1e-15
-
-
-def test_many_shapes_match_the_reference() -> None:
-    # So many shapes that light buffers are used.
-    random = np.random.default_rng(1)
-    balls = [Sphere(tuple(random.normal(size=3) * 4), 0.7, tuple(random.integers(30, 256, 3))) for _ in range(250)]
-    scene = Scene((AMBIENT, LAMP, EYE, *balls, *SHAPES))
-    pixels, light = picture(scene, 60, 40)
-    expected = reference.render(scene, 60, 40)
-    assert (np.abs(light - expected).max(axis=-1) > 1e-9).mean() < 1e-3
-    assert np.array_equal(pixels[..., 3], np.full((40, 60), 255))

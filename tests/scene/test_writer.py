@@ -16,7 +16,7 @@ from minirt.materials import Checker, Glass, Specular
 from minirt.scene import Camera, FurtherLight, Light, Scene, describe, dump, parse
 from minirt.shapes.sphere import Sphere
 from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, WHOLE, read, scene_with
-from tests.scene.strategies import ANY, ONCE, scenes, texts, values
+from tests.scene.strategies import scenes, texts, values
 
 BALL = Sphere((0.0, 0.0, 20.0), 12.6, (10, 0, 255))
 
@@ -198,9 +198,3 @@ def test_an_edit_changes_one_line_and_keeps_its_comment(text: str, data: st.Data
     again = parse(dump(changed)).scene
     assert again.elements == changed.elements
     assert dump(again) == dump(changed)
-
-
-@given(st.one_of(*ANY, *ONCE))
-@settings(max_examples=100, deadline=None)
-def test_a_description_reads_as_the_same_element(element: Element) -> None:
-    assert parse(f"A 0 0,0,0\nC 0,0,0 0,0,1 70\n{describe(element)}").scene.elements[2] == element

@@ -30,18 +30,29 @@ from tests.oracle.body import body, dot, exact, gradient
 from tests.shapes.examples import example, on_surface, place
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays
 from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
-from tests.stability.regime import Regime
+from tests.stability.regime import Regime, surfaces_at
+
+EYE = Camera((0, 0, 0), (0, 0, 1), 60)
 
 
-def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """t of rays by `minirt.trace`, each shape in a scene of its own."""
-    eye = Camera((0, 0, 0), (0, 0, 1), 60)
-    rays = zip(shapes, origins, directions, strict=True)
-    return np.stack([minirt.trace(Scene((eye, shape)), o, d).distance for shape, o, d in rays])
+def traced(rays: Rays) -> tuple[Array, Array, Array]:
+    """Distances, points and normals by `minirt.trace`, each shape in a scene of its own."""
+    hits = [minirt.trace(Scene((EYE, shape)), *each) for shape, *each in zip(*rays, strict=True)]
+    distances, _, points, normals = map(np.stack, zip(*hits, strict=True))
+    return distances, points, normals
 
 
-MODES: dict[str, Intersect] = {"arrays": on_arrays, "compiled": compiled, "traced": traced}
+def interpreted(rays: Rays, intersect: Intersect = on_arrays) -> tuple[Array, Array, Array]:
+    """Distances, points and normals by the interpreted formulas."""
+    t = intersect(*rays)
+    return t, *surfaces_at(rays, t)
 
+
+MODES: dict[str, Intersect] = {
+    "arrays": on_arrays,
+    "compiled": compiled,
+    "traced": lambda *rays: traced(Rays(*rays))[0],
+}
 
 COUNT = 8  # shapes of a regime
 QUADRICS = (Sphere, Cylinder, Cone, Paraboloid, Hyperboloid, Ellipsoid)
@@ -125,10 +136,13 @@ def places(shapes: list[Shape]) -> Array:
     return np.stack([place(shape) for shape in shapes])[:, None]
 
 
+def is_solid(kind: Kind) -> bool:
+    return body(example(kind, np.random.default_rng(1))).solid
+
+
 def common(kind: Kind) -> list[Regime]:
     """The regimes that every kind of shape has."""
     made, plain = partial(towards, kind), partial(example, kind)
-    solid = body(example(kind, np.random.default_rng(1))).solid
     regimes = [
         Regime("usual", partial(made, 1)),
         Regime("a million sizes away", partial(made, 2, (1e2, 1e6))),
@@ -139,7 +153,7 @@ def common(kind: Kind) -> list[Regime]:
         Regime("the greatest size", partial(made, 6, size=FARTHEST / 5)),
         Regime("from the middle", partial(made, 7, (1e-9, 0.1))),
     ]
-    if solid:
+    if is_solid(kind):
         regimes += [
             Regime("along the surface", partial(shots, 8, plain, touching)),
             Regime("beside the surface", partial(shots, 9, plain, leaving)),

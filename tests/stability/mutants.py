@@ -18,11 +18,6 @@ from tests.shapes.regimes import Array
 from tests.stability.common import QUADRICS
 
 
-def with_formula(formula: Any) -> Intersect:
-    """`on_arrays` with another formula than the shape's own."""
-    return lambda shapes, origins, directions: on_arrays(shapes, origins, directions, formula)
-
-
 def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """Ignore hits nearer than a fixed distance: a remedy against shadow acne that knows no scale."""
     t = on_arrays(shapes, origins, directions)

@@ -39,15 +39,14 @@ def certified(rays: Rays, t: Array, normals: Array | None = None) -> Certificate
     return whole
 
 
-def normals_of(rays: Rays, t: Array) -> Array:
-    """The normals of hits at t, by the interpreted formulas."""
-    points = rays.origins + np.where(np.isfinite(t), t, 0.0)[..., None] * rays.directions
-    return surfaces(rays.shapes, points)[1]
+def surfaces_at(rays: Rays, t: Array) -> tuple[Array, Array]:
+    """Points and normals of hits at t, by the interpreted formulas."""
+    return surfaces(rays.shapes, rays.origins + np.where(np.isfinite(t), t, 0.0)[..., None] * rays.directions)
 
 
 def away_from_surface(rays: Rays, t: Array) -> list[str]:
     """Complaints about hits that are farther from the surface than the backward bound."""
-    errors = certified(rays, t, normals_of(rays, t)).backward_error
+    errors = certified(rays, t, surfaces_at(rays, t)[1]).backward_error
     with np.errstate(invalid="ignore"):
         beyond = np.argwhere(np.isfinite(t) & ~(errors <= BOUND)).tolist()
     return [complaint(rays.shapes[i], rays.origins[i, j], rays.directions[i, j], errors[i, j]) for i, j in beyond]

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.torus import Torus
-from tests.oracle.body import body
-from tests.shapes.examples import example
-from tests.stability.common import common, stretched_regimes
+from tests.stability.common import common, is_solid, stretched_regimes
 from tests.stability.places import files
 from tests.stability.regime import Regime
 
@@ -20,7 +16,7 @@ def own_regimes(kind: Kind) -> list[Regime]:
 
 def regimes(kind: Kind) -> list[Regime]:
     """Return the regimes of a shape type: common ones, its own, and stretched ones for solids except tori."""
-    plain = body(example(kind, np.random.default_rng(1))).solid and kind.element is not Torus
+    plain = is_solid(kind) and kind.element is not Torus
     return [*common(kind), *(stretched_regimes(kind) if plain else []), *own_regimes(kind)]
 
 

@@ -14,7 +14,7 @@ from minirt.fields import MeshFile
 from minirt.lanes import Vec, dot, sqrt
 from minirt.rendering.queries import certificates
 from minirt.rendering.queries.certificates import Certificate
-from minirt.scene import Camera, Scene
+from minirt.scene import Scene
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary
 from minirt.shapes.cone import Cone
@@ -26,14 +26,13 @@ from tests.paths import SCENES
 from tests.shapes.execution_modes import on_arrays
 from tests.shapes.regimes import GREY, RAYS, Array, random_directions
 from tests.stability import regime
-from tests.stability.common import towards
-from tests.stability.regime import BOUND, ExactCertificate, Regime, certified, normals_of
+from tests.stability.common import EYE, towards
+from tests.stability.regime import BOUND, ExactCertificate, Regime, certified, surfaces_at
 from tests.stability.table import REGIMES
 
 WITHIN = 0.02  # relative difference of a certificate and the exact one
 LEAST = 1e-13  # backward error that double-double numbers do not resolve: 2^-104 of the coordinates
 NEARLY = 1e-14  # error of the normal that float64 does not resolve
-EYE = Camera((0, 0, 0), (0, 0, 1), 60)
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 
 
@@ -42,7 +41,7 @@ def usual(kind: Kind) -> tuple[Any, Array, Array]:
     """Usual rays at shapes of a kind, their hits and the normals there."""
     rays = towards(kind, 31)
     t = on_arrays(*rays)
-    return rays, t, normals_of(rays, t)
+    return rays, t, surfaces_at(rays, t)[1]
 
 
 def differs(found: Any, right: ExactCertificate) -> bool:
@@ -72,7 +71,7 @@ def wrong(rays: Any, t: Array, normals: Array, found: Certificate, indices: Any)
 def test_certificates_are_those_of_the_oracle_and_hits_hold_the_backward_bound(kind: Kind, regime: Regime) -> None:
     rays = regime.make()
     t = on_arrays(*rays)
-    normals = normals_of(rays, t)
+    normals = surfaces_at(rays, t)[1]
     found = certified(rays, t, normals)
     worst = np.unravel_index(np.nanargmax(found.backward_error), t.shape)
     middle = np.argwhere(np.isfinite(t))[np.isfinite(t).sum() // 2]

@@ -17,8 +17,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-import minirt
-from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
@@ -28,16 +26,14 @@ from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from tests.oracle.body import body, crossings
 from tests.shapes.examples import example, place
-from tests.shapes.execution_modes import surfaces
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions, unit
 from tests.shapes.regimes import random_perpendiculars as perpendiculars
 from tests.stability import revolved, sheets
-from tests.stability.common import Make, Shots, nearest_on_surface, pose_of, shots, sign, within
+from tests.stability.common import Make, Shots, interpreted, nearest_on_surface, pose_of, shots, sign, traced, within
 from tests.stability.degenerate import wrong_of
 from tests.stability.mutants import as_of_a_shadow_ray, with_ends_beside_the_start
 from tests.stability.regime import BOUND, U, certified, size
 
-EYE = Camera((0, 0, 0), (0, 0, 1), 60)
 STEEP = 2.0**-16  # cosine of ray and normal: a ray that starts on a surface and is flatter touches it, to rounding
 AGAIN = 64.0  # roundings of the start's height above the surface, within which a hit is that of the start
 SEED = system_random.SystemRandom().randrange(2**32)  # each run tries other rays
@@ -61,13 +57,6 @@ class Row(NamedTuple):
     again: int  # hits of the surface that the ray has just left
     wrong: int  # answers that are right for no shape within 64 roundings
     complaint: str = ""
-
-
-def traced(rays: Rays) -> tuple[Array, Array, Array]:
-    """Distances, points and normals by `minirt.trace`, each shape in a scene of its own."""
-    hits = [minirt.trace(Scene((EYE, shape)), *each) for shape, *each in zip(*rays, strict=True)]
-    distances, _, points, normals = map(np.stack, zip(*hits, strict=True))
-    return distances, points, normals
 
 
 def measured(case: Case, seed: int, shapes: int) -> Row:
@@ -222,11 +211,7 @@ PLANTED = {
 
 @pytest.mark.parametrize("case", [case for case in CASES if case.name in PLANTED], ids=lambda case: case.name)
 def test_a_careless_formula_does_not_pass(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    def careless(rays: Rays) -> tuple[Array, Array, Array]:
-        t = PLANTED[case.name](*rays)
-        return t, *surfaces(rays.shapes, rays.origins + np.nan_to_num(t, posinf=0.0)[..., None] * rays.directions)
-
-    monkeypatch.setattr(f"{__name__}.traced", careless)
+    monkeypatch.setattr(f"{__name__}.traced", partial(interpreted, intersect=PLANTED[case.name]))
     assert measured(case, SEED, 16)[2:5] != (0, 0, 0)
 
 

@@ -19,13 +19,14 @@ from minirt.fields import Length, Lengths
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.shape_arrays import bounding_boxes
-from minirt.scene import Camera, Scene
+from minirt.scene import Scene
 from minirt.shapes import KINDS, Kind, Shape
 from tests.oracle.body import body, normals
 from tests.oracle.many import crossed
-from tests.shapes.execution_modes import Intersect, compiled, on_arrays, surfaces
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays
+from tests.shapes.regimes import Rays
 from tests.stability import mutants
-from tests.stability.common import MODES, common, towards
+from tests.stability.common import EYE, MODES, common, interpreted, towards, traced
 from tests.stability.degenerate import wrong_in
 from tests.stability.regime import Array, Regime, U, rays_of, size
 from tests.stability.table import REGIMES
@@ -35,8 +36,7 @@ def label(value: object) -> str:
     return value.element.title if isinstance(value, Kind) else getattr(value, "name", getattr(value, "__name__", ""))
 
 
-Way = Callable[[Shape, Array, Array], tuple[Array, Array, Array]]
-EYE = Camera((0, 0, 0), (0, 0, 1), 60)
+Way = Callable[[Rays], tuple[Array, Array, Array]]
 KIND = pytest.mark.parametrize("kind", KINDS, ids=label)
 EACH = pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)
 SEED = st.integers(0, 2**32)
@@ -101,25 +101,11 @@ def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
     return float(found[best][0]), errors[best]
 
 
-def interpreted(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
-    """Distances, points and normals of rays, by the interpreted formulas."""
-    t = on_arrays([shape], origins[None], directions[None])[0]
-    on, out = surfaces([shape], (origins + np.where(np.isfinite(t), t, 0.0)[:, None] * directions)[None])
-    return t, on[0], out[0]
-
-
-def traced(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
-    """Distances, points and normals of rays, by `minirt.trace`."""
-    hits = minirt.trace(Scene((EYE, shape)), origins, directions)
-    return hits.distance, hits.point, hits.normal
-
-
 @pytest.mark.parametrize("way", [interpreted, traced])
 @pytest.mark.parametrize(("kind", "regime"), [(kind, each) for kind in KINDS for each in common(kind)], ids=label)
 def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: Regime, way: Way) -> None:
     rays = rays_of(regime)
-    for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):
-        distances, points, found = way(shape, origins, directions)
+    for shape, origins, directions, distances, points, found in zip(*rays, *way(rays), strict=True):
         for i in np.flatnonzero(np.isfinite(distances))[::3]:
             coordinates = np.abs(points[i]).max() + np.abs(bounding_boxes([shape])).max()
             distance, error = off(shape, points[i], found[i])

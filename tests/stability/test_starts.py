@@ -32,6 +32,7 @@ from tests.shapes.regimes import (
     unit,
 )
 from tests.skipping import skip_incomplete
+from tests.stability.common import is_solid
 from tests.stability.mutants import as_of_a_shadow_ray
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
@@ -64,11 +65,7 @@ def seen(kind: Kind, seed: int, count: int = 1000, size: float | None = None) ->
     shapes = [shapes[i] for i in first[0]]
     on, out = surfaces(shapes, (origins[first] + t[first][:, None] * directions[first])[:, None])
     back = np.sum(out[:, 0] * directions[first], axis=-1) > 0
-    return Seen(shapes, on, np.where((back & (not solid(kind)))[:, None, None], -out, out))
-
-
-def solid(kind: Kind) -> bool:
-    return body(example(kind, np.random.default_rng(1))).solid
+    return Seen(shapes, on, np.where((back & (not is_solid(kind)))[:, None, None], -out, out))
 
 
 def away_from(random: Random, normals: Array) -> Array:
@@ -106,7 +103,7 @@ def test_no_ray_hits_the_surface_again_from_which_it_starts(kind: Kind) -> None:
     assert acne(seen(kind, 1), shadow_offsets, as_of_a_shadow_ray) == 0
 
 
-@pytest.mark.parametrize("kind", [each for each in KINDS if solid(each)], ids=lambda kind: kind.element.title)
+@pytest.mark.parametrize("kind", [each for each in KINDS if is_solid(each)], ids=lambda kind: kind.element.title)
 def test_no_ray_leaves_a_solid_unseen(kind: Kind) -> None:
     rays = shot(seen(kind, 3), -1.0, shadow_offsets)
     t = compiled(*rays)

@@ -13,7 +13,7 @@ from minirt.kernel.bvh_nodes import WIDTH
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
-from tests.kernel.bvh.test_bvh import Interpreted, brute_force, build_tree, random_rays, random_shapes, trace
+from tests.kernel.bvh.test_bvh import brute_force, build_tree, random_rays, random_shapes, trace
 from tests.kernel.machine_code.small_kernels import as_kernel
 from tests.shapes.examples import example
 
@@ -77,18 +77,6 @@ def test_nearer_shapes_occlude(implementation: int, count: int) -> None:
             shadow_queries()[implementation](scene, origins.T.copy(), directions.T.copy(), distances, visible)
         # Rays with a negative distance are not active, and inactive rays are not visible.
         assert np.array_equal(visible, np.where(hit, is_visible, factor > 0))
-
-
-def test_interpreted_and_compiled_rays_hit_the_same() -> None:
-    random = np.random.default_rng(5)
-    shapes = random_shapes(random, 60)
-    rays = random_rays(random, shapes, 5 * WIDTH + 3)
-    for one, other in zip(
-        trace(build_tree(shapes), *rays),
-        trace(build_tree(shapes, Interpreted), *rays, bvh_traversal.trace_rays),
-        strict=True,
-    ):
-        assert np.allclose(one, other, rtol=1e-12, atol=1e-12, equal_nan=True)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,19 @@ from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import Call, Entry, Library
 
 ARGUMENT = 1.5
+
+
+class Inner(NamedTuple):
+    line: Any
+    number: int
+
+
+class Outer(NamedTuple):
+    table: Any
+    deep: Any
+    inner: Inner
+    parts: Any = ()
+    absent: Any = None
 
 
 def double(x: Any) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,21 +12,20 @@ from numba import typeof
 from minirt.kernel.compiler.object_code import type_of
 from minirt.kernel.machine_code.arguments import key_of, signature_of, words_of
 from minirt.kernel.machine_code.library import Entry
-from tests.kernel.machine_code.small_kernels import Compiler, both, call, compiled, count, double, half, library
+from tests.kernel.machine_code.small_kernels import (
+    Compiler,
+    Inner,
+    Outer,
+    both,
+    call,
+    compiled,
+    count,
+    double,
+    half,
+    library,
+)
 
 RECORD = np.dtype([("height", "<f8"), ("centre", "<f8", (3,))])
-
-
-class Inner(NamedTuple):
-    line: Any
-    number: int
-
-
-class Outer(NamedTuple):
-    table: Any
-    deep: Any
-    inner: Inner
-    absent: Any = None
 
 
 def read_back(number: int, outer: Outer, factor: float, records: Any, nothing: None, out: Any) -> int:
