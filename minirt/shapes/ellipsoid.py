@@ -11,7 +11,6 @@ stretched together with it.
 from __future__ import annotations
 
 from math import hypot
-from sys import float_info
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
@@ -35,8 +34,6 @@ from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, own_direction
 from minirt.shapes.quadrics import CLOSE, ROUNDING, exact_ends, negative_interval
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, point_along
 
-SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
-
 
 @record()
 class Ellipsoid(Axial):
@@ -57,7 +54,7 @@ class Ellipsoid(Axial):
 
     def semi_axes(self) -> Triple:
         width, height, depth = self.sizes
-        return max(width / 2, SHORTEST), max(height / 2, SHORTEST), max(depth / 2, SHORTEST)
+        return width / 2, height / 2, depth / 2
 
     def axes(self) -> list[tuple[float, Triple]]:
         """The semi-axes in ascending order, each with its unit direction."""
