@@ -25,6 +25,7 @@ from minirt.report.variants import Variant, with_more, without_lists, without_un
 from minirt.scene import FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
 from minirt.shapes.torus import Torus
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES, interpreted, linear
 from tests.random_scenes import random_scene
@@ -174,9 +175,10 @@ def test_a_kernel_pays_once_it_has_saved_its_compile_time(
 # Brute force tries every shape for every ray and gives the same picture, bit for bit.
 
 WIDE, HIGH = 70, 40  # 5 x 3 tiles
+MANY = ALL.add(*(Sphere((i % 16 - 7.5, i // 16 - 7.5, 4 + i % 7), 0.7, (90, 90, i)) for i in range(250)))
 
 
-@pytest.mark.parametrize("scene", [ALL, Scene((AMBIENT, EYE, *SHAPES)), *map(random_scene, range(1, 6))])
+@pytest.mark.parametrize("scene", [ALL, MANY, Scene((AMBIENT, EYE, *SHAPES)), *map(random_scene, range(1, 6))])
 def test_brute_force_gives_the_same_picture(scene: Scene) -> None:
     brute = linear(scene, WIDE, HIGH, 3, Renderer(2, without=CULLING))
     assert np.array_equal(brute, linear(scene, WIDE, HIGH, 3))
