@@ -1,7 +1,8 @@
 """Automatic beside uniform sampling, on scenes drawn at random: `python -m tests.bench.sampling [CELLS [SEED]]`.
 
 A cell is a scene and an error that is asked for. Its ratio is the processor time of automatic sampling by that of the
-smallest uniform number of samples with at most the same true error: the RMSE against a picture of many samples.
+smallest uniform number of samples with at most the same true error. The product of the differences from two pictures of
+many samples, independent of each other, has its square as mean: so their own errors are no part of it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from tests.test_random_materials import material_scene
 
 WIDTH, HEIGHT = 320, 180
 GOALS, LEAST, MOST = 3, 0.002, 0.02  # errors of a scene, from the least to the most
-REFERENCE = 512  # samples of the picture that tells true errors
+REFERENCES = 700, 709  # samples of the pictures that tell true errors; none of `COUNTS`, to be independent of them
 COUNTS = sorted({round(2 ** (k / 5)) for k in range(51)})  # uniform numbers of samples
 TURNS, SECONDS = 3, 0.02  # of each way to sample, and how long a turn takes at least
 
@@ -69,19 +70,20 @@ class Measured:
         self.scene, self.renderer, self.errors = drawn_scene(seed), Renderer(1), dict[int, float]()
         self.renderer.kernels.specialised_after = inf  # no compiler works beside it
         self.pixels, self.light = np.zeros((HEIGHT, WIDTH, 4), np.uint8), np.zeros((HEIGHT, WIDTH, 3))
-        self.draw(REFERENCE)
-        self.truth = np.clip(self.light, 0, 1)
+        self.truths = [np.clip(self.draw(count), 0, 1) for count in REFERENCES]
 
-    def draw(self, samples: int | float) -> object:
-        """Render with so many samples a pixel, or until an error is reached, which is not whole."""
+    def draw(self, samples: int | float) -> np.ndarray:
+        """Return light with so many samples a pixel, or with an error, which is not whole."""
         way = self.renderer.render if isinstance(samples, int) else self.renderer.reach
-        return way(self.scene, self.pixels, samples, linear=self.light)
+        way(self.scene, self.pixels, samples, linear=self.light)
+        return self.light
 
     def error(self, samples: int | float) -> float:
         """Return the true error of a way to sample."""
         if samples not in self.errors:
-            self.draw(samples)
-            self.errors[samples] = float(np.sqrt(np.square(np.clip(self.light, 0, 1) - self.truth).mean()))
+            light = np.clip(self.draw(samples), 0, 1)
+            products = (light - self.truths[0]) * (light - self.truths[1])
+            self.errors[samples] = float(np.sqrt(max(products.mean(), 0.0)))
         return self.errors[samples]
 
     def cell(self, seed: int, goal: float) -> Cell:

@@ -106,8 +106,8 @@ EXPECTED = 3.0 ** np.arange(1 - CLASSES, 1)  # ratios of c, to that of the highe
 EDGE_ERROR = 0.04  # c of the highest class, for each pixel of a packet; about the upper quartile
 SECONDS = 2.0 ** (np.arange(CLASSES) / 4)  # ratios of the time of a sample
 PRIOR = 4.0  # probes that what is expected counts as: c of a class, or the sum of the errors of a pilot
-SPREAD = 3.0  # standard deviation of the error of a packet by what is expected of it, at least
-CERTAINTY = 2.0  # standard errors of the estimate that are added to it
+SPREAD = 4.0  # standard deviation of the error of a packet by what is expected of it, at least
+CERTAINTY = 3.0  # standard errors of the estimate that are added to it
 EVENLY = 0.6  # share of the pilot that is chosen evenly
 LEAST_SHARE = 1 / 16  # of what uniform samples would be, for each packet
 WORTH = 0.8  # time of samples by class, as a share of that of uniform ones, from which on they are not worth it
@@ -184,7 +184,6 @@ class Packets:
         self.sizes = np.zeros(CLASSES, np.int64)  # of the classes
         self.work = np.zeros(CLASSES)  # time of a sample of all packets of each class, whose sum is that of all packets
         self.c = EDGE_ERROR * PACKET_HEIGHT * packet_width * EXPECTED
-        self.weight = PRIOR  # probes that the sum of the expected errors counts as
         self.doubt = 0.0  # standard error of the estimated sum of squared errors, as a share of it
 
     def choose(self, number: float, chances: np.ndarray | None = None) -> np.ndarray:
@@ -249,9 +248,8 @@ class Packets:
         expected = weights * self.c[classes] * COUNTS[self.levels[probes]] ** -ERROR_EXPONENT
         total = float(expected.sum())
         number = total**2 / float(expected @ expected)  # of probes that would tell as much by equal weights (Kish 1965)
-        ratio = max((number * float(found.sum()) / total + self.weight) / (number + self.weight), 1 / PRIOR)
-        self.weight += number
-        self.doubt = max(SPREAD / sqrt(self.weight), float(np.linalg.norm(found / ratio - expected)) / total)
+        ratio = max((number * float(found.sum()) / total + PRIOR) / (number + PRIOR), 1 / PRIOR)
+        self.doubt = max(SPREAD / sqrt(number + PRIOR), float(np.linalg.norm(found / ratio - expected)) / total)
         each = total / number
         by_class = [np.bincount(classes, values, CLASSES) + PRIOR * each for values in (found / ratio, expected)]
         c = self.c * np.clip(by_class[0] / by_class[1], 1 / MOST_CHANGE, MOST_CHANGE)

@@ -31,7 +31,6 @@ from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 160, 90
-FACTOR = 1.5  # between estimated and true errors
 EXCESS = 1.3  # of a true error over the wanted one, in none of all
 VIEW = (Ambient(0.2, (255, 255, 255)), Camera((0, 1, -10), (0, -0.05, 1), 60), Light((-6, 9, -6), 0.7, (255, 255, 255)))
 FLOOR = Plane((0, -2, 0), (0, 1, 0), (200, 200, 200))
@@ -104,7 +103,7 @@ def test_the_true_error_is_as_requested_and_as_estimated(name: str, requested: f
     assert reached.error <= requested
     assert 0.6 < reached.error / true < 3  # so small a picture has few probes, and doubt leans to one side
     assert true < EXCESS * requested
-    assert true > requested / 4 or reached.most <= 4
+    assert true > requested / 5 or reached.most <= 4
     assert 1 <= reached.samples <= reached.most
     shown = pixels[..., 2::-1] / 255
     assert np.abs(shown - np.clip(linear, 0, 1)).max() < 0.501 / 255
@@ -229,9 +228,8 @@ def excesses(seed: int, pictures: int = 120) -> np.ndarray:
 def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytest.MonkeyPatch) -> None:
     seed = int(np.random.default_rng().integers(2**32))
     kept = excesses(seed)
-    assert (kept <= 1).mean() > 0.9, seed
-    assert np.quantile(kept, 0.97) < EXCESS, seed
-    assert np.median(kept) > 0.5, seed
+    assert np.quantile(kept, 0.95) < 1, seed
+    assert np.median(kept) > 0.4, seed
     monkeypatch.setattr(sampling, "CERTAINTY", 0.0)  # estimates as they are
     assert (excesses(seed) <= 1).mean() < 0.85, seed
 
