@@ -54,7 +54,7 @@ def test_16_bits_have_the_tone_and_round_to_the_8_bits(run: Run, folder: Path, n
 
 
 def test_light_of_auto_sampling_goes_below_the_rounding_of_8_bits(run: Run, folder: Path) -> None:
-    goal = ("--samples", "auto", "--error", "3e-4", "--strict")
+    goal = ("--samples", "auto", "--error", "2e-4", "--strict")
     assert run("ball.rt", "-o", "x.exr", "--size", "160x90", *goal).status == 0
     assert run("ball.rt", "-o", "x.png", "--size", "160x90", *goal).status == 1
 
