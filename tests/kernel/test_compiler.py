@@ -73,7 +73,7 @@ def code_of(function: Any, *arguments: Any) -> ObjectCode:
 
 @ELF
 @pytest.mark.skipif(LIBRARY.cache is None, reason="kernels cannot be kept here")
-def test_kernels_refer_to_nothing_outside_of_themselves() -> None:
+def test_kernels_refer_to_nothing_outside_of_themselves_but_the_library_of_c() -> None:
     Renderer(1).kernels.compile(ALL)
     calls = [*calls_for(ALL, "double", 8), ray_query()]
     assert len({name for name, _ in calls}) > 3
@@ -81,7 +81,7 @@ def test_kernels_refer_to_nothing_outside_of_themselves() -> None:
         LIBRARY.get(each)
         kernel = LIBRARY.code(LIBRARY.identity(each))
         assert kernel
-        assert undefined_symbols(kernel) == set(), each[0]
+        assert undefined_symbols(kernel) <= {"memset"}, each[0]  # clears what an outlined function returns
     assert undefined_symbols(code_of(quotients, np.zeros(1), np.zeros(1))) == set()
 
 

@@ -1,8 +1,8 @@
 """Compiles a function to object code with one entry point, which C can call: it takes the address of its arguments.
 
-See `minirt.kernel.machine_code.arguments`. The code refers to nothing outside of itself, neither to Python nor to the
-compiler. Outside this folder the functions that kernels call are plain Python, and call each other as they stand:
-importing this module registers all of them, and numba finds the compiled form of each.
+See `minirt.kernel.machine_code.arguments`. The code refers to nothing outside of itself but C's `memset`, neither to
+Python nor to the compiler. Outside this folder the functions that kernels call are plain Python, and call each other as
+they stand: importing this module registers all of them, and numba finds the compiled form of each.
 """
 
 from __future__ import annotations
