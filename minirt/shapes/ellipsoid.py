@@ -119,7 +119,7 @@ def intersect(
 
 @outlined
 def exact_interval(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, like: Number) -> tuple[Number, Number]:
-    """Where a line enters and leaves the ellipsoid, without any cancellation (`minirt.shapes.quadrics`)."""
+    """Compute t at which a line enters and leaves the ellipsoid, without cancellation (`minirt.shapes.quadrics`)."""
     f = offset(splat(origin, like), splat(ellipsoid.centre, like))
     p, d = in_unit_sphere(ellipsoid, f), in_unit_sphere(ellipsoid, pairs(direction, 0.0 * direction, like))
     slope, turn = scaled(rounded(p), ellipsoid.scale), scaled(rounded(d), ellipsoid.scale)

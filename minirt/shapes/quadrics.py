@@ -54,7 +54,7 @@ ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height abov
 
 
 class Span(NamedTuple):
-    """Where a line is below a surface of revolution, and where it is between the planes of the solid's ends."""
+    """The intervals of a line below a surface of revolution, and between the planes of the solid's ends."""
 
     a: Number  # of its quadratic equation; a line with a < 0 is steeper than the side
     below: Number  # t at which it falls below the surface, as of `negative_interval`
@@ -81,7 +81,7 @@ def negative_interval(a: Number, per_a: Number, b: Number, c: Number, start: Num
 
 
 def in_order(q: Number, by_a: Number, by_c: Number, a: Number, c: Number) -> tuple[Number, Number]:
-    """Return of the roots q / a and c / q that at which the parabola falls below 0, and that at which it rises above.
+    """Order the roots q / a and c / q: first the one at which the parabola falls below 0, then that where it rises.
 
     With q = 0 it touches zero at 0 or, if a = 0 too, is the constant c: below zero from -infinity or from infinity on.
     """
@@ -202,7 +202,7 @@ def exact_span(
 def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number]:
     """Solve as `negative_interval` does. Where a line starts `on` the surface the nearer end is exactly 0.
 
-    If the start is within rounding the middle between both ends, both are: `error` is the square of that of b.
+    If b is 0 to rounding, the start lies midway between both ends, and both are 0: `error` is the square of that of b.
     """
     square, half = value(a), value(b)
     both = on & (half * half <= error)

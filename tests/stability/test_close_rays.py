@@ -49,7 +49,7 @@ class Case(NamedTuple):
 
 
 class Row(NamedTuple):
-    """What the rays of a case have met, and a complaint about the first of them."""
+    """Counts and the largest error of the hits of a case, and a complaint about the first wrong one."""
 
     hits: int
     largest: float  # backward error

@@ -236,7 +236,7 @@ def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytes
 
 @pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (5.0, 0.01, 1), (0.2, 0.9, 1)])
 def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: float, sweeps: int) -> None:
-    """Where they all need several samples, these are drawn at once: the picture is a uniform one."""
+    """A picture whose packets all need several samples is drawn at once, as a uniform one."""
     grid, plans = Packets(80, 200, 4), []
     c = np.random.default_rng().lognormal(0, spread, grid.count)
 
