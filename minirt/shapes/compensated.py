@@ -6,12 +6,8 @@ The pairs of a rounded result and its error are exact: two-sum (Moller 1965; Knu
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from decimal import Context, Decimal, localcontext
-from math import copysign
 from typing import Any
 
-from minirt.fields import Triple, cos_and_sin
 from minirt.lanes import (
     Number,
     Vec,
@@ -25,7 +21,6 @@ from minirt.lanes import (
     where,
 )
 
-EXACT = Context(prec=60)  # digits
 POSITION = 8.0  # unit roundoffs of the largest coordinate, by which a point that was computed may be off its surface
 Pair = tuple[Number, Number]  # a number of twice the precision: its rounded value, and what that lacks
 Pairs = tuple[Pair, Pair, Pair]  # a vector: x, y and z
@@ -94,9 +89,9 @@ def offset(point: Vec, centre: Vec) -> Pairs:
     return two_sum(point.x, -centre.x), two_sum(point.y, -centre.y), two_sum(point.z, -centre.z)
 
 
-def pairs(v: Vec, low: Vec, like: Number) -> Pairs:
-    """A vector and what it lacks, as pairs of lanes as `like` is."""
-    return pair(v.x, low.x, like), pair(v.y, low.y, like), pair(v.z, low.z, like)
+def pairs(v: Vec, like: Number) -> Pairs:
+    """A vector as pairs of lanes as `like` is."""
+    return pair(v.x, 0.0, like), pair(v.y, 0.0, like), pair(v.z, 0.0, like)
 
 
 def along(f: Pairs, w: Pairs, excess: Number) -> Pair:
@@ -126,33 +121,3 @@ def position_error(origin: Vec, p: Vec) -> Number:
 def zero_within(x: Number, error: Number) -> Number:
     """Return x, or exactly 0 where x is no more than its error."""
     return where(fabs(x) <= error, 0.0, x)
-
-
-# Low parts of rounded numbers in packed shapes: what the numbers lack. With them a shape is known to 32 digits. Where a
-# ray starts closely above a huge shape, the rounding of an axis or a slope moves the surface by more than the height of
-# the start.
-
-
-def scaled_to_unit(*numbers: float) -> list[Decimal]:
-    """Scale numbers, of which the squares add up to 1 but for rounding, so that they do exactly."""
-    exact = [Decimal(x) for x in numbers]
-    length = EXACT.sqrt(sum(x * x for x in exact))
-    return [x / length for x in exact]
-
-
-def lacking(exact: Iterable[Decimal], rounded: Vec) -> Vec:
-    """What the numbers of a rounded vector lack."""
-    parts = zip(exact, (rounded.x, rounded.y, rounded.z), strict=True)
-    return Vec(*(float(part - Decimal(number)) for part, number in parts))
-
-
-def basis_low(axis: Triple, roll: float, u: Vec, v: Vec, w: Vec) -> tuple[Vec, Vec, Vec]:
-    """What the vectors u, v, w of `minirt.shapes.frames.basis` lack."""
-    with localcontext(EXACT):
-        x, y, z = scaled_to_unit(*axis)
-        c, s = scaled_to_unit(*cos_and_sin(roll))
-        sign = Decimal(copysign(1.0, axis[1]))
-        a = -1 / (sign + y)
-        pairs = ((sign * z * x * a, sign + x * x * a), (-sign * z, -x), (1 + sign * z * z * a, z * x * a))
-        rolled_u, rolled_v = [c * p + s * q for p, q in pairs], [c * q - s * p for p, q in pairs]
-        return lacking(rolled_u, u), lacking(rolled_v, v), lacking((x, y, z), w)

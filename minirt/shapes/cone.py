@@ -18,8 +18,6 @@ from minirt.lanes import (
     Vec,
     fabs,
     inverse_root,
-    maximum,
-    minimum,
     rarely,
     splat,
     sqrt,
@@ -81,19 +79,18 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | No
     a = d.x * d.x + d.y * d.y - steepness
     reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
-    per_a, per_height = 1.0 / a, 1.0 / d.z
-    tip = -p.z * per_height
-    base = (cone.height - p.z) * per_height
-    first, last = minimum(tip, base), maximum(tip, base)
+    per_a = 1.0 / a
+    first, last = quadrics.slab(p.z, d.z, 0.0, cone.height)
     parallel = fabs(a) <= quadrics.PARALLEL * steepness
     start = quadrics.clamped_minimum(per_a, b, first, last)
     if rarely(parallel):
-        start = where(parallel, tip, start)
+        start = where(parallel, -p.z * (1.0 / d.z), start)
     q = p + start * d
     reach_q = cone.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
     c = q.x * q.x + q.y * q.y - reach_q * reach_q
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
+    pace = fabs(d.z) + 1.0 / (1.0 + cone.slope)
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
     if anywhere is not None:
         shell = 8.0 * position_error(origin, p)
         squared, half = reach * reach, 0.5 * cone.height

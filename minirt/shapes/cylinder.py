@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, sqrt, where
+from minirt.lanes import Mask, Number, Vec, copysign, fabs, rarely, splat, sqrt, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
@@ -63,15 +63,13 @@ def intersect(
     a = d.x * d.x + d.y * d.y
     b = p.x * d.x + p.y * d.y
     squared = cylinder.radius * cylinder.radius
-    per_a, per_height = 1.0 / a, 1.0 / d.z
-    bottom = (-cylinder.half - p.z) * per_height
-    top = (cylinder.half - p.z) * per_height
-    first, last = minimum(bottom, top), maximum(bottom, top)
+    per_a = 1.0 / a
+    first, last = quadrics.slab(p.z, d.z, -cylinder.half, cylinder.half)
     start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
     half_b = q.x * d.x + q.y * d.y
     c = q.x * q.x + q.y * q.y - squared
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
     if anywhere is not None:
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - cylinder.half

@@ -19,7 +19,6 @@ from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import (
     Pairs,
-    basis_low,
     divided,
     minus,
     offset,
@@ -48,9 +47,7 @@ class Ellipsoid(Axial):
     def pack(self) -> PackedEllipsoid:
         z, x, y = self.frame()
         a, b, c = self.semi_axes()
-        z_low, x_low, y_low = basis_low(self.axis, self.roll, z, x, y)
-        centre, semi, scale = Position(Vec(*self.centre)), Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c)
-        return PackedEllipsoid(centre, x, y, z, x_low, y_low, z_low, semi, scale)
+        return PackedEllipsoid(Position(Vec(*self.centre)), x, y, z, Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c))
 
     def semi_axes(self) -> Triple:
         width, height, depth = self.sizes
@@ -81,9 +78,6 @@ class PackedEllipsoid(NamedTuple):
     u: Vec
     v: Vec
     w: Vec
-    u_low: Vec  # what the rounded vectors lack
-    v_low: Vec
-    w_low: Vec
     semi: Vec  # the semi-axes along u, v and w
     scale: Vec  # 1 / semi
 
@@ -121,7 +115,7 @@ def intersect(
 def exact_interval(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, like: Number) -> tuple[Number, Number]:
     """Compute t at which a line enters and leaves the ellipsoid, without cancellation (`minirt.shapes.quadrics`)."""
     f = offset(splat(origin, like), splat(ellipsoid.centre, like))
-    p, d = in_unit_sphere(ellipsoid, f), in_unit_sphere(ellipsoid, pairs(direction, 0.0 * direction, like))
+    p, d = in_unit_sphere(ellipsoid, f), in_unit_sphere(ellipsoid, pairs(direction, like))
     slope, turn = scaled(rounded(p), ellipsoid.scale), scaled(rounded(d), ellipsoid.scale)
     c = minus(scalar_product(p, p), pair(1.0, 0.0, like))
     error = position_error(splat(origin, like), rounded(f))
@@ -133,9 +127,9 @@ def in_unit_sphere(ellipsoid: PackedEllipsoid, v: Pairs) -> Pairs:
     """Transform a vector into the own frame of an ellipsoid, divided by its semi-axes."""
     like = v[0][0]
     semi = splat(ellipsoid.semi, like)
-    x = scalar_product(v, pairs(ellipsoid.u, ellipsoid.u_low, like))
-    y = scalar_product(v, pairs(ellipsoid.v, ellipsoid.v_low, like))
-    z = scalar_product(v, pairs(ellipsoid.w, ellipsoid.w_low, like))
+    x = scalar_product(v, pairs(ellipsoid.u, like))
+    y = scalar_product(v, pairs(ellipsoid.v, like))
+    z = scalar_product(v, pairs(ellipsoid.w, like))
     return divided(x, semi.x), divided(y, semi.y), divided(z, semi.z)
 
 

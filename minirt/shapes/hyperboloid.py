@@ -22,7 +22,6 @@ from minirt.lanes import (
     fabs,
     inverse_root,
     maximum,
-    minimum,
     rarely,
     splat,
     sqrt,
@@ -93,18 +92,16 @@ def intersect(
     reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     waist = hyperboloid.waist * hyperboloid.waist
-    per_a, per_height = 1.0 / a, 1.0 / d.z
-    bottom = (-hyperboloid.half - p.z) * per_height
-    top = (hyperboloid.half - p.z) * per_height
-    first, last = minimum(bottom, top), maximum(bottom, top)
+    per_a = 1.0 / a
+    first, last = quadrics.slab(p.z, d.z, -hyperboloid.half, hyperboloid.half)
     # From here on t is counted from the plane of the waist or, for a flat ray, from the deepest point in the solid.
     steep = a < quadrics.PARALLEL * (rise * rise)
-    start = where(steep, -p.z * per_height, quadrics.clamped_minimum(per_a, b, first, last))
+    start = where(steep, -p.z * (1.0 / d.z), quadrics.clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = hyperboloid.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
     c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
     if anywhere is not None:
         shell = 8.0 * position_error(origin, p)
         squared = reach * reach + waist

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, unit, where
+from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, maximum, rarely, splat, sqrt, unit, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
@@ -88,15 +88,14 @@ def intersect(
     a = d.x * d.x + d.y * d.y
     slant = paraboloid.focal * d.z
     b = p.x * d.x + p.y * d.y - slant
-    per_a, per_height = 1.0 / a, 1.0 / d.z
-    vertex = -p.z * per_height
-    cap = (paraboloid.height - p.z) * per_height
-    first, last = minimum(vertex, cap), maximum(vertex, cap)
+    per_a = 1.0 / a
+    first, last = quadrics.slab(p.z, d.z, 0.0, paraboloid.height)
     start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
     half_b = q.x * d.x + q.y * d.y - slant
     c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last)
+    pace = fabs(d.z) + paraboloid.radius / (paraboloid.radius + paraboloid.focal)
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
     if anywhere is not None:
         across = p.x * p.x + p.y * p.y
         squared = across + paraboloid.focal * paraboloid.focal

@@ -50,6 +50,7 @@ from minirt.shapes.compensated import (
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
 PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a straight line of the surface differs
 SQUARED = 64.0  # squares of the unit roundoff by which a pair of about 1 may be off
+BESIDE = 4.0  # unit roundoffs of a distance, within which two intervals meet
 ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
 
 
@@ -61,6 +62,7 @@ class Span(NamedTuple):
     above: Number  # t at which it rises above the surface
     first: Number  # t at which it passes the planes of the ends, in ascending order
     last: Number
+    pace: Number  # at least by how much the line nears the side or an end as t grows by 1
 
 
 def negative_interval(a: Number, per_a: Number, b: Number, c: Number, start: Number) -> tuple[Number, Number]:
@@ -102,38 +104,39 @@ def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Nu
     return minimum(maximum(-b * per_a, first), last)
 
 
+def slab(z: Number, rise: Number, bottom: Number, top: Number) -> tuple[Number, Number]:
+    """The t at which a line passes the heights `bottom` and `top`, in ascending order."""
+    per_rise = 1.0 / rise
+    one, other = (bottom - z) * per_rise, (top - z) * per_rise
+    return minimum(one, other), maximum(one, other)
+
+
 def first_overlap(span: Span) -> tuple[Mask, Number]:
     """Whether a ray is below the surface and between the planes of the ends at the same time t > 0, and when first.
 
-    For rays with a >= 0, which are below the surface for one interval.
+    For rays with a >= 0, which are below the surface for one interval. Where a solid is thinner than the rounding of
+    the ray's coordinates, both intervals may be so short that they are found beside each other.
     """
     hit = span.below == span.below  # not NaN
     t = span.first
     if any(hit):
         near, far = maximum(span.below, span.first), minimum(span.above, span.last)
         t = where(near > 0.0, near, far)
-        hit = hit & (near <= far) & (t > 0.0)
+        hit = hit & (near * span.pace <= far * span.pace + BESIDE * unit_roundoff(far) * fabs(far)) & (t > 0.0)
     return hit, t
 
 
 def first_overlap_of_steep(span: Span) -> tuple[Mask, Number]:
     """As `first_overlap`, for a surface that rays with a < 0 are below outside of an interval, which may be empty.
 
-    Between the planes of the ends that leaves up to two intervals; the first end of one with t > 0 is the hit.
+    Between the planes of the ends that leaves up to two intervals: the first one, unless it is empty or behind.
     """
     steep = span.a < 0.0
-    hit = steep | (span.below == span.below)
-    t = span.first
-    if any(hit):
-        again = maximum(span.below, span.first)
-        near = where(steep, span.first, again)
-        far = minimum(span.above, span.last)
-        over = steep & ((far < near) | (far <= 0.0))
-        near = where(over, again, near)
-        far = where(over, span.last, far)
-        t = where(near > 0.0, near, far)
-        hit = hit & (near <= far) & (t > 0.0)
-    return hit, t
+    end = minimum(span.above, span.last)
+    over = steep & ((end < span.first) | (end <= 0.0))
+    below = where(steep & ~over, span.first, span.below)
+    above = where(over, span.last, span.above)
+    return first_overlap(Span(span.a, below, above, span.first, span.last, span.pace))
 
 
 def starts_close(
@@ -174,7 +177,7 @@ def exact_span(
     """
     like = waist[0]
     f = offset(splat(origin, like), splat(centre, like))
-    d, w = pairs(direction, 0.0 * direction, like), pairs(axis, 0.0 * axis, like)
+    d, w = pairs(direction, like), pairs(axis, like)
     excess = 0.5 * value(minus(scalar_product(w, w), pair(1.0, 0.0, like)))  # of the length of the rounded axis
     height, rise = along(f, w, excess), along(d, w, excess)
     across = minus(scalar_product(f, f), times(height, height))
@@ -196,7 +199,7 @@ def exact_span(
     per_rise = 1.0 / turn
     one = zero_within((bottom - height[0]) - height[1], error) * per_rise
     other = zero_within((top - height[0]) - height[1], error) * per_rise
-    return Span(value(a), below, above, minimum(one, other), maximum(one, other))
+    return Span(value(a), below, above, minimum(one, other), maximum(one, other), splat(1.0, like))
 
 
 def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number]:

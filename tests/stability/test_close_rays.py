@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from minirt.shapes import KINDS, Shape
+from minirt.shapes import KINDS, Shape, quadrics
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
@@ -26,6 +26,7 @@ from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from tests.oracle.body import body, crossings
 from tests.shapes.examples import example, place
+from tests.shapes.execution_modes import Intersect, on_arrays
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions, unit
 from tests.shapes.regimes import random_perpendiculars as perpendiculars
 from tests.stability import revolved, sheets
@@ -213,6 +214,37 @@ PLANTED = {
 def test_a_careless_formula_does_not_pass(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(f"{__name__}.traced", partial(interpreted, intersect=PLANTED[case.name]))
     assert measured(case, SEED, 16)[2:5] != (0, 0, 0)
+
+
+FLAT: dict[str, Callable[[Random, float], Shape]] = {
+    "cylinder": lambda random, thickness: Cylinder(*pose_of(random), 1, thickness, GREY),
+    "cone": lambda random, thickness: Cone(*pose_of(random), 1, thickness, GREY),
+    "paraboloid": lambda random, thickness: Paraboloid(*pose_of(random), 1, thickness, GREY),
+    "hyperboloid": lambda random, thickness: Hyperboloid(*pose_of(random), 0.5, 1, thickness, GREY),
+}
+
+
+def holes(title: str, intersect: Intersect) -> int:
+    """How many rays miss the middles of solids that are thinner than the rounding of the rays' coordinates."""
+    random, missed = np.random.default_rng(SEED), 0
+    for thickness, distance in ((1e-9, 1e7), (1e-12, 1e5), (1e-14, 30.0)) * 20:
+        shape: Any = FLAT[title](random, thickness)
+        aside = random.uniform(0, 0.2, (RAYS, 1)) * perpendiculars(random, np.array(shape.axis), RAYS)
+        origins = place(shape) + aside + distance * random_directions(random, RAYS)
+        t = intersect([shape], origins[None], unit(place(shape) + aside - origins)[None])
+        missed += int(np.isinf(t).sum())
+    return missed
+
+
+@pytest.mark.parametrize("intersect", [on_arrays, as_of_a_shadow_ray])
+@pytest.mark.parametrize("title", FLAT)
+def test_flat_solids_have_no_holes(title: str, intersect: Intersect) -> None:
+    assert holes(title, intersect) == 0, SEED
+
+
+def test_a_flat_paraboloid_whose_intervals_must_overlap_has_holes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(quadrics, "BESIDE", 0.0)
+    assert holes("paraboloid", on_arrays) > 0
 
 
 def main() -> None:

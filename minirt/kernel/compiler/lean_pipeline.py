@@ -72,6 +72,8 @@ class InlinedLowering(NativeLowering):
         state.flags.no_compile = True
         super().run_pass(state)
         place = state.cr.fndesc
+        if not state.flags.forceinline:  # or a kernel that calls it once would contain it, and round it otherwise
+            library._final_module.get_function(place.llvm_func_name).add_function_attribute("noinline")
         function = _dynfunc.make_function(place.lookup_module(), place.qualname, "", 0, state.cr.env, library)
         state.targetctx.insert_user_function(function, place, [library])
         state.cr = state.cr._replace(cfunc=function)
