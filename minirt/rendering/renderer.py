@@ -213,7 +213,7 @@ class Renderer:
         self.runner.cancel()
 
 
-renderers: dict[tuple[int | None, str, int | None, bool], Renderer] = {}
+renderers: dict[str, Renderer] = {}  # by their arguments, as Python writes them: for it True is equal to 1
 lock = ForkSafeLock()  # two threads that ask at once get the same renderer
 
 
@@ -226,6 +226,6 @@ def renderer(
     """
     settings = threads, precision, depth, dither
     with lock:
-        if settings not in renderers:
-            renderers[settings] = Renderer(*settings)
-        return renderers[settings]
+        if repr(settings) not in renderers:
+            renderers[repr(settings)] = Renderer(*settings)
+        return renderers[repr(settings)]
