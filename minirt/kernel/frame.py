@@ -14,9 +14,9 @@ from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.trace import is_empty
 from minirt.lanes import Number, Vec, lane, load, load_vec, rarely, splat, unit, where, width
 
-# Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
-# references with as many samples, at twice the cost of one.
-REFERENCE_SAMPLES = 2
+# Samples of a reference by those of what is drawn. Errors differ more between packets than estimates of one of them do:
+# more packets tell more than better references.
+REFERENCE_SAMPLES = 1
 CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
 
 

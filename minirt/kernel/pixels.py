@@ -96,14 +96,13 @@ def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: N
         pixels[y + i // packet_width, x + i % packet_width] = argb(lane(red, i), lane(green, i), lane(blue, i))
 
 
-def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, classes: Any, counts: Any) -> None:
+def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, classes: Any) -> None:
     """Find the contrast classes of rows of packets, taking the next one from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with its own `seen`, `words` and `counts`. `lines` are the
-    bytes of a picture that consists of whole packets, (lines, bytes). `classes` (rows, columns) receives for each
-    packet the number, by the table `class_of`, that belongs to the greatest difference of a byte from that of a
-    neighbour above, below, left or right, and `counts` has the packets with each number added, of those that this
-    thread saw. `seen` (2, bytes), in the same memory as the uint64 `words` (2, bytes / 8), is overwritten.
+    Any number of threads may do so at the same time, each with its own `seen` and `words`. `lines` are the bytes of a
+    picture that consists of whole packets, (lines, bytes). `classes` (rows, columns) receives for each packet the
+    number, by the table `class_of`, that belongs to the greatest difference of a byte from that of a neighbour above,
+    below, left or right. `seen` (2, bytes), in the same memory as the uint64 `words` (2, bytes / 8), is overwritten.
     """
     height = lines.shape[0]
     rows, columns = classes.shape
@@ -126,9 +125,7 @@ def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, cl
             found |= found >> 32
             found |= found >> 16
             found |= found >> 8
-            number = class_of[found & 255]
-            classes[row, column] = number
-            counts[number] += 1
+            classes[row, column] = class_of[found & 255]
 
 
 def differences_upright(above: Any, packet: tuple[Any, ...], below: Any, seen: Any, size: int) -> None:

@@ -125,8 +125,8 @@ def thread_memory(arrays: Any) -> np.ndarray:
     return memory
 
 
-# Numbers of samples that a packet may have, two for each doubling; a level is an index of them.
-COUNTS = np.array([1, 2, *(size * 2**k for k in range(1, 12) for size in (1.5, 2))], np.int32)
+# Numbers of samples that a packet may have, four for each doubling; a level is an index of them.
+COUNTS = np.array([1, 2, 3, *(size * 2**k for k in range(10) for size in (4, 5, 6, 7)), 4096], np.int32)
 VARIANTS = 16  # pairs of references for few samples, so that an edge along a row of pixels is met at many distances
 REFERENCE_ROWS = 256  # of the table, for one number of samples, that more than one pair may take
 

@@ -89,7 +89,7 @@ class FrameRunner:
         arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
         frame = frame_arguments(arrays, pixels, samples, light, counter, crop)
         if edges_only and not has_apertures(arrays):
-            classes, _ = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_jobs, self.threads)
+            classes = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_jobs, self.threads)
             packets = np.flatnonzero(classes >= EDGE)
             drawn = np.tile(np.array([0, samples, 0], np.int32), (len(packets), 1))
             frame = frame._replace(plan=plan_of(packets, classes.shape[1], drawn))

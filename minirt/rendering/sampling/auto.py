@@ -1,10 +1,10 @@
 """Automatic sampling: renders until an estimated error is reached or a time has passed.
 
-At first some packets are probed (see `minirt.kernel.pixels.squared_error`). Unless all need about as many samples, the
-first sweep over the picture is a plain frame of one sample a pixel. Often that is enough. Otherwise a pilot of few
-packets gets the numbers of samples that `minirt.rendering.sampling.packets` plans, the same for all or by contrast, and
-is probed, too. Its error corrects the plan, and all other packets are drawn: in portions where a time is given, since
-each tells how fast the next one is.
+At first some packets are probed (see `minirt.kernel.pixels.squared_error`). Unless they tell that as many samples for
+all cost least, the first sweep over the picture is a plain frame of one sample a pixel. Often that is enough. Otherwise
+`minirt.rendering.sampling.packets` plans numbers of samples, the same for all or by contrast. Where they are far from
+those of the probes, a pilot of few packets gets them and is probed, too. Its error corrects the plan, and all other
+packets are drawn: in portions where a time is given, since each tells how fast the next one is.
 
 What an estimate may be wrong by is added before it is compared with the goal. Probes take a tenth of the time, and no
 pixel takes more than `MOST_SAMPLES`. The picture depends on the error that is asked for alone, or on how fast the
@@ -16,7 +16,7 @@ Limit: features smaller than a pixel that no sample met may be missing in the pi
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf, sqrt
 from time import perf_counter
 
@@ -30,7 +30,7 @@ from minirt.rendering.sampling.packets import Packets, cost
 PROBES = 0.1  # share of samples that probes take
 LEAST_PROBES, MOST_PROBES = 4, 400  # in a sweep
 REFERENCES = 2 * REFERENCE_SAMPLES  # samples of a probe beside those that are drawn, as a multiple of them
-FAR = 2.0  # ratio of planned samples to those of a pilot from which on there is another pilot
+FAR = 2.0  # ratio of planned samples to those of the last probes from which on there is another pilot
 PILOTS = 4  # at most
 PORTIONS = 8  # of the packets, where the time is limited
 SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
@@ -39,7 +39,7 @@ SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
 # Draws the packets of a plan, or all without one, at positions (k, pixels of a packet, 2), or 6 with places in lens and
 # lights, and writes the squared errors of those that are probed. Raises `CancelledError`.
 Draw = Callable[[np.ndarray, np.ndarray, np.ndarray], object]
-Classify = Callable[[], tuple[np.ndarray, np.ndarray]]  # contrast classes of packets (rows, columns), and their sizes
+Classify = Callable[[], np.ndarray]  # contrast classes of packets (rows, columns)
 
 
 class CancelledError(Exception):
@@ -56,6 +56,7 @@ class AutoSampler:
     numbers: int  # of the picture: three for each pixel
     packet_pixels: int
     with_places: bool = False  # as for `SampleTable`
+    positions: np.ndarray = field(init=False)  # of the samples of the last sweep
     speed: float = inf  # samples of packets a second, in the last sweep
     probed: float = 0.0  # samples of packets that probes took
     is_begun: bool = False  # whether all packets are drawn with a sample at least
@@ -69,9 +70,8 @@ class AutoSampler:
         errors = self.sweep(probes, np.zeros(len(probes), np.uint8), is_probed=True)
         if seconds < inf or not packets.learn_evenly(errors, goal):
             self.is_begun = True
-            table = SampleTable(np.zeros(1, np.uint8), self.packet_pixels, self.with_places, with_references=False)
-            self.carry_out(table.positions[:1], ALL_PACKETS, NO_ERRORS, packets.count)
-            packets.learn(self.classify()[0], probes, errors)
+            self.carry_out(self.positions[:1], ALL_PACKETS, NO_ERRORS, packets.count)
+            packets.learn(self.classify(), probes, errors)
         if (samples := packets.plan(goal)).max() > 1 and perf_counter() < start + seconds:
             self.refine(samples, goal, start + seconds)
         rms = sqrt(packets.total() / self.numbers)
@@ -80,13 +80,13 @@ class AutoSampler:
     def refine(self, samples: np.ndarray, goal: float, end: float) -> None:
         """Draw packets with more samples, first of all as many as `samples` for each class, until the sum of squared
         errors is at most `goal`, or the time is over."""
-        packets = self.packets
+        packets, known = self.packets, np.full(len(samples), 0.0 if self.with_places else 1.0)
         for _ in range(PILOTS):
-            samples = packets.plan(goal, self.budget(end)) if end < inf else samples
-            self.draw_pilot(samples)
-            before, samples = samples, packets.plan(goal, self.budget(end))
-            if (samples <= FAR * before).all():
+            if (samples <= FAR * known).all():
                 break
+            known = packets.plan(goal, self.budget(end)) if end < inf else samples
+            self.draw_pilot(known)
+            samples = packets.plan(goal, self.budget(end))
         if end == inf:
             self.draw_more(np.arange(packets.count), samples if self.is_begun else np.maximum(samples, 2.0))
             return
@@ -124,7 +124,7 @@ class AutoSampler:
             return errors
         table = SampleTable(levels, self.packet_pixels, self.with_places, with_references=is_probed)
         plan = plan_of(some, packets.columns, table.plan(levels, np.full(len(some), is_probed)))
-        packets.levels[some] = levels
+        packets.levels[some], self.positions = levels, table.positions
         drawn, references = float(plan[:, 3].sum()), REFERENCES * is_probed
         self.probed += drawn * references
         self.carry_out(table.positions, plan, errors, drawn * (1 + references))

@@ -18,8 +18,8 @@ whose first sample missed an edge can have most of the error.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
-from math import inf, sqrt
+from functools import cache
+from math import ceil, inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -39,31 +39,32 @@ EDGE = 4  # the class from which on neighbours are taken to differ by an edge: b
 
 def contrast_classes(
     pixels: np.ndarray, packet_width: int, run: Callable[[list[Job]], object], threads: int
-) -> tuple[np.ndarray, np.ndarray]:
+) -> np.ndarray:
     """The class of each packet, uint8 (rows, columns), by the greatest difference of a colour from a neighbour above,
-    below, left or right; and the number of packets of each class. `pixels` is C-contiguous uint8 (h, w, 4), all equally
-    opaque; `run` runs jobs, one for each of the threads, side by side."""
+    below, left or right. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs jobs, one for each of
+    the threads, side by side."""
     height, width, _ = pixels.shape
-    beyond = -height % PACKET_HEIGHT, -width % packet_width
-    if any(beyond):
-        pixels = np.pad(pixels, ((0, beyond[0]), (0, beyond[1]), (0, 0)), "edge")
+    if below := -height % PACKET_HEIGHT:
+        pixels = np.concatenate([pixels, *[pixels[-1:]] * below])
+    if beside := -width % packet_width:
+        pixels = np.concatenate([pixels, *[pixels[:, -1:]] * beside], axis=1)
     lines = pixels.reshape(len(pixels), -1)
     classes = np.empty((len(lines) // PACKET_HEIGHT, pixels.shape[1] // packet_width), np.uint8)
-    counter, counts = np.zeros(1, np.int64), np.zeros((threads, CLASSES), np.int64)
+    counter = np.zeros(1, np.int64)
 
-    def job(thread: int) -> None:
+    def job() -> None:
         seen = np.empty((2, lines.shape[1]), np.uint8)
-        functions.classify(counter, lines, seen, seen.view(np.uint64), CLASS_OF, classes, counts[thread])
+        functions.classify(counter, lines, seen, seen.view(np.uint64), CLASS_OF, classes)
 
-    run([partial(job, thread) for thread in range(threads)])
-    return classes, counts.sum(axis=0)
+    run([job] * threads)
+    return classes
 
 
 @cache
 def classify_call() -> Call:
     """The call of the compiled function, to look for its kernel."""
     numbers, none = np.zeros(1, np.int64), np.zeros((0, 0), np.uint8)
-    return functions.classify.call(numbers, none, none, np.zeros((0, 0), np.uint64), CLASS_OF, none, numbers)
+    return functions.classify.call(numbers, none, none, np.zeros((0, 0), np.uint64), CLASS_OF, none)
 
 
 SQUARED_ROUNDING = 1 / 12  # mean squared error of rounding to whole levels
@@ -111,12 +112,12 @@ CERTAINTY = 3.0  # standard errors of the estimate that are added to it
 EVENLY = 0.6  # share of the pilot that is chosen evenly
 LEAST_SHARE = 1 / 16  # of what uniform samples would be, for each packet
 WORTH = 0.8  # time of samples by class, as a share of that of uniform ones, from which on they are not worth it
+BEGIN = 2.0  # samples of all packets, whose time the first sweep, classes and dearer samples of contrast take
+GAIN = 0.7  # least time of numbers by contrast that ideal ones take, as a share of that of uniform ones
 MOST_CHANGE = 4.0  # factor by which a pilot changes c of one class beside the others
 LEAST = 1e-12  # of a class as a share of the greatest
-EVEN = 0.4  # square of the mean error of packets, as a share of the mean square, from which on they are all alike
-MUCH = 4.0  # squared error of one sample a pixel, as a multiple of the goal, that needs several samples
 NEAR = 2  # classes by which a packet may be below its neighbours
-SEARCHES, PRICES = 3, 24  # for the price of an error: so many times among so many prices
+SEARCHES, PRICES = 2, 64  # for the price of an error: so many times among so many prices
 
 
 def allocate(
@@ -160,10 +161,12 @@ def cost(samples: np.ndarray, work: np.ndarray) -> np.ndarray:
 def with_neighbours(classes: np.ndarray) -> np.ndarray:
     """Raise classes (rows, columns) to those of the eight neighbours less `NEAR`: a neighbour's sample may have met a
     thin wire that only other samples of the packet meet."""
-    padded = np.pad(classes, 1)
-    beside = np.maximum(np.maximum(padded[:, :-2], padded[:, 1:-1]), padded[:, 2:])
-    around = np.maximum(np.maximum(beside[:-2], beside[1:-1]), beside[2:])
-    raised: np.ndarray = np.maximum(classes, np.maximum(around, NEAR) - NEAR)
+    beside, around = classes.copy(), np.maximum(classes, NEAR)
+    beside[:, 1:] = np.maximum(beside[:, 1:], classes[:, :-1])
+    beside[:, :-1] = np.maximum(beside[:, :-1], classes[:, 1:])
+    around[1:] = np.maximum(around[1:], beside[:-1])
+    around[:-1] = np.maximum(around[:-1], beside[1:])
+    raised: np.ndarray = np.maximum(classes, np.maximum(around, beside) - NEAR)
     return raised
 
 
@@ -196,14 +199,18 @@ class Packets:
         return chosen
 
     def learn_evenly(self, errors: np.ndarray, goal: float) -> bool:
-        """Whether all packets need several samples, and about as many: by probes with one sample. Then they are one
-        class."""
-        squares, each = float(errors @ errors), float(errors.mean())
-        if each * abs(each) * len(errors) < EVEN * squares or each * self.count < MUCH * goal:
+        """Whether as many samples for all packets are likely to cost less than one for all and more by contrast: by
+        probes with one sample. Then all packets are one class."""
+        each, number = float(errors.mean()), len(errors)
+        if each <= 0:
+            return False
+        doubt = max(SPREAD / sqrt(number + PRIOR), float(errors.std()) / each / sqrt(number))
+        needed = (each * self.count * (1 + CERTAINTY * doubt) / goal) ** (1 / ERROR_EXPONENT)
+        ideal = float((np.maximum(errors / each, 0.0) ** (1 / (ERROR_EXPONENT + 1))).mean()) ** (1 + 1 / ERROR_EXPONENT)
+        if needed < 2 or BEGIN + ideal * needed < GAIN * needed:
             return False
         self.sizes = np.bincount(self.classes, minlength=CLASSES)
-        self.work, self.c = self.sizes.astype(float), np.full(CLASSES, each)
-        self.doubt = SPREAD / sqrt(len(errors))
+        self.work, self.c, self.doubt = self.sizes.astype(float), np.full(CLASSES, each), doubt
         return True
 
     def learn(self, contrasts: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
@@ -222,11 +229,13 @@ class Packets:
         than a budget: the same for all, unless numbers by class leave as little error for less."""
         goal, whole = goal / (1 + CERTAINTY * self.doubt), float(self.sizes @ self.c)
         needed = (whole / goal) ** (1 / ERROR_EXPONENT) if goal else inf
+        if needed <= 1:
+            return np.ones(CLASSES)
         uniform = max(min(needed, COUNTS[-1], budget / self.count), 1.0)
         least = max(LEAST_SHARE * uniform, 1.0)
         samples = allocate(self.c, self.sizes, whole * uniform**-ERROR_EXPONENT, inf, least, self.work)
         if cost(samples, self.work) > WORTH * uniform * self.count:
-            return np.full(CLASSES, uniform)
+            return np.full(CLASSES, uniform if budget < inf else ceil(uniform))
         return samples if needed <= uniform else allocate(self.c, self.sizes, goal, budget, least, self.work)
 
     def bound(self, samples: np.ndarray) -> float:

@@ -101,7 +101,8 @@ def test_the_true_error_is_as_requested_and_as_estimated(name: str, requested: f
     reached, pixels, linear = reach(KNOWN[name], requested)
     true = rms(np.clip(linear, 0, 1) - reference(name))
     assert reached.error <= requested
-    assert 0.6 < reached.error / true < 3  # so small a picture has few probes, and doubt leans to one side
+    assert reached.error / true > 0.6  # so small a picture has few probes, and doubt leans to one side
+    assert reached.error / true < 3 or reached.most == 1  # what is expected weighs as much as probes of one sample
     assert true < EXCESS * requested
     assert true > requested / 5 or reached.most <= 4
     assert 1 <= reached.samples <= reached.most
@@ -214,7 +215,7 @@ def excesses(seed: int, pictures: int = 120) -> np.ndarray:
             packet = plan[:, 1] * grid.columns + plan[:, 0]
             errors[:] = c[packet] * plan[:, 3] ** -1.5 * random.normal(1, 0.7, len(plan))
 
-        contrasts = classes.reshape(-1, grid.columns), classes
+        contrasts = classes.reshape(-1, grid.columns)
         sampler = AutoSampler(draw, lambda contrasts=contrasts: contrasts, grid, grid.count, 16)
         goal = sqrt(c.mean() * random.uniform(0.01, 1) ** 1.5)
         sampler.reach(goal, np.inf)
@@ -234,7 +235,7 @@ def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytes
     assert (excesses(seed) <= 1).mean() < 0.85, seed
 
 
-@pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (5.0, 0.01, 1), (0.2, 0.9, 1)])
+@pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (5.0, 0.01, 1), (0.2, 1.5, 1)])
 def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: float, sweeps: int) -> None:
     """A picture whose packets all need several samples is drawn at once, as a uniform one."""
     grid, plans = Packets(80, 200, 4), []
@@ -244,7 +245,7 @@ def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: flo
         plans.append(plan)
         errors[:] = c[plan[:, 1] * grid.columns + plan[:, 0]] * plan[:, 3] ** -1.5
 
-    reached = AutoSampler(draw, lambda: (np.full((20, 50), 8), c), grid, grid.count, 16).reach(goal, np.inf)
+    reached = AutoSampler(draw, lambda: np.full((20, 50), 8), grid, grid.count, 16).reach(goal, np.inf)
     assert sum(not len(plan) for plan in plans) == sweeps
     assert sweeps or reached.most <= 1.5 * reached.samples
 

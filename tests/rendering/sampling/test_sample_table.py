@@ -29,6 +29,7 @@ from tests.kernel.pictures import TWO
 from tests.rendering.sampling.test_auto import HEIGHT, KNOWN, WIDTH, reference, rms
 
 RAYS = 4 * PACKET_HEIGHT
+FACTOR = 1.5  # between estimated and true errors of refined pictures
 
 
 def test_drawn_samples_are_those_of_a_uniform_picture() -> None:
@@ -197,9 +198,7 @@ def test_classes_are_those_of_the_greatest_difference(size: tuple[int, int], pac
     few = random.random(size) < 0.1  # so that some packets have one pixel that differs
     pixels[..., :3] = 90
     pixels[few, :3] = random.integers(90 - spread // 3, 91 + spread // 2, (np.count_nonzero(few), 3))
-    classes, counts = contrast_classes(pixels, packet_width, run, threads=3)
-    assert np.array_equal(classes, by_loop(pixels, packet_width))
-    assert np.array_equal(counts, np.bincount(classes.ravel(), minlength=CLASSES))
+    assert np.array_equal(contrast_classes(pixels, packet_width, run, threads=3), by_loop(pixels, packet_width))
 
 
 # The estimated error of refined pictures, compared with pictures of many samples.
