@@ -22,6 +22,14 @@ class InlinedCode(JITCodeLibrary):
     """LLVM code of one function, which becomes machine code only as a part of the kernel that links it."""
 
     linked: Any = None  # the module of this function and of all that it calls
+    outlined = False  # whether it is called: a kernel that contained it would round it in another way
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        """Take the code of the function, and mark it if LLVM must not inline it."""
+        for each in ir_module.functions:
+            if self.outlined and not each.is_declaration:
+                each.attributes.add("noinline")
+        super().add_ir_module(ir_module)
 
     def finalize(self) -> None:
         """Finish without optimising: the kernel is optimised once, as a whole."""
@@ -69,11 +77,10 @@ class InlinedLowering(NativeLowering):
     def run_pass(self, state: Any) -> bool:
         """Lower the function, without machine code."""
         state.library = library = InlinedCode(state.targetctx.codegen(), state.func_id.func_qualname)
+        library.outlined = not state.flags.forceinline
         state.flags.no_compile = True
         super().run_pass(state)
         place = state.cr.fndesc
-        if not state.flags.forceinline:  # or a kernel that calls it once would contain it, and round it otherwise
-            library._final_module.get_function(place.llvm_func_name).add_function_attribute("noinline")
         function = _dynfunc.make_function(place.lookup_module(), place.qualname, "", 0, state.cr.env, library)
         state.targetctx.insert_user_function(function, place, [library])
         state.cr = state.cr._replace(cfunc=function)
