@@ -8,7 +8,7 @@ from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import frame_runner, renderer
 from minirt.rendering.frame import Frame
-from minirt.rendering.frame_runner import FrameRunner, Kernel
+from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
 from minirt.report import bench
 
@@ -39,10 +39,9 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
     """Replace the machine's clock wherever pictures are timed."""
     clock, run = Clock(), FrameRunner.run
 
-    def counted(self: FrameRunner, frames: list[Frame], threads: int, kernel: Kernel | None = None) -> Kernel:
-        kernel = run(self, frames, threads, kernel)
-        clock.rendered(sum(map(packets_of, frames)))
-        return kernel
+    def counted(self: FrameRunner, frame: Frame) -> None:
+        run(self, frame)
+        clock.rendered(packets_of(frame))
 
     patch.setattr(FrameRunner, "run", counted)
     for module in (auto, frame_runner, renderer, bench):

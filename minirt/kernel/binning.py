@@ -1,197 +1,202 @@
 """Binning of shapes into a grid of directions by projected bounds: the shape lists of screen tiles and light buffers.
 
-The light buffer is that of Haines and Greenberg 1986. Seen from a point, in a frame of across, down and forward, a
-direction has the slopes x / z and y / z, and the cells of a grid are squares of slopes. A sphere projects to an
-interval of either slope. Binning is conservative whatever the rounding: bounding spheres grow by `MARGIN`, and
-intervals by the margin of the grid.
-
-The caller allocates all memory. Between `project_all` and `fill_bins` it sorts the rectangles by depth, and sums the
-counts up to the ends of the lists.
+The light buffer is that of Haines and Greenberg 1986. `project_shapes` projects chunks of shapes, on any number of
+threads; `fill_bins` then sorts their rectangles by depth into lists. The caller allocates all memory.
 """
 
 from __future__ import annotations
 
-from math import inf, sqrt
 from typing import Any, NamedTuple
 
-MARGIN = 1e-12  # relative to the coordinates that a position is computed from, whose rounding is 1e-16
-SINE_MARGIN = 1e-7  # error of a cone's cosine, relative to its sine: roots of differences are wrong by 2e-8
-COSINE_MARGIN = 4e-15  # error of a scalar product of unit vectors
+from minirt.kernel.pixels import fetch_add
+from minirt.kernel.projection import MARGIN, Grid, bounding_cone, cells_of_plane, projected_rectangle, signed_height
+from minirt.kernel.scene_arrays import has_rows, vector
+
+CHUNK = 1024  # shapes that a thread projects at once, at most
+
+# Positive floating-point numbers sort like their bits, the exponent first. Distances sort by their upper 25 bits, from
+# 2^-128 on: a relative precision of 2^-13, which is more than `minirt.kernel.trace.COINCIDENT`.
+DROPPED_BITS = 39
+LEAST_DEPTH = (1023 - 128) << (52 - DROPPED_BITS)
+DIGITS, RADIX = 3, 8  # of the upper bits but the sign, and bits of a digit
+INDEX_BITS = 32  # below these, in the entries that are sorted
 
 
-class Grid(NamedTuple):
-    """A grid of directions from a point, in one frame or more: slope s is in the cell `floor(scale * s + middle)`, less
-    the first one."""
+class Projection(NamedTuple):
+    """The shapes to project, as in `minirt.rendering.packing.shape_arrays`, and what a point sees of them.
 
-    frames: Any  # (f, 3, 3) unit vectors across, down and forward
-    across: int  # columns of cells of each frame
-    down: int  # rows of cells of each frame
-    scale_x: float
-    middle_x: float
-    scale_y: float
-    middle_y: float
-    margin: float  # by how many cells intervals grow before they are rounded to cells
-    cells: int  # of all frames
-    first_column: int = 0  # the first of the frame that has cells, where only a rectangle of it has any
-    first_row: int = 0
-
-
-def project_all(
-    origin: Any,
-    grid: Grid,
-    spheres: Any,
-    slack: float,
-    first: Any,
-    slots: Any,
-    rectangles: Any,
-    used: int,
-    cones: Any,
-    counts: Any,
-) -> int:
-    """Project all shapes with bounding spheres to rectangles of cells, and return the number of rectangles.
-
-    Shape i lies in the convex hull of `spheres[first[i]:first[i + 1]]`, (b, 4) centre and radius, grown by `slack`; the
-    cells of its kind begin at `slots[i, 0]` times one more than the grid has. Writes to `rectangles`, (r, 4) shape,
-    first cell, columns and rows, from number `used` on; to `cones` the `bounding_cone` of each shape with a rectangle;
-    and adds to `counts` the number of rectangles that cover each cell.
+    The rectangles hold for rays from all points within `radius` of the origin, in the directions of their cells; for
+    planes also in directions, not normalised, up to `lean` away. A chunk of shapes has its own rows of `rectangles`, as
+    many as it has shapes times the frames of the grid; the planes have those behind the last chunk.
     """
-    stride = grid.cells + 1
-    for shape in range(cones.shape[0]):
-        before = used
-        for face in range(grid.frames.shape[0]):
-            column, row, columns, rows = projected_rectangle(
-                origin, grid, face, spheres, first[shape], first[shape + 1], slack
-            )
-            if columns > 0 and rows > 0:
-                cell = slots[shape, 0] * stride + (face * grid.down + row) * grid.across + column
-                rectangles[used, 0] = shape
-                rectangles[used, 1] = cell
-                rectangles[used, 2] = columns
-                rectangles[used, 3] = rows
-                used += 1
-                for line in range(rows):
-                    start = cell + line * grid.across
-                    for covered in range(start, start + columns):
-                        counts[covered] += 1
-        if used > before:
-            bounding_cone(origin, spheres, first[shape], first[shape + 1], slack, cones[shape])
-    return used
+
+    origin: Any  # (3,) the point
+    grid: Grid
+    radius: float
+    lean: float
+    balls: Any  # (b, 4) centre and radius
+    first_ball: Any  # (n + 1,)
+    boxes: Any  # (n, 2, 3)
+    slots: Any  # (n, 2)
+    planes: Any  # (p, 5)
+    plane_indices: Any  # (p,)
+    shown: Any  # (p,) whether a plane has rectangles
+    traits: Any  # (n,) bits that the caller chooses
+    chunk: int  # shapes in it, at most
+    rectangles: Any  # (r, 4) shape, first cell, columns and rows
+    used: Any  # (chunks + 1,) rows of each chunk, and of the planes
+    cones: Any  # (n, 5) as in `minirt.kernel.scene_arrays`; 0 for shapes without a rectangle
+    cone_bits: Any  # (n, 5) the same memory as integers
+    sides: Any  # (p,) of each plane, on which the point lies: 1, -1, or 0 where rounding may decide
+    extents: Any  # float32 (n, 4) or (0, 4): the last column receives bounds of coordinates from the point
 
 
-def projected_rectangle(
-    origin: Any, grid: Grid, face: int, spheres: Any, start: int, end: int, slack: float
-) -> tuple[int, int, int, int]:
-    """Project the convex hull of some spheres, grown by `slack`, to a rectangle of a frame's cells.
+def project_shapes(next_chunk: Any, seen: Projection) -> None:
+    """Project chunks of shapes, and planes, taking the next ones from the counter `next_chunk` until none is left.
 
-    Returns first column, first row, columns and rows; no columns or no rows if the frame cannot see the hull.
+    Any number of threads may do so at the same time.
     """
-    half_x = (grid.middle_x + grid.margin) / grid.scale_x  # slopes at the edges of the grid
-    half_y = (grid.middle_y + grid.margin) / grid.scale_y
-    slant_x = sqrt(1.0 + half_x * half_x)
-    slant_y = sqrt(1.0 + half_y * half_y)
-    frames = grid.frames
-    behind = left = right = above = below = True
-    beside = False
-    low_x, high_x, low_y, high_y = inf, -inf, inf, -inf
-    for i in range(start, end):
-        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
-        radius = spheres[i, 3] + slack
-        z = frames[face, 2, 0] * px + frames[face, 2, 1] * py + frames[face, 2, 2] * pz
-        behind &= z <= -radius
-        if behind and i + 1 == end:
-            return 0, 0, 0, 0
-        x = frames[face, 0, 0] * px + frames[face, 0, 1] * py + frames[face, 0, 2] * pz
-        y = frames[face, 1, 0] * px + frames[face, 1, 1] * py + frames[face, 1, 2] * pz
-        left &= x + half_x * z < -slant_x * radius
-        right &= x - half_x * z > slant_x * radius
-        above &= y + half_y * z < -slant_y * radius
-        below &= y - half_y * z > slant_y * radius
-        beside |= z <= radius
-        if i + 1 == end and (left | right | above | below):
-            return 0, 0, 0, 0
-        low, high = tangent_slopes(x, z, radius)
-        low_x, high_x = min(low_x, low), max(high_x, high)
-        low, high = tangent_slopes(y, z, radius)
-        low_y, high_y = min(low_y, low), max(high_y, high)
-    if beside and end - start > 1:  # parts of the hull may project beyond all spheres
-        low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
-    middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
-    column, columns = cell_interval(low_x, high_x, grid.scale_x, middle_x, grid.margin, grid.across)
-    row, rows = cell_interval(low_y, high_y, grid.scale_y, middle_y, grid.margin, grid.down)
-    return column, row, columns, rows
+    origin = seen.origin
+    slack = MARGIN * max(abs(origin[0]), abs(origin[1]), abs(origin[2])) + seen.radius
+    chunks, room = seen.used.shape[0] - 1, seen.chunk * seen.grid.frames.shape[0]
+    while True:
+        number = fetch_add(next_chunk, 1)
+        if number > chunks:
+            return
+        end = number * room
+        if number == chunks:
+            end = project_planes(seen, slack, end)
+        else:
+            first = number * seen.chunk
+            for shape in range(first, min(first + seen.chunk, seen.cones.shape[0])):
+                end = project_shape(seen, slack, shape, end)
+        seen.used[number] = end - number * room
 
 
-def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
-    """Least and greatest slope x / z of a disc that lies at least partly before z = 0.
+def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
+    """Project a shape with bounding spheres to rectangles, from number `at` on; return the number behind its last.
 
-    They are the slopes of the tangents from the origin: the direction of the centre, turned by the angle whose sine is
-    radius / distance. A tangent that touches the disc behind z = 0 has an infinite slope.
+    It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
     """
-    squared = x * x + z * z - radius * radius
-    if squared <= 0.0:
-        return -inf, inf
-    length = sqrt(squared)
-    low_z = z * length + x * radius
-    high_z = z * length - x * radius
-    low = (x * length - z * radius) / low_z if low_z > 0.0 else -inf
-    high = (x * length + z * radius) / high_z if high_z > 0.0 else inf
-    return low, high
+    grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
+    if has_rows(seen.extents):
+        seen.extents[shape, 3] = extent_from(seen.origin, seen.boxes, shape)
+    if start == end:
+        return at
+    for face in range(grid.frames.shape[0]):
+        column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
+        if columns > 0 and rows > 0:
+            at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
+    for i in range(5):
+        seen.cones[shape, i] = 0.0
+    if at > before:
+        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
+    quantise_distance(seen, shape)
+    return at
 
 
-def cell_interval(low: float, high: float, scale: float, middle: float, margin: float, cells: int) -> tuple[int, int]:
-    """First cell and number of cells, in a row of so many, that the slopes from `low` to `high` cover."""
-    begin = low * scale + middle - margin
-    end = high * scale + middle + margin
-    if not (begin < cells and end >= 0.0):
-        return 0, 0
-    start = int(max(begin, 0.0))
-    return start, int(min(end, cells - 1.0)) + 1 - start
+def write_rectangle(seen: Projection, at: int, shape: int, row: int, column: int, columns: int, rows: int) -> int:
+    """Write rectangle number `at`, and return the next number. The cells of each kind are followed by one more."""
+    seen.rectangles[at, 0] = shape
+    seen.rectangles[at, 1] = seen.slots[shape, 0] * (seen.grid.cells + 1) + row * seen.grid.across + column
+    seen.rectangles[at, 2] = columns
+    seen.rectangles[at, 3] = rows
+    return at + 1
 
 
-def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float, cone: Any) -> None:
-    """Write the bounding cone, as seen from a point, of the convex hull of some spheres, grown by `slack`.
+def extent_from(origin: Any, boxes: Any, shape: int) -> float:
+    """Return an upper bound of the largest coordinate of a shape relative to a point."""
+    farthest, size = 0.0, 0.0
+    for axis in range(3):
+        low, high = boxes[shape, 0, axis], boxes[shape, 1, axis]
+        farthest, size = max(farthest, abs((low + high) / 2 - origin[axis])), max(size, high - low)
+    return farthest + size / 2
 
-    Its five numbers are the axis, which points to the mean of the centres; the cosine of the half-angle, or -2 if the
-    cone would take in half of all directions or more; and a lower bound of the hull's distance, along the axis.
+
+def quantise_distance(seen: Projection, shape: int) -> None:
+    """Round the distance of a cone down to its upper bits, by at least one step: a hit that is so little farther may
+    count as coincident."""
+    depth = (seen.cone_bits[shape, 4] >> DROPPED_BITS) - 1
+    seen.cone_bits[shape, 4] = depth << DROPPED_BITS if depth > LEAST_DEPTH else 0
+
+
+def project_planes(seen: Projection, slack: float, at: int) -> int:
+    """Project all planes to rectangles of one row of cells, from number `at` on; return the number behind the last."""
+    for number in range(seen.planes.shape[0]):
+        plane, shape = seen.planes[number], seen.plane_indices[number]
+        height = signed_height(plane, vector(seen.origin, 0), slack)
+        side = int(height > 0.0) - int(height < 0.0)
+        seen.sides[number] = side
+        cone = seen.cones[shape]
+        cone[0], cone[1], cone[2], cone[3], cone[4] = 0.0, 0.0, 0.0, -2.0, abs(height)
+        quantise_distance(seen, shape)
+        if seen.shown[number]:
+            for row in range(seen.grid.frames.shape[0] * seen.grid.down):
+                column, columns = cells_of_plane(seen.grid, row, -side * vector(plane, 0), seen.lean)
+                if columns > 0:
+                    at = write_rectangle(seen, at, shape, row, column, columns, 1)
+    return at
+
+
+# The lists, by counting.
+
+
+def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits: Any) -> tuple[int, int]:
+    """Write the shapes of all rectangles into the lists of their cells, the nearest first; return the members of all
+    lists and the traits of the shapes in any.
+
+    Where `members` has no room for so many they are not written. `starts`, of the cells of all kinds, receives where
+    the lists start. `entries` (2, r) and `digits` (2 ** RADIX,) are overwritten.
     """
-    x = 0.0
-    y = 0.0
-    z = 0.0
-    for i in range(start, end):
-        x += spheres[i, 0] - origin[0]
-        y += spheres[i, 1] - origin[1]
-        z += spheres[i, 2] - origin[2]
-    length = sqrt(x * x + y * y + z * z)
-    cone[3], cone[4] = -2.0, 0.0
-    if length == 0.0:
-        return
-    least, cosine, widest = inf, 1.0, 0.0
-    for i in range(start, end):
-        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
-        radius = spheres[i, 3] + slack
-        squared = px * px + py * py + pz * pz
-        along = (px * x + py * y + pz * z) / length
-        aside = sqrt(max(squared - along * along, 0.0))
-        tangent = sqrt(max(squared - radius * radius, 0.0))
-        least = min(least, along - radius)
-        widest = max(widest, radius * radius / squared)
-        # Cosine of the sum of two angles: from the axis to the centre, and from there to the rim.
-        cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
-    cone[0], cone[1], cone[2] = x / length, y / length, z / length
-    if cosine > 0.0:
-        cone[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
-    cone[4] = max(least, 0.0)
+    across, room = seen.grid.across, seen.chunk * seen.grid.frames.shape[0]
+    for cell in range(starts.shape[0]):
+        starts[cell] = 0
+    count, traits = 0, 0
+    for number in range(seen.used.shape[0]):
+        for at in range(number * room, number * room + seen.used[number]):
+            shape, cell, columns, rows = rectangle_at(seen, at)
+            entries[0, count] = (seen.cone_bits[shape, 4] >> DROPPED_BITS << INDEX_BITS) | at
+            count += 1
+            traits |= seen.traits[shape]
+            for row in range(rows):
+                start = cell + row * across
+                for covered in range(start, start + columns):
+                    starts[covered] += 1
+    total = 0
+    for cell in range(starts.shape[0]):
+        total += starts[cell]
+        starts[cell] = total  # the end of the list, until it is counted down to its start
+    if total <= members.shape[0]:
+        sort_by_depth(entries, count, digits)
+        for i in range(count - 1, -1, -1):
+            shape, cell, columns, rows = rectangle_at(seen, entries[DIGITS % 2, i] & ((1 << INDEX_BITS) - 1))
+            for row in range(rows):
+                start = cell + row * across
+                for covered in range(start, start + columns):
+                    starts[covered] -= 1
+                    members[starts[covered]] = shape
+    return total, traits
 
 
-def fill_bins(rectangles: Any, order: Any, across: int, ends: Any, members: Any) -> None:
-    """Write shapes into the lists of their cells, the last of `order` first; `ends` become the starts of the lists."""
-    for i in range(order.shape[0] - 1, -1, -1):
-        rectangle = order[i]
-        shape = rectangles[rectangle, 0]
-        cell = rectangles[rectangle, 1]
-        columns = rectangles[rectangle, 2]
-        for line in range(rectangles[rectangle, 3]):
-            start = cell + line * across
-            for covered in range(start, start + columns):
-                ends[covered] -= 1
-                members[ends[covered]] = shape
+def rectangle_at(seen: Projection, at: int) -> tuple[int, int, int, int]:
+    """Return shape, first cell, columns and rows of a rectangle."""
+    rectangle = seen.rectangles[at]
+    return int(rectangle[0]), int(rectangle[1]), int(rectangle[2]), int(rectangle[3])
+
+
+def sort_by_depth(entries: Any, count: int, digits: Any) -> None:
+    """Sort the first `count` entries, (2, r), by their depths, digit after digit; they end in row `DIGITS % 2`."""
+    for digit in range(DIGITS):
+        shift, source, target = INDEX_BITS + digit * RADIX, digit % 2, 1 - digit % 2
+        for value in range(digits.shape[0]):
+            digits[value] = 0
+        for i in range(count):
+            digits[(entries[source, i] >> shift) & (digits.shape[0] - 1)] += 1
+        start = 0
+        for value in range(digits.shape[0]):
+            start += digits[value]
+            digits[value] = start - digits[value]
+        for i in range(count):
+            value = (entries[source, i] >> shift) & (digits.shape[0] - 1)
+            entries[target, digits[value]] = entries[source, i]
+            digits[value] += 1

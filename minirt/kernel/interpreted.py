@@ -1,6 +1,7 @@
 """Interpreted functions that pack a scene, under the same names as in `minirt.kernel.machine_code.functions`."""
 
-from minirt.kernel.binning import fill_bins, project_all
+from minirt.kernel.binning import fill_bins, project_shapes
 from minirt.kernel.bvh_build import collapse, divide
+from minirt.kernel.scene_arrays import to_single
 
-__all__ = ["collapse", "divide", "fill_bins", "project_all"]
+__all__ = ["collapse", "divide", "fill_bins", "project_shapes", "to_single"]

@@ -47,7 +47,7 @@ class SceneArrays(NamedTuple):
     lights: Any  # (m, 6) position and intensity of each light source
     colours_and_extents: Any  # (n, 4) colour of each shape, red green blue in [0, 1], and its largest coordinate
     slots: Any  # (n, 2) index of each shape's group, and of its row in that group
-    tile_shapes: Any  # shapes of all tiles, those of a tile and kind sorted by distance
+    tile_shapes: Any  # shapes of all tiles, those of a tile and kind sorted by distance; behind them room for more
     cones: Any  # (n, 5) bounding cones as seen from the eye
     light_buffer_cells: int  # cells along an edge of a light buffer's cube; 1 if light buffers are not used
     light_tolerances: Any  # (m,) how far around their cells the lists of light buffers hold, squared
@@ -116,15 +116,23 @@ def field_name(kind: Kind, name: str) -> str:
 
 
 @cache
-def point_fields(kind: Kind) -> tuple[str, ...]:
-    """Return the names of the row fields that are points, not directions or numbers."""
-    return tuple(field_name(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Position)
+def row_axes(kind: Kind) -> tuple[int, ...]:
+    """Return the axis of each number of a row that is a coordinate of a point, and 3 for other numbers."""
+    axes = {Position: (0, 1, 2), Vec: (3, 3, 3)}
+    return tuple(axis for hint in get_type_hints(kind.packed).values() for axis in axes.get(hint, (3,)))
 
 
 def kind_of(fields: Any) -> Kind:
     """Return the kind whose rows have these field names."""
     title = next(iter(fields)).split(".")[0]
     return next(kind for kind in ALL_KINDS if kind.element.title == title)
+
+
+def to_single(table: Any, columns: Any, shifts: Any, rounded: Any) -> None:
+    """Round the rows of a table to float32, each column less the one of some `shifts` that `columns` names."""
+    for i in range(table.shape[0]):
+        for j in range(table.shape[1]):
+            rounded[i, j] = table[i, j] - shifts[columns[j]]
 
 
 def read(rows: Rows, i: int) -> Any:

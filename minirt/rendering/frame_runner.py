@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
+from math import inf
 from time import perf_counter
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.pixels import PACKET_HEIGHT
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.lanes import width
 from minirt.rendering.frame import Frame, frame_arguments, plan_of, sum_buffer, thread_memory
 from minirt.rendering.kernels import Choice, Kernels
@@ -22,7 +24,7 @@ from minirt.rendering.sampling.packets import EDGE, Packets, contrast_classes
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.threads import Job, ThreadPool
 
-Kernel = tuple[Choice, list[Any]]  # a kernel, and the scene in the words that it takes
+BRIEF = 0.05  # seconds for which Ctrl+C may wait
 
 
 class FrameRunner:
@@ -31,8 +33,11 @@ class FrameRunner:
     def __init__(self, threads: int, kernels: Kernels) -> None:
         self.threads = threads
         self.kernels = kernels
-        self.next_row = np.zeros(1, np.int64)  # counters of the frames that are being rendered
+        self.next_row = np.zeros(1, np.int64)  # counter of the frame that is being rendered
         self.choice: Choice | None = None  # the kernel of the last frame
+        self.arrays: SceneArrays | None = None  # of its scene
+        self.words: list[Any] = []  # of the form of that scene which the kernel takes
+        self.pace = inf  # seconds that a sample of a byte of pixels took in the last frame of this kernel
         self.cancellations = 0
         self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
 
@@ -42,38 +47,49 @@ class FrameRunner:
         return ThreadPool(self.threads)
 
     def run_jobs(self, jobs: list[Job]) -> None:
-        """Run jobs on the threads that render."""
-        self.pool.run(jobs, self.cancel)
+        """Run brief jobs on the threads that render, and on the caller's."""
+        self.pool.run(jobs, self.cancel, helps=True)
 
-    def new_counters(self, frames: int) -> np.ndarray:
-        """Return a counter of rows for each of some frames; `cancel` ends these frames from now on."""
-        self.next_row = np.zeros(frames, np.int64)
+    def run_on_all(self, job: Job) -> None:
+        """Run a job on each of the threads that render."""
+        self.run_jobs([job] * self.threads)
+
+    def new_counter(self) -> np.ndarray:
+        """Return a counter of rows for a frame, which `cancel` ends from now on."""
+        self.next_row = np.zeros(1, np.int64)
         return self.next_row
 
-    def run(self, frames: list[Frame], threads: int, kernel: Kernel | None = None) -> Kernel:
-        """Render frames of one scene, one after the other, on so many threads, which share the rows of each; an error
-        of any thread is raised. Return the kernel, for further frames of the scene.
+    def run(self, frame: Frame) -> None:
+        """Render a frame on all threads, which share its rows; an error of any is raised.
 
-        A thread that finds no more rows of a frame goes on with the next one. The caller's thread only waits, so that
-        Ctrl+C reaches it.
+        The caller's thread is one of them where the frame is expected to be brief; else it only waits, so that Ctrl+C
+        reaches it.
         """
-        if kernel is None:
-            self.choice = self.kernels.choose(frames[0])
-            kernel = self.choice, words_of(self.choice.scene)  # which holds for all frames
-        choice, scene = kernel
-        memories = [(thread_memory(frames[0].scene), sum_buffer(frames[0].scene)) for _ in range(threads)]
-        start = perf_counter()
-        jobs: list[Job] = []
-        for memory, sums in memories:
-            arguments = [words_of(each._replace(memory=memory, sums=sums)[:-1]) + scene for each in frames]
-            jobs.append(partial(list, map(choice.entry.run, arguments)))
-        self.run_jobs(jobs)
-        self.kernels.count(choice, perf_counter() - start)
+        choice = self.choose(frame)
+        memories = [(thread_memory(frame.scene), sum_buffer(frame.scene)) for _ in range(self.threads)]
+        start, shared = perf_counter(), words_of(frame[:-3])
+        jobs: list[Job] = [partial(choice.entry.run, shared + words_of(each) + self.words) for each in memories]
+        work = inf if len(frame.plan) else len(frame.rays) * frame.pixels.size
+        self.pool.run(jobs, self.cancel, helps=self.pace * work < BRIEF)
+        seconds = perf_counter() - start
+        if work < inf and frame.next_row[0] < CANCELLED:
+            self.pace = seconds / work
+        self.kernels.count(choice, seconds)
         self.not_finite += int(sum(memory[-1, 1] for memory, _ in memories))
-        return kernel
+
+    def choose(self, frame: Frame) -> Choice:
+        """Return the kernel for a frame: that of the frame before where its scene has the same arrays."""
+        before = self.choice
+        if before is None or frame.scene is not self.arrays or self.kernels.has_better(before):
+            self.choice, self.arrays = self.kernels.choose(frame), frame.scene
+            self.words = words_of(self.choice.scene)
+            if before is None or self.choice.entry is not before.entry:
+                self.pace = inf
+        assert self.choice
+        return self.choice
 
     def cancel(self) -> None:
-        """End the frames that are being rendered, soon and incomplete; callable from any thread."""
+        """End the frame that is being rendered, soon and incomplete; callable from any thread."""
         self.cancellations += 1  # for a picture between two frames
         self.next_row[:] = CANCELLED
 
@@ -83,7 +99,7 @@ class FrameRunner:
         """Render a scene that has shapes; with `edges_only` only packets in which neighbouring pixels differ, unless a
         lens or a light with a size blurs others, too. False where it was cancelled or `is_wanted` said no."""
         scene, pixels, light, crop = request
-        counter = self.new_counters(1)
+        counter = self.new_counter()
         if not is_wanted():
             return False
         arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
@@ -93,7 +109,7 @@ class FrameRunner:
             packets = np.flatnonzero(classes >= EDGE)
             drawn = np.tile(np.array([0, samples, 0], np.int32), (len(packets), 1))
             frame = frame._replace(plan=plan_of(packets, classes.shape[1], drawn))
-        self.run([frame], self.threads)
+        self.run(frame)
         return bool(counter[0] < CANCELLED)
 
     def render_to_error(
@@ -109,18 +125,15 @@ class FrameRunner:
         with_places = has_apertures(arrays)
         lanes = width(arrays.camera)
         packet_width = lanes // PACKET_HEIGHT
-        kernel: Kernel | None = None
 
         def draw(positions: np.ndarray, plan: np.ndarray, errors: np.ndarray) -> None:
-            nonlocal kernel
-            counter = self.new_counters(1)
+            counter = self.new_counter()
             if self.cancellations != cancellations:
                 raise CancelledError
             rays = packet_rays(arrays.camera, positions[..., :2])
             if with_places:
                 rays = with_apertures(rays, positions[..., 2:], arrays.lens)
-            planned = frame._replace(next_row=counter, rays=rays, plan=plan, errors=errors)
-            kernel = self.run([planned], self.threads, kernel)
+            self.run(frame._replace(next_row=counter, rays=rays, plan=plan, errors=errors))
             if counter[0] >= CANCELLED:
                 raise CancelledError
 

@@ -109,6 +109,10 @@ class Kernels:
                 return Choice(entry, generic_kernels.generalised(frame.scene, generic), generic, specialised)
         return Choice(LIBRARY.get(call), frame.scene, None, specialised)
 
+    def has_better(self, choice: Choice) -> bool:
+        """Whether the specialised kernel is there by now, where a generic one was chosen."""
+        return choice.generic is not None and LIBRARY.find(choice.specialised) is not None
+
     def count(self, choice: Choice, seconds: float) -> None:
         """Count the time of rendering with a kernel; where a generic one took long compile the specialised one."""
         if choice.generic:
@@ -217,7 +221,8 @@ def generic_identity(generic: GenericKernel) -> str:
 def packing_calls() -> list[Call]:
     """Return calls of all functions beside those that draw, whose types are the same for all scenes."""
     *packing, _ = calls_for(parse(EXAMPLE).scene, "double", DEPTH)
-    return packing
+    rounding = np.zeros((0, 0)), np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 0), np.float32)
+    return [*packing, functions.to_single.call(*rounding)]
 
 
 def ray_query() -> Call:

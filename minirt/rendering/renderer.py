@@ -59,9 +59,10 @@ class Renderer:
     def after_fork(self) -> None:
         """Begin without a picture, in a child process anew: locks, threads and processes are the parent's."""
         self.busy = Lock()
-        self.packing = Packing(precision=self.precision, depth=self.depth, without=self.without)
         self.kernels = Kernels(self.precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
+        run = self.runner.run_on_all
+        self.packing = Packing(precision=self.precision, depth=self.depth, without=self.without, run=run)
         self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, self.dither)
 
     @property

@@ -16,15 +16,16 @@ from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
 from minirt.rendering.packing.bvh import build_bvh, without_boxes
-from minirt.rendering.packing.camera import Crop
+from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
-from minirt.rendering.packing.generic_kernels import in_single
 from minirt.rendering.packing.ray_casting import distance_in_the_middle
-from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import BinnedShapes
+from minirt.rendering.packing.shape_arrays import ShapeArrays, extents_from
+from minirt.rendering.packing.view import Rounding, View, in_single
+from minirt.rendering.packing.visibility import BinnedShapes, Run
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
 
+NO_MEMBERS = np.zeros(0, np.int32)
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
 
 
@@ -37,17 +38,25 @@ class Packing:
     """
 
     def __init__(
-        self, kernel: Any = functions, precision: str = "double", depth: int = DEPTH, without: Collection[str] = ()
+        self,
+        kernel: Any = functions,
+        precision: str = "double",
+        depth: int = DEPTH,
+        without: Collection[str] = (),
+        run: Run | None = None,
     ) -> None:
+        """`run` runs a job on all threads; without it the caller's thread packs."""
         self.kernel = kernel
         self.without = without
+        self.run = run
         self.precision = precision
         self.depth = depth  # bounces at most
         self.shape_arrays = ShapeArrays()
         self.cache: dict[Hashable, Any] = {}  # results for the last scene, by what they depend on beside its shapes
         self.cells_that_fit: dict[int, int] = {}  # by the number of lights, where the usual cells do not fit
         self.bvh: Tree | None = None  # of the last shapes, once it was needed
-        self.last: tuple[Scene, tuple[int, int, Crop], SceneArrays] | None = None
+        self.last: tuple[Scene, Place, SceneArrays] | None = None
+        self.view: View | None = None  # of the last scene
 
     def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
         """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
@@ -64,19 +73,30 @@ class Packing:
         return self.bvh
 
     def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:
-        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one."""
-        place = width, height, crop or Crop(width, height)
-        if self.last and self.last[0] is scene and self.last[1] == place:
-            return self.last[2]
-        arrays = self.pack_double(scene, *place)
-        if self.precision == "single" and fits_single(arrays):
-            arrays = in_single(arrays, self.shape_arrays.boxes)
-        self.last = scene, place, arrays
-        return arrays
+        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one.
 
-    def pack_double(self, scene: Scene, width: int, height: int, crop: Crop) -> SceneArrays:
-        """Return the arrays in double precision, packed again even if the scene is the last one."""
-        shapes = self.shape_arrays_for(scene.shapes)
+        Until the next call: where nothing but the camera moves they are the same arrays, with other contents.
+        """
+        place = width, height, crop or Crop(width, height)
+        self.shape_arrays_for(scene.shapes)
+        last, self.last = self.last, None  # an error leaves none
+        if not (last and last[1] == place and self.follows(scene, last[0], last[2])):
+            last = scene, place, self.pack_anew(scene, place)
+        self.last = scene, place, last[2]
+        return last[2]
+
+    def follows(self, scene: Scene, last: Scene, arrays: SceneArrays) -> bool:
+        """Whether the arrays of the last scene are those of this one, or have followed its camera."""
+        if scene is last:
+            return True
+        can_follow = self.view and arrays.lens is None and arrays.eye_medium is None
+        if not self.view or not can_follow or all_but_pose(scene) != all_but_pose(last):
+            return False
+        return self.view.follow(scene.camera, arrays, self.run)
+
+    def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
+        """Return arrays that are made anew, except what the scene shares with the last one."""
+        crop, shapes = place[2], self.shape_arrays_for(scene.shapes)
         before, self.cache = self.cache, {}
 
         def cached(key: Hashable, compute: Callable[..., Any], *arguments: Any) -> Any:
@@ -91,12 +111,7 @@ class Packing:
             key = "middle", numbers.tobytes()
             focus = scene.camera.focus or cached(key, distance_in_the_middle, shapes, numbers)
             lens = camera.lens_numbers(scene.camera, focus)
-        radius, per_focus = camera.radius_and_focus(lens)
-        view = numbers, width, height, crop, radius, per_focus
-        if TILES in self.without:
-            eye = visibility.in_all_cells(shapes, tile_count(width) * tile_count(height))
-        else:
-            eye = cached((numbers.tobytes(), *view[1:]), visibility.seen_by_eye, self.kernel, shapes, *view)
+        radius, _ = camera.radius_and_focus(lens)
         usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes))
         cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
         while True:
@@ -108,15 +123,23 @@ class Packing:
                     raise
                 cells //= 2
                 self.cells_that_fit[len(sources)] = cells
-        light_starts, light_buffers = cached(keys, joined_light_buffers, binned, eye)
+        light_starts, light_buffers = cached(keys, joined_light_buffers, binned, shapes)
         look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
         packed = cached(look, materials.pack_materials, scene, shapes.owner, used)
+        traits = materials.traits_of(packed, len(shapes.slots))
+        extents = np.zeros((len(shapes.slots) * (self.precision == "single"), 4), np.float32)
+        if TILES in self.without:
+            eye = visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))
+            seen = int(np.bitwise_or.reduce(traits))
+        else:
+            self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, extents)
+            eye, seen = self.view.look(scene.camera, self.run)
         needs_bvh = "reflective" in used or (usual_cells > 1 and not SPREAD.isdisjoint(used))
         paint: Any = scene.background and scene.background.paint
         environment = None
         if "environment" in used:
             environment = cached(("environment", paint, colours), materials.pack_environment, scene, paint)
-        return SceneArrays(
+        arrays = SceneArrays(
             camera=np.append(camera.pixel_rays(numbers, crop.width, crop.height), (crop.left, crop.top)),
             ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
             lights=lights.positions_and_intensities(sources, colours),
@@ -138,8 +161,15 @@ class Packing:
             background=colours.light(paint) if "background" in used else None,
             environment=environment,
             bvh=self.bvh_of(scene.shapes) if needs_bvh and BVH not in self.without else None,
-            **materials.without_unseen(packed, eye.members),
+            **materials.without_unseen(packed, seen),
         )
+        if self.precision == "single" and fits_single(arrays):
+            rounding = Rounding(self.kernel, numbers[:3])
+            extents[:, 3] = extents_from(numbers[:3], shapes.boxes)
+            arrays = in_single(arrays, extents, rounding)
+            if self.view:
+                self.view.rounding = rounding
+        return arrays
 
     def seen_by_lights(
         self, sources: list[Lamp], eye: np.ndarray, cells: int, cached: Callable[..., Any], radius: float
@@ -163,7 +193,7 @@ class Packing:
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
                 at = position, cells, skipped, size, alike
-                binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at))
+                binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at, self.run))
         return binned, tuple(keys)
 
     @property
@@ -187,15 +217,22 @@ def fits_single(arrays: SceneArrays) -> bool:
     )
 
 
-def joined_light_buffers(binned: list[BinnedShapes], eye: BinnedShapes) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def all_but_pose(scene: Scene) -> tuple[Any, ...]:
+    """Return all of a scene, beside its shapes, that a camera leaves as it is when it moves and turns."""
+    seen_by = scene.camera
+    rest = scene.lights, scene.ambient, scene.background, scene.file
+    return *rest, seen_by.fov, seen_by.tone, seen_by.exposure, seen_by.lens
+
+
+def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
-    starts, cones = np.zeros((len(eye.starts), 0, 1), np.int64), np.zeros((0, *eye.cones.shape))
+    starts, cones = np.zeros((len(shapes.rows), 0, 1), np.int64), np.zeros((0, len(shapes.slots), 5))
     if binned:
         offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])])
         starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
         cones = np.stack([each.cones for each in binned])
     return starts, {
-        "light_shapes": np.concatenate([eye.members[:0], *(each.members for each in binned)]),
+        "light_shapes": np.concatenate([NO_MEMBERS, *(each.members for each in binned)]),
         "light_cones": cones,
         "light_tolerances": np.array([each.tolerance for each in binned]),
     }

@@ -34,17 +34,22 @@ class ThreadPool:
             self.threads[-1].start()
         finalize(self, self.tasks.put, None)
 
-    def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
+    def run(self, jobs: list[Job], cancel: Callable[[], None], helps: bool = False) -> None:
         """Run jobs on the threads, and wait for all of them; an error of one is raised.
 
-        `cancel` makes the jobs end early. It is called when a job fails, and when Ctrl+C interrupts the wait.
+        Where the caller `helps` it runs the first job itself, and Ctrl+C waits for its end: that saves a twentieth of a
+        frame of 2 ms. `cancel` makes the jobs end early. It is called when a job fails, and when Ctrl+C interrupts the
+        wait.
         """
         ended: Ended = SimpleQueue()
-        for job in jobs:
+        own = jobs[:1] if helps else []
+        for job in jobs[len(own) :]:
             self.tasks.put((job, ended))
         left, errors = len(jobs), list[BaseException]()
         while left:
             try:
+                if own:
+                    perform(own.pop(), ended)
                 with suppress(Empty):
                     error = ended.get(timeout=LONGEST_WAIT)
                     left -= 1
@@ -60,14 +65,18 @@ class ThreadPool:
 def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
     """Run one task after the other, in a thread of the pool, until the queue holds None, which ends all threads."""
     while task := tasks.get():
-        job, ended = task
-        try:
-            job()
-            ended.put(None)
-        except BaseException as error:
-            ended.put(error)
-        del task, job, ended
+        perform(*task)
+        del task
     tasks.put(None)
+
+
+def perform(job: Job, ended: Ended) -> None:
+    """Run a job, and report its end or its error."""
+    try:
+        job()
+        ended.put(None)
+    except BaseException as error:
+        ended.put(error)
 
 
 # Of a container: microseconds of processor time per period, and the period in microseconds.

@@ -134,7 +134,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     arrays = packing.pack(scene, width, height)
     seen, lit = (
         [scene.shapes[index] for index in np.unique(packing.shape_arrays.owner[np.unique(each)]).tolist()]
-        for each in (arrays.tile_shapes, arrays.light_shapes)
+        for each in (arrays.tile_shapes[: arrays.groups[-1].tile_starts[-1]], arrays.light_shapes)
     )
     used = {feature for shape in seen for feature in material_features(shape)}
     if "reflective" in used:

@@ -22,10 +22,10 @@ def announce_rendering() -> None:
     """Patch the renderer to announce each picture, except pictures of one pixel, which only compile kernels."""
     run = FrameRunner.run
 
-    def announcing(self: FrameRunner, frames: list[Frame], threads: int) -> None:
-        if frames[0].pixels.size > 1:
-            Thread(target=watch, args=(frames[0].next_row,), daemon=True).start()
-        run(self, frames, threads)
+    def announcing(self: FrameRunner, frame: Frame) -> None:
+        if frame.pixels.size > 1:
+            Thread(target=watch, args=(frame.next_row,), daemon=True).start()
+        run(self, frame)
 
     FrameRunner.run = announcing  # type: ignore[method-assign]
 

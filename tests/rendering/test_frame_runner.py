@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event, Thread, current_thread, main_thread
 from typing import TypeVar
 
 import numpy as np
@@ -74,6 +74,16 @@ def test_the_seconds_of_a_frame_are_counted_for_its_kernel(monkeypatch: pytest.M
     monkeypatch.setattr(renderer.kernels, "count", lambda _choice, seconds: counted.append(seconds))
     assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
     assert counted == [0.25]
+
+
+def test_the_caller_draws_only_frames_that_are_expected_to_be_brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer, helped, run = Renderer(2), list[bool](), ThreadPool.run
+    renderer.prepare(ALL)
+    monkeypatch.setattr(frame_runner, "perf_counter", count(step=0.01).__next__)  # a frame takes a hundredth
+    monkeypatch.setattr(ThreadPool, "run", lambda pool, *jobs, helps: (helped.append(helps), run(pool, *jobs, helps)))
+    for samples in (1, 1, 9, 1, 2):
+        assert renderer.render(ALL, np.zeros((48, 64, 4), np.uint8), samples)
+    assert helped == [False, True, False, True, True]
 
 
 def test_an_error_in_one_thread_reaches_the_caller() -> None:
@@ -216,11 +226,18 @@ def test_samples_lie_evenly_in_the_pixel(samples: int) -> None:
 # The threads that run jobs, and their number.
 
 
-def test_an_error_of_a_job_is_raised_and_cancels_the_others() -> None:
-    cancelled = Event()
+@pytest.mark.parametrize("helps", [False, True])
+def test_an_error_of_a_job_is_raised_and_cancels_the_others(helps: bool) -> None:
+    cancelled, ran = Event(), list[bool]()
+
+    def fail() -> None:
+        ran.append(current_thread() is main_thread())
+        raise ZeroDivisionError
+
     with pytest.raises(ZeroDivisionError):
-        ThreadPool(3).run([lambda: 1 / 0, lambda: cancelled.wait(HANG_LIMIT)], cancelled.set)
+        ThreadPool(3).run([fail, lambda: cancelled.wait(HANG_LIMIT)], cancelled.set, helps)
     assert cancelled.is_set()
+    assert ran == [helps]
 
 
 def test_ctrl_c_just_before_the_wait_is_seen() -> None:

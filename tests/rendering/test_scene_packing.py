@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from random import SystemRandom
 from typing import Any
 
 import numpy as np
@@ -11,15 +13,18 @@ import pytest
 from PIL import Image
 
 from minirt.kernel.scene_arrays import read
-from minirt.materials import Checker
+from minirt.materials import Checker, Specular
 from minirt.rendering.packing import shape_arrays
 from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_indices, extents_from
+from minirt.rendering.packing.view import Rounding, View
+from minirt.rendering.renderer import PRECISIONS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL, EYE, SHAPES
+from tests.random_scenes import random_scene
 
 
 @pytest.fixture
@@ -32,11 +37,14 @@ def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return done
 
 
-def assert_same(arrays: Any, scene: Scene) -> None:
+def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> None:
     """Assert that arrays equal those of a fresh packing."""
-    fresh = Packing().pack(scene, 24, 16)
+    fresh = Packing(precision=precision).pack(scene, 24, 16)
     for name, value in zip(fresh._fields, fresh, strict=True):
-        if name != "groups":
+        if name == "tile_shapes":  # which has room for more
+            end = fresh.groups[-1].tile_starts[-1]
+            assert np.array_equal(arrays.tile_shapes[:end], value[:end])
+        elif name != "groups":
             assert np.array_equal(getattr(arrays, name), value), name
     for group, expected in zip(arrays.groups, fresh.groups, strict=True):
         assert all(np.array_equal(part, right) for part, right in zip(group, expected, strict=True))
@@ -117,6 +125,45 @@ def test_using_the_arrays_of_another_scene_does_no_harm() -> None:
         assert_same(packing.pack(other, 24, 16), other)
         packing.shape_arrays_for(scene.shapes)
         assert_same(packing.pack(other, 24, 16), other)
+
+
+STEPS = 12
+
+
+def walk(seed: int) -> Iterator[Scene]:
+    """Yield a random scene from places near each other and far, looking anywhere, through planes and out of sight."""
+    random, scene = np.random.default_rng(seed), random_scene(seed)
+    ball, *_ = scene.shapes
+    scene = scene.replace(ball, specular=Specular(0.5, 9.0))
+    for step in range(STEPS):
+        yield scene
+        place = np.array(scene.camera.position) + random.normal(size=3) * (0.1, 1.0, 9.0)[step % 3]
+        way = random.normal(size=3)
+        pose = {"position": tuple(place.tolist()), "direction": tuple((way / np.abs(way).max()).tolist())}
+        scene = scene.replace(scene.camera, **pose, roll=float(step), left_handed=step % 2 == 0)
+
+
+def follows(seed: int, precision: str) -> int:
+    """Assert that arrays that follow a camera are those of a fresh packing; return how often they did so."""
+    packing, before, kept = Packing(precision=precision), None, 0
+    for scene in walk(seed):
+        arrays = packing.pack(scene, 24, 16)
+        kept += arrays is before
+        assert_same(arrays, scene, precision)
+        before = arrays
+    return kept
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_arrays_follow_a_camera_that_moves_and_turns(precision: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    seed = SystemRandom().randrange(2**32)  # each run tries other walks
+    print(f"seeds from {seed} on")
+    assert sum(follows(seed + i, precision) for i in range(8)) > 8 * STEPS / 4
+    unchanged = property(lambda view: None, lambda view, seen: None)
+    monkeypatch.setattr(View, "seen", unchanged, raising=False)  # where lists of lights and materials change, too
+    monkeypatch.setattr(Rounding, "move", lambda rounding, eye: None)
+    with pytest.raises(AssertionError):
+        sum(follows(seed + i, precision) for i in range(40))
 
 
 def test_single_precision_draws_checkers_but_no_pictures(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from minirt import load
 from minirt.errors import RenderError
 from minirt.materials import Checker, Specular
 from minirt.rendering import Renderer
-from minirt.rendering.packing import visibility
+from minirt.rendering.packing.visibility import Bins
 from minirt.report import bench, povray
 from minirt.report.bench import Run, is_disturbed, runs
 from minirt.report.pictures import Budget, reference
@@ -32,7 +32,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Log each frame and, before it, the making of the lists that it needs."""
     log: list[str] = []
 
-    lists, render = visibility.seen_by_eye, Renderer.render
+    lists, render = Bins.see_from, Renderer.render
 
     def logged_lists(*arguments: Any) -> Any:
         log.append("lists")
@@ -43,7 +43,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         if pixels.shape[:2] == SIZE[::-1]:  # not the pixel for which the kernel is prepared
             log.append("frame")
 
-    monkeypatch.setattr(visibility, "seen_by_eye", logged_lists)
+    monkeypatch.setattr(Bins, "see_from", logged_lists)
     monkeypatch.setattr(Renderer, "render", logged_render)
     monkeypatch.setattr(bench, "LEAST_SECONDS", 0.0)
     return log

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-from collections.abc import Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from contextlib import ExitStack
 from functools import cached_property
 from threading import Lock
@@ -45,10 +45,21 @@ class Entry:
 
     def run(self, words: list[int]) -> Any:
         """Run the kernel with the words of its arguments, which the caller keeps alive."""
+        return self.bound(words)()
+
+    def bound(self, words: list[int], arguments: Any = ()) -> Callable[[], Any]:
+        """Return the call of the kernel with the words of arguments, which it keeps alive.
+
+        It may be called again and again; at the same time in several threads only where the kernel has no result."""
         block = np.array(words + [0] * self.results, np.int64)
-        self.call(block.ctypes.data)
-        results = block[len(words) :].tolist()
-        return tuple(results) if self.results > 1 else results[0] if results else None
+        address, results = block.ctypes.data, block[len(words) :]
+
+        def call(arguments: Any = arguments) -> Any:
+            self.call(address)
+            found = results.tolist()
+            return tuple(found) if self.results > 1 else found[0] if found else None
+
+        return call
 
 
 def load(kernel: ObjectCode) -> Entry:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from functools import cache, lru_cache
 from math import cos, pi, radians, sin, tan
 from operator import index
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -44,6 +44,9 @@ class Crop(NamedTuple):
     height: int
     left: int = 0  # column and row of the picture at which the rectangle begins: multiples of `TILE`
     top: int = 0
+
+
+Place: TypeAlias = tuple[int, int, Crop]  # width and height of the rectangle to render, and where it is
 
 
 class Request(NamedTuple):
@@ -105,16 +108,23 @@ def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
 def camera_numbers(camera: Camera, width: int, height: int) -> np.ndarray:
     """Eye, right, up and forward, (12,); right and up reach from the centre of the image plane, at distance 1, to its
     edges."""
-    right, up, forward = map(np.array, camera_frame(camera))
+    right, up, forward = camera_frame(camera)
+    across, down = slopes_at_edges(camera, width, height)
+    return np.array([*camera.position, *(across * part for part in right), *(down * part for part in up), *forward])
+
+
+def slopes_at_edges(camera: Camera, width: int, height: int) -> tuple[float, float]:
+    """The slopes, to the side and up, of the directions through the edges of a camera's picture."""
     half = tan(radians(clamp(camera.fov, NARROWEST, WIDEST)) / 2)
-    return np.concatenate([camera.position, right * half, up * (half * height / width), forward])
+    return half, half * height / width
 
 
 def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
     """Convert `camera_numbers` to eye, direction through the upper left corner of the picture, and the changes of that
     direction a pixel to the right and a pixel down, (12,)."""
-    eye, right, up, forward = camera.reshape(4, 3)
-    return np.concatenate([eye, forward - right + up, right * (2 / width), up * (-2 / height)])
+    eye, right, up, forward = camera.reshape(4, 3).tolist()
+    corner = (z - x + y for x, y, z in zip(right, up, forward, strict=True))
+    return np.array([*eye, *corner, *(2 / width * part for part in right), *(-2 / height * part for part in up)])
 
 
 def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:

@@ -1,7 +1,4 @@
-"""Forms of a packed scene: float32, and the arguments of generic kernels.
-
-float32 is less precise, with twice as many rays per SIMD register. Everything is moved so that the eye is the origin
-before it is rounded, so that whatever is near the eye is precise. Bounds used for culling are rounded to the safe side.
+"""Packed scenes as arguments of generic kernels.
 
 A generic kernel is the same function as a specialised one, compiled for all kinds of shapes and for a fixed set of
 features. What a scene lacks is an array without rows, which the kernel skips.
@@ -16,72 +13,12 @@ import numpy as np
 
 from minirt.kernel import bvh_nodes
 from minirt.kernel.bvh_nodes import WIDTH, Tree
-from minirt.kernel.scene_arrays import Group, SceneArrays, kind_of, point_fields, row_type
-from minirt.kernel.shading.patterns import COLUMNS, ORIGIN, Patterns
+from minirt.kernel.scene_arrays import Group, SceneArrays, row_type
+from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.rendering.packing.bvh import block_type
 from minirt.rendering.packing.features import FEATURES, MAPS
-from minirt.rendering.packing.shape_arrays import extents_from
 from minirt.shapes import ALL_KINDS, Kind
-
-MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
-
-
-def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
-    """Return a scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
-    eye, patterns = arrays.camera[:3], arrays.patterns
-    if patterns:
-        patterns = patterns._replace(rows=patterns.rows.copy())
-        patterns.rows[:, ORIGIN : ORIGIN + 3] -= eye
-    moved = arrays._replace(
-        camera=np.concatenate([np.zeros(3), arrays.camera[3:]]),
-        lights=arrays.lights - np.concatenate([eye, np.zeros(3)]),
-        colours_and_extents=np.column_stack([arrays.colours_and_extents[:, :3], extents_from(eye, boxes)]),
-        patterns=patterns,
-        # Narrowed by rounding errors, so that fewer directions count as close to another.
-        light_tolerances=np.maximum(np.sqrt(arrays.light_tolerances) - MARGIN, 0.0) ** 2,
-    )
-    single: SceneArrays = as_single(moved)
-    return single._replace(
-        cones=widened_cones(arrays.cones),
-        light_cones=widened_cones(arrays.light_cones),
-        groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
-    )
-
-
-def as_single(part: Any) -> Any:
-    """Round float64 to the nearest float32 in an array, or in the arrays of a NamedTuple; leave others as they are."""
-    if hasattr(part, "_fields"):
-        return part._replace(**{name: as_single(each) for name, each in part._asdict().items()})
-    if isinstance(part, np.ndarray) and part.dtype == np.float64:
-        with np.errstate(over="ignore"):
-            return part.astype(np.float32)
-    return part
-
-
-def widened_cones(cones: np.ndarray) -> np.ndarray:
-    """Round bounding cones to float32 so that they enclose the given ones and their distances are not greater.
-
-    That holds also when a scalar product in float32 decides whether a direction is inside.
-    """
-    wider: np.ndarray = as_single(cones)
-    wider[..., 3] -= MARGIN
-    wider[..., 4] = np.nextafter(wider[..., 4], np.float32(-np.inf))
-    return wider
-
-
-def rows_relative_to(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
-    """Move rows of shapes so that the eye is the origin, and round them to float32."""
-    kind = kind_of(rows.dtype.names)
-    rows = rows.copy()
-    for name in point_fields(kind):
-        rows[name] -= eye
-    with np.errstate(over="ignore"):
-        return rows.astype(row_type(kind, np.float32))
-
-
-# Scenes as arguments of generic kernels.
-
 
 ABSENT = -1  # number of the group of a kind that a scene lacks
 NO_TEXELS, NO_PICTURES = np.zeros(0, np.float32), np.zeros((0, 4), np.int64)

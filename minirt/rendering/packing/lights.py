@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.binning import MARGIN
+from minirt.kernel.projection import MARGIN
 from minirt.materials import pictures
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import signed_heights

@@ -213,15 +213,27 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
 # seconds of compiling, which pay off after more than a minute of rendering.
 
 
-def without_unseen(materials: dict[str, Any], seen: np.ndarray) -> dict[str, Any]:
+SHOWN = (("reflective", 2), ("specular", 1))  # features, and their columns that are 0 where a shape lacks it
+
+
+def traits_of(materials: dict[str, Any], count: int) -> np.ndarray:
+    """Return a bit for each of `SHOWN` that a shape has, (n,)."""
+    traits = np.zeros(count, np.int64)
+    for bit, (name, columns) in enumerate(SHOWN):
+        if name in materials:
+            traits |= (materials[name][:, :columns] != 0.0).any(axis=1).astype(np.int64) << bit
+    return traits
+
+
+def without_unseen(materials: dict[str, Any], seen: int) -> dict[str, Any]:
     """Return materials without the rows of the features that no pixel can show.
 
-    `seen` has the shapes of the lists of all tiles, which may repeat. Mirrors and glass that are seen may show every
-    shape. Light shines through glass that is not seen: its other rows stay.
+    `seen` has the traits of the shapes in the lists of all tiles. Mirrors and glass that are seen may show every shape.
+    Light shines through glass that is not seen: its other rows stay.
     """
-    for name, columns in (("reflective", 2), ("specular", 1)):
+    for bit, (name, _) in enumerate(SHOWN):
         if name in materials:
-            if any((materials[name][:, column] != 0.0)[seen].any() for column in range(columns)):
+            if seen >> bit & 1:
                 break
             materials = materials | {name: materials[name][:0]}
     return materials

@@ -12,7 +12,7 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel.binning import MARGIN
+from minirt.kernel.projection import MARGIN
 from minirt.kernel.scene_arrays import row_type
 from minirt.lanes import Vec
 from minirt.shapes import ALL_KINDS, Ball, Shape
@@ -103,6 +103,8 @@ class ShapeArrays:
         if resized or not all(type(old) is type(new) and old.parts == new.parts for old, new in pairs):
             resized, changed = True, self.resize(shapes)
         self.shapes = shapes
+        if not (resized or changed):
+            return False
         indices = np.array(changed, np.int64)
         groups = self.slots[self.first_primitive[indices], 0]
         for group in range(len(self.rows)):
@@ -111,7 +113,7 @@ class ShapeArrays:
             step = max(1, CHUNK * len(of_group) // max(1, primitives))
             for start in range(0, len(of_group), step):
                 self.write(group, of_group[start : start + step])
-        return resized or bool(changed)
+        return True
 
     def resize(self, shapes: tuple[Shape, ...]) -> list[int]:
         """Make room for other shapes, of which those that were there keep their numbers; return the indices of those

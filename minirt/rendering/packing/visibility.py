@@ -4,16 +4,20 @@ cells of its light buffer (Haines and Greenberg, The light buffer: a shadow-test
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from minirt.helpers import system
-from minirt.kernel.binning import MARGIN, Grid
+from minirt.kernel.binning import CHUNK, RADIX, Projection
 from minirt.kernel.frame import tile_count
+from minirt.kernel.machine_code.functions import bound
 from minirt.kernel.pixels import TILE
-from minirt.rendering.packing.camera import Crop
+from minirt.kernel.projection import MARGIN, Grid, signed_height
+from minirt.lanes import Vec
+from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes.mesh import Mesh
 
@@ -30,16 +34,16 @@ SMALL = 8
 FEW, SIDE_BY_SIDE = 200, 8
 CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (1_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
-MEMBER, START = 4, 8  # bytes of a member and of a start of a list
+MEMBER, START, RECTANGLE = 4, 8, 32  # bytes of a member and of a start of a list, and of a rectangle of cells
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**29  # bytes of lists that are built within seconds
 MOST_MEMBERS = 2**24  # of all cells that have every shape
-RUN = 120  # bytes of a plane in a row of cells, while its runs are computed
+PARALLEL = 4096  # shapes from which on several threads project them
 
-# Positive floating-point numbers sort like their bits, the exponent first. Depths sort by their upper 25 bits, from
-# 2^-128 on: a relative precision of 2^-13, which is more than `minirt.kernel.trace.COINCIDENT`.
-DROPPED_BITS = 39
-LEAST_DEPTH = (1023 - 128) << (52 - DROPPED_BITS)
+
+NO_EXTENTS = np.zeros((0, 4), np.float32)
+BOUNDS = "balls", "first_ball", "boxes", "slots", "planes", "plane_indices"  # of `Projection`, and of `ShapeArrays`
+Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all threads
 
 
 class BinnedShapes(NamedTuple):
@@ -59,15 +63,17 @@ def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
     return next(cells for most, cells in CELLS_BY_SHAPES if shapes <= most)
 
 
-def screen_grid(camera: np.ndarray, width: int, height: int, crop: Crop) -> Grid:
-    """The tiles of a rectangle of so many pixels of a picture as a grid, each extended by a pixel on all sides."""
-    _, right, up, forward = camera.reshape(4, 3)
-    half_width, half_height = float(np.linalg.norm(right)), float(np.linalg.norm(up))
+def screen_grid(half_width: float, half_height: float, place: Place) -> Grid:
+    """The tiles of a rectangle of so many pixels of a picture as a grid, each extended by a pixel on all sides.
+
+    `half_width` and `half_height` are the slopes at the edges of the picture. The frame is that of a camera to come.
+    """
+    *size, crop = place
+    across, down = map(tile_count, size)
     x, y = crop.width / (2 * TILE), crop.height / (2 * TILE)
-    frames = np.stack([right / half_width, -up / half_height, forward])[None]
-    across, down = tile_count(width), tile_count(height)
     first = crop.left // TILE, crop.top // TILE
-    return Grid(frames, across, down, x / half_width, x, y / half_height, y, 1 / TILE, across * down, *first)
+    scales = x / half_width, x, y / half_height, y
+    return Grid(np.zeros((1, 3, 3)), across, down, *scales, 1 / TILE, across * down, *first)
 
 
 @cache
@@ -75,33 +81,6 @@ def cube_grid(cells: int) -> Grid:
     """The six faces of the cube around a light as a grid, so many cells along an edge."""
     half = cells / 2
     return Grid(FACES, cells, cells, half, half, half, half, CUBE_MARGIN, 6 * cells * cells)
-
-
-def seen_by_eye(
-    kernel: Any,
-    shape_arrays: ShapeArrays,
-    camera: np.ndarray,
-    width: int,
-    height: int,
-    crop: Crop,
-    radius: float = 0.0,
-    per_focus: float = 0.0,
-) -> BinnedShapes:
-    """Bin the shapes into the tiles of a rectangle of a picture. `kernel` is `minirt.kernel.binning` or its
-    compiled form.
-
-    A ray of a lens of some radius differs, at depth z, from that through its centre by the radius times
-    1 - z `per_focus` at most.
-    """
-    none = np.zeros(len(shape_arrays.planes), bool)
-    balls = shape_arrays.balls
-    if radius:
-        depth = (balls[:, :3] - camera[:3]) @ camera[9:12]
-        ends = np.maximum(depth + np.array([[-1.0], [1.0]]) * balls[:, 3], 0.0)
-        balls = balls.copy()
-        balls[:, 3] += radius * np.maximum(np.abs(1.0 - per_focus * ends).max(axis=0) - 1.0, 0.0)
-    grid = screen_grid(camera, width, height, crop)
-    return bin_shapes(kernel, shape_arrays, balls, camera[:3], grid, none, radius, radius * per_focus)
 
 
 def seen_by_light(
@@ -112,18 +91,19 @@ def seen_by_light(
     skipped: np.ndarray,
     radius: float = 0.0,
     copies: int = 1,
+    run: Run | None = None,
 ) -> BinnedShapes:
     """Bin the shapes into the light buffer of a light of some radius, without the planes that are `skipped` (p,).
 
     `TooLargeError` where there is no room for so many copies of its lists.
     """
     largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    place = np.array(light), cube_grid(cells)
-    binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, *place, skipped, radius, 0.0, copies, largest)
+    bins = Bins(kernel, shape_arrays, cube_grid(cells), radius, 0.0, skipped, copies, largest)
+    bins.see_from(light, run)
     if cells == 1:
-        return in_all_cells(shape_arrays, 1, skipped, binned.cones)
+        return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
     spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)  # distance up to which lists hold around a cell
-    return binned._replace(tolerance=float(spread * spread))
+    return BinnedShapes(bins.starts, bins.members, bins.seen.cones, float(spread * spread))
 
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:
@@ -135,78 +115,81 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
     return every._replace(starts=starts, members=every.members[:0])
 
 
-def bin_shapes(
-    kernel: Any,
-    shape_arrays: ShapeArrays,
-    balls: np.ndarray,
-    origin: np.ndarray,
-    grid: Grid,
-    skipped: np.ndarray,
-    radius: float = 0.0,
-    lean: float = 0.0,
-    copies: int = 1,
-    largest: int = system.UNLIMITED,
-) -> BinnedShapes:
-    """Bin the shapes, which `balls` enclose, into the cells of a grid of directions from a point.
+class Bins:
+    """The shapes in the cells of a grid of directions from a point: when it moves they are binned anew, in the same
+    arrays. Radius, lean, traits and extents are those of `minirt.kernel.binning.Projection`."""
 
-    The lists hold for rays from all points within `radius`, in the directions of a cell. They hold for planes in
-    directions, not normalised, up to `lean` away, too. `TooLargeError` where there is no room for so many copies of
-    the lists, or where they would have more than `largest` bytes.
-    """
-    height = signed_heights(shape_arrays.planes, origin, radius)
-    shown = ~skipped
-    planes, heights = shape_arrays.planes[shown], height[shown]
-    towards = -np.sign(heights[:, None]) * planes[:, :3]
-    kinds, stride = len(shape_arrays.rows), grid.cells + 1
-    fixed = copies * kinds * stride * START + len(planes) * len(grid.frames) * grid.down * RUN
-    check_lists(fixed, largest)
-    cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
-    plane_rectangles = np.zeros((0, 4), np.int64)
-    if len(planes):
-        plane, cell, columns = cell_runs(grid, towards, lean)
-        shape = shape_arrays.plane_indices[shown][plane]
-        cell += shape_arrays.slots[shape, 0] * stride
-        plane_rectangles = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
-        begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
-        counts = np.cumsum(begins - ends)
-    rectangles = np.empty((len(plane_rectangles) + len(cones) * len(grid.frames), 4), np.int32)
-    rectangles[: len(plane_rectangles)] = plane_rectangles
-    slack = MARGIN * float(np.abs(origin).max()) + radius
-    output = rectangles, len(plane_rectangles), cones, counts
-    used = kernel.project_all(origin, grid, balls, slack, shape_arrays.first_ball, shape_arrays.slots, *output)
-    starts = np.cumsum(counts)  # the ends, until `fill_bins` has counted them down
-    count = int(starts[-1]) if kinds else 0
-    check_lists(fixed + copies * count * MEMBER, largest)
-    cones[shape_arrays.plane_indices, 3] = -2.0
-    cones[shape_arrays.plane_indices, 4] = np.abs(height)
-    cones[:, 4], depths = quantised_depths(cones[:, 4].copy())
-    order = depth_order(depths[rectangles[:used, 0]])
-    members = np.empty(count, np.int32)
-    kernel.fill_bins(rectangles, order, grid.across, starts, members)
-    return BinnedShapes(starts.reshape(kinds, stride), members, cones)
+    def __init__(
+        self,
+        kernel: Any,
+        shape_arrays: ShapeArrays,
+        grid: Grid,
+        radius: float = 0.0,
+        lean: float = 0.0,
+        skipped: np.ndarray | None = None,
+        copies: int = 1,
+        largest: int = system.UNLIMITED,
+        traits: np.ndarray | None = None,
+        extents: np.ndarray = NO_EXTENTS,
+    ) -> None:
+        """`skipped` planes (p,) are in no list. `TooLargeError` where there is no room for so many copies of the lists,
+        or where they would have more than `largest` bytes."""
+        shapes, planes, kinds = len(shape_arrays.slots), len(shape_arrays.planes), len(shape_arrays.rows)
+        chunk = max(1, min(CHUNK, shapes))
+        chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
+        self.kernel = kernel
+        self.fixed = copies * kinds * (grid.cells + 1) * START + rows_of_planes * RECTANGLE
+        self.copies, self.largest, self.is_large = copies, largest, shapes >= PARALLEL
+        check_lists(self.fixed, largest)
+        room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
+        self.seen = Projection(
+            origin=np.zeros(3),
+            grid=grid,
+            radius=radius,
+            lean=lean,
+            **{name: getattr(shape_arrays, name) for name in BOUNDS},
+            shown=np.ones(planes, np.int64) if skipped is None else 1 - skipped,
+            traits=np.zeros(shapes, np.int64) if traits is None else traits,
+            chunk=chunk,
+            rectangles=np.empty((room, 4), np.int32),
+            used=np.zeros(chunks + 1, np.int64),
+            cones=cones,
+            cone_bits=cones.view(np.int64),
+            sides=np.zeros(planes, np.int64),
+            extents=extents,
+        )
+        self.counter, self.entries = np.zeros(1, np.int64), np.empty((2, room), np.int64)
+        self.starts, self.members = np.zeros((kinds, grid.cells + 1), np.int64), np.zeros(0, np.int32)
+        self.project = bound(kernel.project_shapes, self.counter, self.seen)
+        self.fill = self.bound_fill()
+
+    def bound_fill(self) -> Callable[[], Any]:
+        """Return the call that fills the lists."""
+        scratch = self.entries, np.empty(2**RADIX, np.int64)
+        return bound(self.kernel.fill_bins, self.seen, self.starts.reshape(-1), self.members, *scratch)
+
+    def see_from(self, point: Any, run: Run | None = None, spare: float = 0.0) -> int:
+        """Bin the shapes as seen from a point, many of them on all threads by `run`; return the traits of those in any
+        list. New lists leave room for a `spare` share of members. `TooLargeError` likewise."""
+        self.seen.origin[:] = point
+        self.counter[0] = 0
+        if run and self.is_large:
+            run(self.project)
+        else:
+            self.project()
+        count, traits = self.fill()
+        if count > len(self.members):
+            check_lists(self.fixed + self.copies * count * MEMBER, self.largest)
+            self.members = np.zeros(int(count * (1.0 + spare)), np.int32)
+            self.fill = self.bound_fill()
+            self.fill()
+        return int(traits)
 
 
 def check_lists(size: int, largest: int) -> None:
     """Raise `TooLargeError` where lists of this size, in bytes, have no room or are larger than they may."""
     advice = "fewer or smaller shapes, or fewer lights, need less"
     system.check_memory(size, "the lists of shapes in view need", advice, largest)
-
-
-def quantised_depths(distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Round distances down by at least one step, and return them and their integer sort keys.
-
-    By at least one, because a hit that is so little farther may count as coincident.
-    """
-    depths = np.maximum((distances.view(np.int64) >> DROPPED_BITS) - LEAST_DEPTH - 1, 0)
-    rounded = np.where(depths > 0, (depths + LEAST_DEPTH) << DROPPED_BITS, 0).view(np.float64)
-    return rounded, depths
-
-
-def depth_order(depths: np.ndarray) -> np.ndarray:
-    """Argsort integer depths of 21 bits, least first, in two passes: numpy sorts up to 16 bits by counting."""
-    low = np.argsort(depths.astype(np.uint16), kind="stable")
-    order: np.ndarray = low[np.argsort((depths >> 16).astype(np.uint8)[low], kind="stable")]
-    return order
 
 
 def in_all_cells(
@@ -233,42 +216,7 @@ def in_all_cells(
     return BinnedShapes(starts, np.concatenate([members[:0], *lists]), cones)
 
 
-# Infinite planes.
-
-
 def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
-    """Lower bounds of the heights of a ball about a point above planes, (p, 5) as in
-    `minirt.rendering.packing.shape_arrays`.
-
-    They are negative below a plane, and 0 where the ball meets it or rounding may decide.
-    """
-    above = planes[:, :3] @ point - planes[:, 3]
-    slack = planes[:, 4] + MARGIN * np.abs(point).max() + radius  # rounding errors, upper bounds of them
-    bounds: np.ndarray = np.sign(above) * np.maximum(np.abs(above) - slack, 0.0)
-    return bounds
-
-
-def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The runs of cells, each within a row of them, in which planes may be hit: plane, first cell and number of cells.
-
-    `normals` (p, 3) point towards the planes; 0, 0, 0 stands for everywhere. A direction forward + x across + y down
-    hits a plane if its product with the normal, a linear function of the slopes x and y, is positive: a row is tested
-    at the edge at which it is greater. Directions may differ by vectors up to `lean`.
-    """
-    dots = (normals @ grid.frames.reshape(-1, 3).T).reshape(-1, 3, 1)  # of each plane in each frame
-    middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
-    edges = (np.arange(grid.down) + np.array([[-grid.margin], [1 + grid.margin]]) - middle_y) / grid.scale_y
-    slack = MARGIN * (1 + grid.middle_x / grid.scale_x + grid.middle_y / grid.scale_y) + lean
-    most = dots[:, 2] + np.maximum(dots[:, 1] * edges[0], dots[:, 1] * edges[1]) + slack
-    nowhere = (dots[:, 0] == 0) & (most <= 0)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # an edge beyond all cells may be infinite
-        edge = -most / dots[:, 0]
-        low = np.where(dots[:, 0] > 0, edge, np.where(nowhere, np.inf, -np.inf))
-        high = np.where(dots[:, 0] < 0, edge, np.where(nowhere, -np.inf, np.inf))
-        begin = np.floor(low * grid.scale_x + middle_x - grid.margin)
-        end = np.floor(high * grid.scale_x + middle_x + grid.margin) + 1
-    begin = np.clip(begin, 0, grid.across).astype(np.int64)
-    end = np.clip(end, 0, grid.across).astype(np.int64)
-    nonempty = np.flatnonzero(end > begin)
-    plane, row = np.divmod(nonempty, len(grid.frames) * grid.down)
-    return plane, row * grid.across + begin.ravel()[nonempty], (end - begin).ravel()[nonempty]
+    """Lower bounds of the heights of a ball about a point above planes, (p, 5), as of `signed_height`."""
+    heights: np.ndarray = signed_height(planes.T, Vec(*point), MARGIN * np.abs(point).max() + radius)
+    return heights

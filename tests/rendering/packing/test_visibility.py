@@ -19,6 +19,7 @@ from minirt.kernel.shadow_rays import light_buffer_cell
 from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing import visibility
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Light, Scene, parse
@@ -219,10 +220,12 @@ def test_corners_and_tangents_are_in_the_bounding_cone(size: float, kernel: Any)
 
 def cone_from_origin(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
     """The bounding cone of the hull of some balls, seen from the origin: axis and cosine."""
-    rectangles, cones, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
-    arguments = np.zeros(3), visibility.cube_grid(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
-    kernel.project_all(*arguments, rectangles, 0, cones, counts)
-    return cones[0, :3], float(cones[0, 3])
+    arrays = ShapeArrays()
+    arrays.update((Sphere((0, 0, 0), 1, (1, 2, 3)),))
+    arrays.balls, arrays.first_ball = balls, np.array([0, len(balls)])
+    bins = visibility.Bins(kernel, arrays, visibility.cube_grid(2))
+    bins.see_from(np.zeros(3))
+    return bins.seen.cones[0, :3], float(bins.seen.cones[0, 3])
 
 
 # Lists of shapes that would take too much memory are made of coarser cells, and the picture stays the same.

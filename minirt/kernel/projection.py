@@ -1,0 +1,177 @@
+"""Projection of shapes to a grid of directions from a point, and their bounding cones.
+
+Seen from a point, in a frame of across, down and forward, a direction has the slopes x / z and y / z, and the cells of
+a grid are squares of slopes. A sphere projects to an interval of either slope. Both are conservative whatever the
+rounding: bounding spheres grow by `MARGIN`, and intervals by the margin of the grid.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+from typing import Any, NamedTuple
+
+from minirt.kernel.scene_arrays import vector
+from minirt.lanes import Number, Vec, copysign, dot, fabs, maximum
+
+MARGIN = 1e-12  # relative to the coordinates that a position is computed from, whose rounding is 1e-16
+SINE_MARGIN = 1e-7  # error of a cone's cosine, relative to its sine: roots of differences are wrong by 2e-8
+COSINE_MARGIN = 4e-15  # error of a scalar product of unit vectors
+
+
+class Grid(NamedTuple):
+    """A grid of directions from a point, in one frame or more: slope s is in the cell `floor(scale * s + middle)`, less
+    the first one."""
+
+    frames: Any  # (f, 3, 3) unit vectors across, down and forward
+    across: int  # columns of cells of each frame
+    down: int  # rows of cells of each frame
+    scale_x: float
+    middle_x: float
+    scale_y: float
+    middle_y: float
+    margin: float  # by how many cells intervals grow before they are rounded to cells
+    cells: int  # of all frames
+    first_column: int = 0  # the first of the frame that has cells, where only a rectangle of it has any
+    first_row: int = 0
+
+
+def projected_rectangle(
+    origin: Any, grid: Grid, face: int, spheres: Any, start: int, end: int, slack: float
+) -> tuple[int, int, int, int]:
+    """Project the convex hull of some spheres, grown by `slack`, to a rectangle of a frame's cells.
+
+    Returns first column, first row, columns and rows; no columns or no rows if the frame cannot see the hull.
+    """
+    half_x = (grid.middle_x + grid.margin) / grid.scale_x  # slopes at the edges of the grid
+    half_y = (grid.middle_y + grid.margin) / grid.scale_y
+    slant_x = sqrt(1.0 + half_x * half_x)
+    slant_y = sqrt(1.0 + half_y * half_y)
+    frames = grid.frames
+    behind = left = right = above = below = True
+    beside = False
+    low_x, high_x, low_y, high_y = inf, -inf, inf, -inf
+    for i in range(start, end):
+        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
+        radius = spheres[i, 3] + slack
+        z = frames[face, 2, 0] * px + frames[face, 2, 1] * py + frames[face, 2, 2] * pz
+        behind &= z <= -radius
+        if behind and i + 1 == end:
+            return 0, 0, 0, 0
+        x = frames[face, 0, 0] * px + frames[face, 0, 1] * py + frames[face, 0, 2] * pz
+        y = frames[face, 1, 0] * px + frames[face, 1, 1] * py + frames[face, 1, 2] * pz
+        left &= x + half_x * z < -slant_x * radius
+        right &= x - half_x * z > slant_x * radius
+        above &= y + half_y * z < -slant_y * radius
+        below &= y - half_y * z > slant_y * radius
+        beside |= z <= radius
+        if i + 1 == end and (left | right | above | below):
+            return 0, 0, 0, 0
+        low, high = tangent_slopes(x, z, radius)
+        low_x, high_x = min(low_x, low), max(high_x, high)
+        low, high = tangent_slopes(y, z, radius)
+        low_y, high_y = min(low_y, low), max(high_y, high)
+    if beside and end - start > 1:  # parts of the hull may project beyond all spheres
+        low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
+    middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
+    column, columns = cell_interval(low_x, high_x, grid.scale_x, middle_x, grid.margin, grid.across)
+    row, rows = cell_interval(low_y, high_y, grid.scale_y, middle_y, grid.margin, grid.down)
+    return column, row, columns, rows
+
+
+def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
+    """Least and greatest slope x / z of a disc that lies at least partly before z = 0.
+
+    They are the slopes of the tangents from the origin: the direction of the centre, turned by the angle whose sine is
+    radius / distance. A tangent that touches the disc behind z = 0 has an infinite slope.
+    """
+    squared = x * x + z * z - radius * radius
+    if squared <= 0.0:
+        return -inf, inf
+    length = sqrt(squared)
+    low_z = z * length + x * radius
+    high_z = z * length - x * radius
+    low = (x * length - z * radius) / low_z if low_z > 0.0 else -inf
+    high = (x * length + z * radius) / high_z if high_z > 0.0 else inf
+    return low, high
+
+
+def cell_interval(low: float, high: float, scale: float, middle: float, margin: float, cells: int) -> tuple[int, int]:
+    """First cell and number of cells, in a row of so many, that the slopes from `low` to `high` cover."""
+    begin = low * scale + middle - margin
+    end = high * scale + middle + margin
+    if not (begin < cells and end >= 0.0):
+        return 0, 0
+    start = int(max(begin, 0.0))
+    return start, int(min(end, cells - 1.0)) + 1 - start
+
+
+def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float, cone: Any) -> None:
+    """Write the bounding cone, as seen from a point, of the convex hull of some spheres, grown by `slack`.
+
+    Its five numbers are the axis, which points to the mean of the centres; the cosine of the half-angle, or -2 if the
+    cone would take in half of all directions or more; and a lower bound of the hull's distance, along the axis.
+    """
+    x = 0.0
+    y = 0.0
+    z = 0.0
+    for i in range(start, end):
+        x += spheres[i, 0] - origin[0]
+        y += spheres[i, 1] - origin[1]
+        z += spheres[i, 2] - origin[2]
+    length = sqrt(x * x + y * y + z * z)
+    cone[3], cone[4] = -2.0, 0.0
+    if length == 0.0:
+        return
+    least, cosine, widest = inf, 1.0, 0.0
+    for i in range(start, end):
+        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
+        radius = spheres[i, 3] + slack
+        squared = px * px + py * py + pz * pz
+        along = (px * x + py * y + pz * z) / length
+        aside = sqrt(max(squared - along * along, 0.0))
+        tangent = sqrt(max(squared - radius * radius, 0.0))
+        least = min(least, along - radius)
+        widest = max(widest, radius * radius / squared)
+        # Cosine of the sum of two angles: from the axis to the centre, and from there to the rim.
+        cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
+    cone[0], cone[1], cone[2] = x / length, y / length, z / length
+    if cosine > 0.0:
+        cone[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
+    cone[4] = max(least, 0.0)
+
+
+# Infinite planes.
+
+
+def signed_height(plane: Any, point: Vec, slack: float) -> Number:
+    """Return a lower bound of the height of a point above a plane, or of any point that is nearer to it than `slack`.
+
+    It is negative below the plane, and 0 where rounding may decide. `plane` has the unit normal, its product with the
+    points of the plane, and the rounding error of that.
+    """
+    above = dot(vector(plane, 0), point) - plane[3]
+    return copysign(maximum(fabs(above) - (plane[4] + slack), 0.0), above)
+
+
+def cells_of_plane(grid: Grid, row: int, towards: Vec, lean: float) -> tuple[int, int]:
+    """First cell and number of cells, in a row of cells, those of all frames counted, in which a plane may be hit.
+
+    `towards` is its unit normal that points to it; 0, 0, 0 stands for everywhere. A direction forward + x across + y
+    down hits the plane if its product with the normal, a linear function of the slopes x and y, is positive: the row is
+    tested at the edge at which it is greater. Directions may differ by vectors up to `lean`.
+    """
+    frames, face = grid.frames, row // grid.down
+    across = dot(vector(frames[face, 0], 0), towards)
+    down = dot(vector(frames[face, 1], 0), towards)
+    middle = row - face * grid.down + grid.first_row - grid.middle_y
+    upper, lower = (middle - grid.margin) / grid.scale_y, (middle + 1.0 + grid.margin) / grid.scale_y
+    slack = MARGIN * (1.0 + grid.middle_x / grid.scale_x + grid.middle_y / grid.scale_y) + lean
+    most = dot(vector(frames[face, 2], 0), towards) + max(down * upper, down * lower) + slack
+    low, high = -inf, inf
+    if across > 0.0:
+        low = -most / across
+    elif across < 0.0:
+        high = -most / across
+    elif most <= 0.0:
+        return 0, 0
+    return cell_interval(low, high, grid.scale_x, grid.middle_x - grid.first_column, grid.margin, grid.across)
