@@ -34,6 +34,18 @@ def test_render_gives_bytes_and_linear_radiance_of_the_reference(path: Path | st
     assert image._repr_png_().startswith(b"\x89PNG")
 
 
+def test_light_is_made_when_it_is_asked_for(scene: minirt.Scene) -> None:
+    kept, image, sent = (
+        minirt.render(scene, 64, 48, region=(9, 7, 40, 30), linear=linear) for linear in (True, None, None)
+    )
+    assert np.array_equal(image.array, kept.array)
+    assert repr(image) == repr(kept) == "<Image of 40x30 pixels, with linear light>"
+    assert "linear" not in vars(image)
+    sent = pickle.loads(pickle.dumps(sent))
+    assert "linear" in vars(sent)
+    assert all(np.array_equal(each.linear, kept.linear) for each in (image, sent))
+
+
 def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
     assert minirt.size_of(scene) == minirt.DEFAULT_SIZE
     sized = minirt.Scene((Resolution(40, 20), *scene.items))

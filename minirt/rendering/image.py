@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,6 +29,12 @@ if TYPE_CHECKING:
 DEEP = 2**16  # levels of 16 bits
 
 
+def copy_rgb(pixels: np.ndarray, levels: np.ndarray) -> None:
+    """Copy red, green and blue of pixels, (h, w, 4) in the order blue, green, red, alpha, into levels, (h, w, 3)."""
+    for channel in range(3):  # a copy of all at once takes three times as long
+        levels[..., channel] = pixels[..., 2 - channel]
+
+
 @dataclass(frozen=True, eq=False)
 class Image:
     """A picture; notebooks display it."""
@@ -42,7 +48,9 @@ class Image:
     @classmethod
     def from_bgra(cls, pixels: np.ndarray) -> Image:
         """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha."""
-        return cls(np.ascontiguousarray(pixels[..., 2::-1]))
+        levels = np.empty((*pixels.shape[:2], 3), np.uint8)
+        copy_rgb(pixels, levels)
+        return cls(levels)
 
     @cached_property
     def pil(self) -> PillowImage:
@@ -126,10 +134,32 @@ class Image:
 
     def __repr__(self) -> str:
         height, width = self.array.shape[:2]
-        return f"<Image of {width}x{height} pixels{'' if self.linear is None else ', with linear light'}>"
+        is_lit = vars(self).get("linear", self) is not None  # without asking for it
+        return f"<Image of {width}x{height} pixels{', with linear light' if is_lit else ''}>"
 
 
 class LinearImage(Image):
-    """A picture with its linear light."""
+    """A picture with its linear light, which may be made when it is asked for: then the picture is rendered again."""
 
-    linear: NDArray[np.float64]  # (h, w, 3) radiance before clamping and rounding
+    again: Callable[[], Image]  # renders it with light
+
+    @classmethod
+    def lit_on_demand(cls, image: Image, again: Callable[[], Image]) -> LinearImage:
+        """Return the same picture with the light of one that is rendered when it is needed."""
+        made = cls(**vars(image))
+        del vars(made)["linear"]
+        vars(made)["again"] = again
+        return made
+
+    if TYPE_CHECKING:
+        linear: NDArray[np.float64]  # (h, w, 3) radiance before clamping and rounding
+    else:
+
+        @cached_property
+        def linear(self) -> np.ndarray:
+            """The light of the picture, rendered again."""
+            return self.again().linear
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the attributes, with the light, for a copy that may be far from the files of the scene."""
+        return {"linear": self.linear} | {name: value for name, value in vars(self).items() if name != "again"}

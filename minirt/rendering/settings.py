@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from inspect import Parameter, signature
 from math import inf
 from numbers import Real
@@ -19,7 +20,7 @@ from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.records import Immutable, record
-from minirt.rendering.image import Image, LinearImage
+from minirt.rendering.image import Image, LinearImage, copy_rgb
 from minirt.rendering.packing.camera import cut_for
 from minirt.rendering.renderer import Renderer, renderer
 from minirt.scene import Scene, dump
@@ -97,7 +98,7 @@ def render(
     width: int | None = None,
     height: int | None = None,
     *,
-    linear: Literal[True] = True,
+    linear: Literal[True] | None = None,
     rows: tuple[int, int] | None = None,
     **settings: Unpack[Keywords],
 ) -> LinearImage: ...
@@ -121,7 +122,7 @@ def render(
     width: int | None = None,
     height: int | None = None,
     *,
-    linear: bool = True,
+    linear: bool | None = None,
     rows: tuple[int, int] | None = None,
     **settings: Unpack[Keywords],
 ) -> Image:
@@ -134,8 +135,10 @@ def render(
 
     With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
-    of the picture tells which. Errors are defined in `minirt.rendering.outcome`. Without `linear` light, the
-    picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
+    of the picture tells which. Errors are defined in `minirt.rendering.outcome`. With `linear` False the picture has
+    8 bits alone, and sampling also ends where rounding to them decides its error. By default a picture of one sample
+    makes its `.linear` light when that is asked for, by rendering again; with `linear` True it keeps it, which takes up
+    to three times as long where frames are fast.
 
     Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
     by blue noise, so that smooth shades have no steps.
@@ -152,7 +155,12 @@ def render(
         if settings.get("region") is not None:
             raise RenderError("a picture has a region or rows, not both")
         settings["region"] = (0, rows[0], size[0], rows[1] - rows[0])
-    return rendered(scene, size, RenderSettings(linear=linear, **settings))
+    lit = RenderSettings(linear=linear is not False, **settings)
+    if linear is not None or lit.samples != 1:
+        return rendered(scene, size, lit)
+    return LinearImage.lit_on_demand(
+        rendered(scene, size, lit.replace(linear=False)), partial(rendered, scene, size, lit)
+    )
 
 
 def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:
@@ -176,7 +184,9 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
             is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
     if not is_done:
         raise RenderError(CANCELLED)
-    levels = np.ascontiguousarray(pixels[kept][..., 2::-1])
+    pixels, parts = pixels[kept], chosen.threads
+    levels = np.empty((*pixels.shape[:2], 3), np.uint8)
+    chosen.runner.run_jobs([partial(copy_rgb, pixels[part::parts], levels[part::parts]) for part in range(parts)])
     about = reached, scene.camera.tone, chosen.not_finite
     if light is None:
         return Image(levels, None, *about)
