@@ -80,7 +80,9 @@ def planes_of(
     x, y = seen(spokes, np.repeat(axes, sizes), np.repeat(turned, sizes))
     u, v = seen(following, np.repeat(axes, sizes), np.repeat(turned, sizes))
     first_x, first_y = np.repeat(x[starts + 1], sizes), np.repeat(y[starts + 1], sizes)
-    left = is_left(x, y, u, v) & is_left(first_x, first_y, x, y)
+    left = is_left(x, y, u, v)
+    x[starts + 1] = y[starts + 1] = 0.0  # the first edge, of which no sum of products is certain to be 0
+    left &= is_left(first_x, first_y, x, y)
     return axes, turned, np.logical_and.reduceat(left, starts) | ~normals.any(axis=1)
 
 
