@@ -117,7 +117,7 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> None:
     scene = with_files(tmp_path / "home")
-    expected = minirt.render(scene, 40, 30)
+    expected = minirt.render(scene, 40, 30, linear=True)
     data = packed(scene, with_files=True)
     shutil.rmtree(tmp_path / "home")
     for _ in range(2):
