@@ -9,7 +9,6 @@ from contextlib import suppress
 from itertools import chain, count
 from pathlib import Path
 
-from minirt.element import Element
 from minirt.errors import FieldError, FileError, MiniRTError, RenderError, SceneError
 from minirt.fields import MeshFile
 from minirt.fields.triples import file_name
@@ -74,16 +73,9 @@ def save_recovery(scene: Scene, path: Path) -> Path:
 
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:
-    """Whether two scenes differ in more than where the camera is: looking around is not an unsaved change."""
-    one, other = ([without_pose(item) for item in each.items] for each in (scene, saved))
+    """Whether two scenes differ in more than the camera: looking around is not an unsaved change."""
+    one, other = ([item for item in each.items if not isinstance(item, Camera)] for each in (scene, saved))
     return one != other
-
-
-def without_pose(item: Element | str) -> Element | str:
-    """Return a camera with all its values but where it is and how it is turned; any other element as it is."""
-    if not isinstance(item, Camera):
-        return item
-    return item.replace(position=(0, 0, 0), direction=(0, 0, 1), roll=0.0, left_handed=False)
 
 
 def error_summary(error: MiniRTError) -> str:

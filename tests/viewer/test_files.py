@@ -42,14 +42,6 @@ def test_reading_again_shows_the_scene_of_the_file(path):
     assert played("press Shift+Tab", "press Shift+Tab", "press F5", path=path).state.element.title == "camera"
 
 
-def test_values_of_the_camera_are_contents_but_not_its_place_and_turn():
-    for change in ({"fov": 50.0}, {"tone": "srgb"}, {"exposure": 1.0}, {"lens": 0.1}, {"focus": 3.0}):
-        assert contents_differ(scene().replace(scene().camera, **change), scene())
-    assert not contents_differ(
-        scene().replace(scene().camera, position=(1, 2, 3), direction=(0, 1, 0), roll=9), scene()
-    )
-
-
 def test_reading_a_broken_file_keeps_the_picture_and_shows_the_error(path):
     path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
     session = played("press d", "press F5", path=path)
