@@ -30,7 +30,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 DEFAULT_ERROR = 0.002  # half a level of 255: the least that a picture of bytes can show
 CANCELLED = "the picture was cancelled"  # by `minirt.renderer(...).cancel()`, from another thread
-PIXEL, LIGHT = 4, 24  # bytes of a pixel and of its light, while they are rendered
+PIXEL, LIGHT = 7, 24  # bytes of a pixel and its levels, and of its light, while they are rendered
 
 
 class Keywords(TypedDict, total=False):
