@@ -89,8 +89,8 @@ class Packing:
         """Whether the arrays of the last scene are those of this one, or have followed its camera."""
         if scene is last:
             return True
-        can_follow = self.view and arrays.lens is None and arrays.eye_medium is None
-        if not self.view or not can_follow or all_but_pose(scene) != all_but_pose(last):
+        depends_on_place = arrays.lens is not None or arrays.eye_medium is not None
+        if not self.view or depends_on_place or all_but_pose(scene) != all_but_pose(last):
             return False
         return self.view.follow(scene.camera, arrays, self.run)
 

@@ -62,7 +62,7 @@ class Span(NamedTuple):
     above: Number  # t at which it rises above the surface
     first: Number  # t at which it passes the planes of the ends, in ascending order
     last: Number
-    pace: Number  # at least by how much the line nears the side or an end as t grows by 1
+    pace: Number  # upper bound of the distance by which the line nears the side or an end as t grows by 1
 
 
 def negative_interval(a: Number, per_a: Number, b: Number, c: Number, start: Number) -> tuple[Number, Number]:

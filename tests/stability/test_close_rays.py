@@ -225,7 +225,7 @@ FLAT: dict[str, Callable[[Random, float], Shape]] = {
 
 
 def holes(title: str, intersect: Intersect) -> int:
-    """How many rays miss the middles of solids that are thinner than the rounding of the rays' coordinates."""
+    """The number of rays that miss the middles of solids thinner than the rounding of the rays' coordinates."""
     random, missed = np.random.default_rng(SEED), 0
     for thickness, distance in ((1e-9, 1e7), (1e-12, 1e5), (1e-14, 30.0)) * 20:
         shape: Any = FLAT[title](random, thickness)

@@ -1,4 +1,4 @@
-"""What the eye sees of a packed scene, in arrays that follow a camera that moves; the form of a scene in float32.
+"""Views: the shapes that a camera sees, in arrays that follow it when it moves; and packed scenes in float32.
 
 float32 is less precise, with twice as many rays per SIMD register. Everything is moved so that the eye is the origin
 before it is rounded, so that whatever is near the eye is precise. Bounds used for culling are rounded to the safe side.

@@ -80,7 +80,9 @@ class AutoSampler:
     def refine(self, samples: np.ndarray, goal: float, end: float) -> None:
         """Draw packets with more samples, first of all as many as `samples` for each class, until the sum of squared
         errors is at most `goal`, or the time is over."""
-        packets, known = self.packets, np.full(len(samples), 0.0 if self.with_places else 1.0)
+        packets = self.packets
+        # Samples of the last probes: one. Where samples have places in a lens or in lights, there is always a pilot.
+        known = np.full(len(samples), 0.0 if self.with_places else 1.0)
         for _ in range(PILOTS):
             if (samples <= FAR * known).all():
                 break
