@@ -46,13 +46,13 @@ SLIP = 1e-9  # relative change of a field
 
 
 def posed(kind: Kind) -> Rays:
-    """Shapes of a kind, turned and rolled anyhow, and rays at them; at a sheet, just outside of its edges."""
+    """Shapes of a kind, turned and rolled anyhow, and rays at and near them; at a sheet, just outside of its edges."""
     chance = np.random.default_rng(SEED)
     shapes = [example(kind, chance) for _ in range(6)]
     if kind in ANGULAR:
         shapes = [shape.replace(roll=chance.uniform(-360, 360)) for shape in shapes]
     middles = np.array([place(shape) for shape in shapes])[:, None]
-    targets = middles + chance.uniform(-1, 1, (len(shapes), 64, 3))
+    targets = middles + chance.uniform(-1, 1, (len(shapes), 64, 3)) * chance.random((len(shapes), 64, 1)) ** 2
     if kind.element in (Disc, Square, Triangle):
         ends = rim if kind.element is Disc else edge
         targets[:, :RAYS] = [ends(chance, shape) for shape in shapes]
