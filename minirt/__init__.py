@@ -25,8 +25,6 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.errors import RenderError as RenderError
     from minirt.errors import ReplayError as ReplayError
     from minirt.errors import SceneError as SceneError
-    from minirt.example_scenes import example as example
-    from minirt.example_scenes import examples as examples
     from minirt.fields import MeshFile as MeshFile
     from minirt.helpers.system import limit_memory as limit_memory
     from minirt.materials import *  # noqa: F403
@@ -44,25 +42,19 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.settings import DEFAULT_ERROR as DEFAULT_ERROR
     from minirt.rendering.settings import render as render
     from minirt.scene import DEFAULT_SIZE as DEFAULT_SIZE
-    from minirt.scene import Ambient as Ambient
-    from minirt.scene import Background as Background
-    from minirt.scene import Camera as Camera
-    from minirt.scene import FurtherLight as FurtherLight
-    from minirt.scene import Lamp as Lamp
-    from minirt.scene import Light as Light
-    from minirt.scene import ParallelLight as ParallelLight
-    from minirt.scene import Resolution as Resolution
     from minirt.scene import Scene as Scene
-    from minirt.scene import SpotLight as SpotLight
     from minirt.scene import dumps as dumps
     from minirt.scene import loads as loads
     from minirt.scene import size_of as size_of
+    from minirt.scene.elements import *  # noqa: F403
+    from minirt.scene.parser import example as example
+    from minirt.scene.parser import examples as examples
     from minirt.shapes import *  # noqa: F403
     from minirt.shapes import Shape as Shape
 
 __version__ = "0.1.0"
 
-REGISTRIES = "minirt.shapes", "minirt.materials", "minirt.scene.lights"  # whose `PUBLIC` names are public here, too
+REGISTRIES = "minirt.shapes", "minirt.materials", "minirt.scene.elements"  # whose `PUBLIC` names are public here, too
 OWN = ("load",)
 
 if not TYPE_CHECKING:

@@ -22,7 +22,7 @@ from tests.paths import ROOT
 from tests.test_imports import MAY
 
 # Left out of the diagram, as small.
-HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "example_scenes", "__main__"}
+HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "__main__"}
 PLACE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 INDEX_TEXT = re.compile(r"^(text = '''\n).*?^(''')$", re.MULTILINE | re.DOTALL)
 

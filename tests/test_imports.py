@@ -37,10 +37,9 @@ MAY: dict[str, set[str]] = {
     "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "rendering", "scene"},
     "notebook": {"helpers", "errors", "scene", "mlx", "rendering", "viewer"},
     "report": LOW | {"__init__", "helpers", "kernel", "rendering", "scene"},
-    "cli": {"__init__", "cluster", "errors", "example_scenes", "formats", "helpers", "movie"}
+    "cli": {"__init__", "cluster", "errors", "formats", "helpers", "movie"}
     | {"rendering", "report", "scene", "viewer"},
     "__main__": {"cli"},
-    "example_scenes": {"errors", "scene"},
     "__init__": LOW | {"helpers", "scene", "rendering"},
 }
 COMPILER = {"numba", "llvmlite"}

@@ -25,9 +25,9 @@ PLACE = "{name}"  # in an output, stands for the name of the scene's file withou
 
 def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     """Load the scene; print its notices, one for each tolerated mistake, to `stream`."""
-    from minirt.example_scenes import example
     from minirt.helpers.progress import State
     from minirt.scene import Reading, load, parse
+    from minirt.scene.parser import example
 
     path = options.scene[0]
     with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):

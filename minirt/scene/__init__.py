@@ -1,7 +1,6 @@
 """Scenes: elements, parser, writer and edits of `.rt` files."""
 
-from minirt.scene.elements import Ambient, Background, Camera, Resolution
-from minirt.scene.lights import FurtherLight, Lamp, Light, ParallelLight, SpotLight
+from minirt.scene.elements import *  # noqa: F403
 from minirt.scene.pages import Item
 from minirt.scene.parser import Reading, load, loads, parse
 from minirt.scene.scene import DEFAULT_SIZE, Scene, check_scene, dumps, size_of

@@ -1,18 +1,18 @@
-"""Parser of scene files: text -> Scene. One run finds all errors of a file."""
+"""Parser of scene files: text -> Scene. One run finds all errors of a file. Also the example scenes of the library."""
 
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import NamedTuple
 
 from minirt.element import Element, pattern
-from minirt.errors import Problem, SceneError
+from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line
-from minirt.scene.elements import Ambient
-from minirt.scene.lights import FurtherLight, Light
+from minirt.scene.elements import Ambient, FurtherLight, Light
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
@@ -136,3 +136,50 @@ def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
                 log.tolerate(line, message, "renders without", 1)
             else:
                 log.error(line, message, 1)
+
+
+# Example scenes, which are installed with the library: `minirt.example("demo")`.
+
+
+PACKAGE = Path(__file__).parents[1]
+FOLDERS = (PACKAGE / "scenes", PACKAGE.parent / "scenes")  # of a wheel, and beside the sources
+FILE = re.compile(r"(?<=[\s:])(?:textures|meshes)/[^\s,#]+")  # that a line of an example names, or its comment
+UNFIT = re.compile(r"[\s,#]")  # in a path: no line of a scene can name it
+
+
+def folder() -> Path:
+    """Return the folder of the example scenes; FileError where none was installed."""
+    for each in FOLDERS:
+        if (each / "demo.rt").exists():
+            return each
+    raise FileError(FOLDERS[0], "the example scenes are not installed")
+
+
+def examples() -> list[str]:
+    """Return the names of the example scenes, in alphabetical order.
+
+    FileError where they are not installed.
+
+        minirt.examples()  # ["demo", "eval-camera-elsewhere", ...]
+    """
+    return sorted(path.stem for path in folder().glob("*.rt"))
+
+
+def example(name: str = "demo") -> Scene:
+    """Return an example scene by its name.
+
+    The scene belongs to no file, and names its textures and meshes by their absolute paths, so that it can be saved
+    anywhere. FileError for an unknown name, with the names that are like it.
+
+        minirt.render(minirt.example("gallery-chess"), 640, 480).save("chess.png")
+    """
+    known = examples()
+    if name not in known:
+        near = nearest(name, known, count=3)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"the examples are {', '.join(known)}"
+        raise FileError(name, f"there is no such example scene; {hint}")
+    path = folder() / f"{name}.rt"
+    if UNFIT.search(str(path.parent)):
+        return load(path).scene
+    text = path.read_text(encoding="utf-8")
+    return parse(FILE.sub(lambda named: str(folder() / named[0]), text)).scene

@@ -6,8 +6,7 @@ import re
 
 from minirt.element import Element
 from minirt.errors import nearest
-from minirt.scene.elements import Ambient, Background, Camera, Resolution
-from minirt.scene.lights import LAMPS
+from minirt.scene.elements import LAMPS, Ambient, Background, Camera, Resolution
 from minirt.shapes import ALL_KINDS
 
 SHAPES = tuple(kind.element for kind in ALL_KINDS)

@@ -14,15 +14,14 @@ from minirt.element import Element
 from minirt.errors import check_whole
 from minirt.records import Immutable
 from minirt.scene import writer
-from minirt.scene.elements import Ambient, Background, Camera, Resolution
-from minirt.scene.lights import Lamp
+from minirt.scene.elements import Ambient, Background, Camera, Lamp, Resolution
 from minirt.scene.pages import Item, Page, replace_item, split_into_pages
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
 if TYPE_CHECKING:
     from minirt import shapes as kinds
-    from minirt.scene.lights import FurtherLight, ParallelLight, SpotLight
+    from minirt.scene.elements import FurtherLight, ParallelLight, SpotLight
 
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 Answer = TypeVar("Answer")
