@@ -239,10 +239,7 @@ class Headless(Memory):
 
     def run(self) -> None:
         """Play the script; then save the picture, click the close button, and end the loop if that did not."""
-        self._pause()
-        while self.actions and not self.over:
-            self.actions.popleft()()
-            self._pause()
+        self.play()
         if not self.over:
             self.finish()
             self.picture = None  # what the program draws when it ends does not count
@@ -263,7 +260,7 @@ class Headless(Memory):
         """Let simulated time pass, without turns of the loop."""
         self._now += seconds
 
-    def _pause(self) -> None:
+    def _settle(self) -> None:
         """Let the program handle what came, and take one tick of the loop."""
         self.turn(tick=False)
         self._advance(TICK)

@@ -11,6 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError, check_whole
+from minirt.fields import Triple
 from minirt.helpers.system import ForkSafeLock, check_memory, renewables
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.shading.whitted import MAX_DEPTH
@@ -189,8 +190,8 @@ class Renderer:
                 outcome = outcome._replace(rounding=self.tone_mapper.rounding(request))
             return outcome
 
-    def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
-        """Return the shape that a pixel of a picture shows, see `minirt.rendering.queries.pick`.
+    def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> tuple[Shape | None, Triple | None]:
+        """Return the shape that a pixel of a picture shows, and the point there, see `minirt.rendering.queries.pick`.
 
         A picture that is being made is cancelled. Where something else keeps the renderer busy, such as the compiler,
         this packs the scene anew instead of using the packed shapes.

@@ -79,16 +79,16 @@ class Ablation:
         draw()
         times = measure_times([self.draw, draw], draw(), self.threads, self.budget, PAIRS)
         changes = [change(base, other) for base, other in times.runs]
-        interval = of_median(changes)
+        low, high = of_median(changes)
         return Part(
             *variant[:3],
             frame_ms=median(other.wall for _, other in times.runs) * 1e3,
             percent=median(changes),
-            percent_low=interval.low,
-            percent_high=interval.high,
+            percent_low=low,
+            percent_high=high,
             compile_s=compile_s,
             compile_percent=(compile_s / self.compile_s - 1) * 100,
-            pays_after_s=self.pays_after(variant.change, median(changes), interval, compile_s),
+            pays_after_s=self.pays_after(variant.change, median(changes), (low, high), compile_s),
             same=np.array_equal(pixels, self.pixels),
             valid=not times.remark,
             remark=times.remark,
@@ -99,9 +99,10 @@ class Ablation:
 
         `percent` is the change of the frame time by the variant. NaN where its interval holds 0.
         """
+        low, high = interval
         if change == "added":
-            return self.compile_s * (1 + 100 / percent) if interval.low > 0 else nan
-        return -100 * compile_s / percent if interval.high < 0 else nan
+            return self.compile_s * (1 + 100 / percent) if low > 0 else nan
+        return -100 * compile_s / percent if high < 0 else nan
 
 
 def frame(renderer: Renderer, scene: Scene, pixels: np.ndarray) -> Callable[[], Run]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil, inf, log10, nan, pi, radians, sqrt
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,17 +54,13 @@ BLOCK = 16  # pixels along an edge of a block: errors of neighbouring pixels are
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
 
-class Interval(NamedTuple):
-    """A confidence interval; NaN where there is too little data for one."""
-
-    low: float
-    high: float
+Interval = tuple[float, float]  # its ends; NaN where there is too little data for one
 
 
 def of_median(values: Sequence[float]) -> Interval:
     """Return the percentile interval of the median of some values; NaN for fewer than three."""
     if len(values) < 3:
-        return Interval(nan, nan)
+        return nan, nan
     random, numbers = np.random.default_rng(SEED), np.array(values)
     medians = np.median(numbers[random.integers(0, len(numbers), (RESAMPLES, len(numbers)))], axis=1)
     return percentiles(medians)
@@ -82,7 +77,7 @@ def of_rmse(picture: Picture, right: Picture, doubt: float) -> Interval:
     often = random.poisson(1.0, (RESAMPLES, len(pixels)))  # how often each block is drawn
     often[often.sum(axis=1) == 0] = 1
     low, high = percentiles((often @ squares) / (often @ pixels))
-    return Interval(max(0.0, low - doubt * doubt) ** 0.5, high**0.5)
+    return max(0.0, low - doubt * doubt) ** 0.5, high**0.5
 
 
 def block_sums(squares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -96,7 +91,7 @@ def block_sums(squares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def percentiles(values: np.ndarray) -> Interval:
     """Return the interval that holds `LEVEL` of some values, the same share left out at both ends."""
     low, high = np.quantile(values, [(1 - LEVEL) / 2, (1 + LEVEL) / 2]).tolist()
-    return Interval(low, high)
+    return low, high
 
 
 def fit(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float, float]:

@@ -9,15 +9,14 @@ from contextlib import suppress
 from itertools import chain, count
 from pathlib import Path
 
-from minirt.errors import FieldError, FileError, MiniRTError, RenderError, SceneError
+from minirt.errors import FieldError, FileError, MiniRTError, SceneError
 from minirt.fields import MeshFile
 from minirt.fields.triples import file_name
 from minirt.helpers import file_io
 from minirt.helpers.file_io import reason
 from minirt.meshes import load_mesh
-from minirt.rendering.image import Image
 from minirt.scene import Camera, Scene, dump
-from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
+from minirt.scene.files import MAX_BYTES, SUFFIX
 
 INTERVAL = 0.25  # seconds between two checks of the file
 Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
@@ -26,50 +25,35 @@ MESH_SUFFIXES = {".obj"}
 
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
-    """Write a new file `name-1.suffix`, or with the first number that no file has; return its path. OSError.
+    """Write a new file `name-1.suffix`, or with the first number that no file has; return its path. FileError.
 
     `first` is a name to try before. No other program's file is ever replaced, even one that is written just now.
     """
     numbered = (path.with_name(f"{path.stem}-{n}{suffix}") for n in count(1))
     for each in chain([first] if first else [], numbered):
-        with suppress(FileExistsError):
+        try:
             file_io.create(each, data)
             return each
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise FileError(first or path.with_suffix(suffix), f"cannot be written: {reason(error)}") from None
     raise AssertionError("there are endlessly many numbers")
 
 
-def save_copy(path: Path, data: bytes, first: Path | None = None) -> Path:
-    """Write a new scene file beside another one, `first` if that name is free; return its path. SceneError."""
-    try:
-        return create_numbered(path, SUFFIX, data, first)
-    except OSError as error:
-        raise file_error(first or path, f"cannot be written: {reason(error)}") from None
-
-
-def save_picture(image: Image, path: Path) -> Path:
-    """Write a picture beside the scene's file; return its path. RenderError."""
-    try:
-        return create_numbered(path, ".png", image.encode())
-    except OSError as error:
-        raise RenderError(f"{path.with_suffix('.png')}: cannot write: {reason(error)}") from None
-
-
 def back_up(path: Path) -> Path:
-    """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
-    try:
-        return save_copy(path, file_io.read(path, MAX_BYTES))
-    except FileError as error:
-        raise file_error(path, error.reason) from None
+    """Copy a scene file, byte for byte, to a new file beside it; return the new path. FileError."""
+    return create_numbered(path, SUFFIX, file_io.read(path, MAX_BYTES))
 
 
 def save_recovery(scene: Scene, path: Path) -> Path:
     """Write unsaved changes beside the file, or if that fails into a new temporary folder; return the path."""
     beside, data = path.with_name(f"{path.stem}.recovered{SUFFIX}"), dump(scene).encode()
     try:
-        return save_copy(beside, data, beside)
-    except SceneError:
+        return create_numbered(beside, SUFFIX, data, beside)
+    except FileError:
         elsewhere = Path(tempfile.mkdtemp(prefix="minirt-")) / beside.name
-        return save_copy(elsewhere, data, elsewhere)
+        return create_numbered(elsewhere, SUFFIX, data, elsewhere)
 
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:

@@ -9,7 +9,7 @@ import minirt
 from minirt.fields import MeshFile
 from minirt.materials import Specular
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import covers, pick, surface_point
+from minirt.rendering.queries.pick import covers, pick
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.mesh import Mesh
@@ -133,11 +133,10 @@ def test_arrays_after_edits_equal_those_of_a_fresh_packing() -> None:
 def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:
     shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Sphere((0, 2, 0), 2, GREY)
     scene, shape_arrays = Scene((EYE, *shapes)), ShapeArrays()
-    shown = [pick(scene, 40, 30, x, y, shape_arrays) for y in range(0, 30, 2) for x in range(0, 40, 2)]
+    shown = [pick(scene, 40, 30, x, y, shape_arrays)[0] for y in range(0, 30, 2) for x in range(0, 40, 2)]
     assert {*shapes, None} == set(shown)
     for x, y in ((11, 9), (15, 20), (30, 18), (0, 0)):
-        found = pick(scene, 40, 30, x, y)
-        point = found and surface_point(found, EYE, 40, 30, x, y)
+        _, point = pick(scene, 40, 30, x, y)
         if point:
             direction = np.array(point) - EYE.position
             hits = minirt.trace(scene, [EYE.position], [direction])
@@ -148,7 +147,7 @@ def test_the_first_of_coincident_meshes_is_picked() -> None:
     one, other = named("icosphere", scale=2.0), named("icosphere", scale=2.0, mirror=0.5)
     for shapes in ((one, other), (other, one)):
         for x, y in ((32, 24), (30, 20), (36, 27)):
-            assert pick(Scene((EYE, *shapes)), 64, 48, x, y) is shapes[0]
+            assert pick(Scene((EYE, *shapes)), 64, 48, x, y)[0] is shapes[0]
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "icosphere", "knot", "pot", "soup"])
@@ -158,7 +157,8 @@ def test_an_outline_encloses_the_pixels_whose_rays_hit(name: str) -> None:
     camera = Camera((3.0, 4.0, -9.0), (-0.3, -0.35, 0.9), 70, roll=20)
     x, y = np.meshgrid(np.arange(80), np.arange(60))
     found = covers(shape, camera, 80, 60, x, y)
-    picked = [[pick(Scene((camera, shape)), 80, 60, i, j) is shape for i in range(0, 80, 4)] for j in range(0, 60, 4)]
+    scene = Scene((camera, shape))
+    picked = [[pick(scene, 80, 60, i, j)[0] is shape for i in range(0, 80, 4)] for j in range(0, 60, 4)]
     assert np.array_equal(found[::4, ::4], picked)
     assert 20 < np.sum(picked) < 290
     assert not covers(shape, camera, 80, 60, np.array([-1, 80, 3]), np.array([3, 3, 60])).any()

@@ -18,7 +18,6 @@ from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.scene_packing import BOXES, Packing
 from minirt.report import ablation, pictures
 from minirt.report.ablation import Ablation, Part
-from minirt.report.metrics import Interval
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
 from minirt.report.settings import CULLING
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
@@ -169,7 +168,7 @@ def test_a_kernel_pays_once_it_has_saved_its_compile_time(
 ) -> None:
     measured = Ablation.__new__(Ablation)
     measured.compile_s = 4.0
-    assert measured.pays_after(change, percent, Interval(*interval), 6.0) == pytest.approx(seconds, nan_ok=True)
+    assert measured.pays_after(change, percent, interval, 6.0) == pytest.approx(seconds, nan_ok=True)
 
 
 # Brute force tries every shape for every ray and gives the same picture, bit for bit.

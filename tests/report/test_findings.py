@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from minirt.report import answers
+from minirt.report import document
 from minirt.report.ablation import Part
 from minirt.report.findings import ERROR, ERRORS, TIME, TIMES, WORST, Findings, Order, Recommendation
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Row
@@ -117,7 +117,7 @@ def answer(*rows: Row) -> str:
     """Answer whether automatic sampling pays where uniform sampling takes 1 ms for an error of 0.04, and at an order
     of 1 less than that in proportion."""
     uniform = [point(0.04 / n, n, str(n))._replace(knob="uniform") for n in (1, 2, 4, 8, 16)]
-    return answers.automatic(Findings(FINDINGS.subject, 1024, 1e-5, pictures=[*uniform, *rows]))
+    return document.automatic(Findings(FINDINGS.subject, 1024, 1e-5, pictures=[*uniform, *rows]))
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_whether_automatic_sampling_pays(rows: list[tuple[float, float, float]],
 
 def test_the_best_setting_and_what_the_next_costs() -> None:
     def told(*rows: Row) -> str:
-        return answers.best_setting(Findings(FINDINGS.subject, 1024, 0.0, pictures=list(rows)))
+        return document.best_setting(Findings(FINDINGS.subject, 1024, 0.0, pictures=list(rows)))
 
     one, two, three = point(0.0035, 10, "1"), point(0.0015, 1234.5, "2"), point(0.0008, 55, "3")
     best = "`--samples 1` (10 ms a picture, RMSE 0.0035) has an error of at most 0.004, one of 255 levels"
@@ -154,27 +154,27 @@ def test_the_best_setting_and_what_the_next_costs() -> None:
         "none is sure to have an error of at most 0.004, one of 255 levels; "
         "`--samples f` (10 ms a picture, RMSE 0.008) comes closest"
     )
-    assert told(FAILED) == answers.UNKNOWN
+    assert told(FAILED) == document.UNKNOWN
 
 
 def test_exactness_and_what_is_left_out() -> None:
     hits = "the worst of 8 hits is 3 roundings off its surface (sphere, rays from the eye)"
     single = "`--precision single` changes 12 of 640 pixels"
-    assert answers.exactness(FINDINGS) == f"{hits}; sphere 1 is stiff (small); {single}"
+    assert document.exactness(FINDINGS) == f"{hits}; sphere 1 is stiff (small); {single}"
     more = replace(FINDINGS, stiff=FINDINGS.stiff * 3)
-    assert answers.exactness(more) == f"{hits}; sphere 1 is stiff (small), and 2 more below; {single}"
+    assert document.exactness(more) == f"{hits}; sphere 1 is stiff (small), and 2 more below; {single}"
     bare = replace(FINDINGS, certificates=[], stiff=[], single=nan)
-    assert answers.exactness(bare) == "nothing in this scene is stiff"
+    assert document.exactness(bare) == "nothing in this scene is stiff"
     lacks = "the kernel of this scene lacks 3 kinds of shapes and 5 features"
-    assert answers.left_out(FINDINGS) == lacks
+    assert document.left_out(FINDINGS) == lacks
     more = [
         Part("kind", name, "added", percent=cost, percent_low=cost - 2) for name, cost in (("tori", 9), ("cones", 1))
     ]
     dearest = f"{lacks}, of which tori would cost most, 9.0 % of a frame"
-    assert answers.left_out(replace(FINDINGS, ablation=more)) == dearest
+    assert document.left_out(replace(FINDINGS, ablation=more)) == dearest
     for time, saved in ((10.0, "; culling saves 75 % of a frame (2.5 ms instead of 10 ms, the same bits)"), (2.6, "")):
         brute = point(0.04, time, "1")._replace(knob="brute force", samples=1)
-        assert answers.left_out(replace(FINDINGS, pictures=[*FINDINGS.pictures, brute])) == lacks + saved
+        assert document.left_out(replace(FINDINGS, pictures=[*FINDINGS.pictures, brute])) == lacks + saved
 
 
 def test_rows_of_equal_time_are_the_nearest_of_each_line() -> None:

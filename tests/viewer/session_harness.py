@@ -65,7 +65,7 @@ class SessionHarness:
             path=Path("scene.rt"),
             size=SIZE,
             painter=painter,
-            pick=lambda *_: None,
+            pick=FakeRenderer.pick,
             samples=samples,
         )
         EventDispatcher(self.session).connect()

@@ -21,7 +21,7 @@ def test_a_scene_or_picture_that_cannot_be_written_gives_a_message(tmp_path):
     session = played("press d", "press Ctrl+S", path=tmp_path / "none" / "scene.rt")
     assert "cannot be written" in session.state.message
     assert session.saved is not session.state.scene
-    assert "cannot write" in played("press P", path=tmp_path / "none" / "scene.rt").state.message
+    assert "cannot be written" in played("press P", path=tmp_path / "none" / "scene.rt").state.message
 
 
 def test_copies_are_numbered(path):

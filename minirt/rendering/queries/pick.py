@@ -22,15 +22,14 @@ from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.shape import Bounds
 
+Picked = tuple[Shape | None, Triple | None]  # a shape and a point on it; None for both where the background is
 COUNT = 33  # rays along a side of a footprint: odd, so that one is in the middle
 COARSE = 9  # where a mesh takes part, whose triangles are all tested
 START = 1 / 1024  # of the shape's height: how far above its top the rays begin, so that they meet a surface there
 
 
-def pick(
-    scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: ShapeArrays | None = None
-) -> Shape | None:
-    """The shape at the centre of pixel x, y of a picture of that size; None where the background is.
+def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: ShapeArrays | None = None) -> Picked:
+    """The shape at the centre of pixel x, y of a picture of that size, and the point on it.
 
     `shape_arrays` are brought up to date; those of the last picture save the time of packing the shapes.
     """
@@ -47,15 +46,10 @@ def pick(
         with np.errstate(all="ignore"):
             closest = closer_hit(packed, index, extent, is_hit, distance[[index]], origin, direction, closest)
     primitive = int(closest[1][0])
-    return shape_arrays.shapes[shape_arrays.owner[primitive]] if primitive >= 0 else None
-
-
-def surface_point(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
-    """The point of a shape at the centre of pixel x, y; None where the shape is not there."""
-    origin, direction = camera_ray(camera, width, height, x + 0.5, y + 0.5)
-    t = float(distances_of(shape, origin, direction).min())
-    point = origin + t * direction
-    return (float(point.x), float(point.y), float(point.z)) if t < np.inf else None
+    if primitive < 0:
+        return None, None
+    point = origin + float(distance[primitive]) * direction
+    return shape_arrays.shapes[shape_arrays.owner[primitive]], (float(point.x), float(point.y), float(point.z))
 
 
 def surface_normal(shape: Shape, point: Triple, direction: Triple) -> Triple:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from minirt.errors import SceneError
 from minirt.scene import describe, dump, load, parse
-from minirt.scene.files import check_name
+from minirt.scene.files import SUFFIX, check_name
 from minirt.viewer import files
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import platform_spelling as named
@@ -28,8 +28,9 @@ UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and ke
 
 
 def save_a_copy(session: Session) -> None:
-    """Write the scene to a new file. SceneError."""
-    session.say(f"saved a copy: {files.save_copy(session.path, dump(session.state.scene).encode())}")
+    """Write the scene to a new file. FileError."""
+    copy = files.create_numbered(session.path, SUFFIX, dump(session.state.scene).encode())
+    session.say(f"saved a copy: {copy}")
 
 
 def reload(session: Session) -> None:
@@ -42,7 +43,7 @@ def reload(session: Session) -> None:
 
 
 def screenshot(session: Session) -> None:
-    """Save the picture as soon as it is complete. RenderError."""
+    """Save the picture as soon as it is complete. FileError."""
     session.screenshot_pending = True
     session.take_screenshot()
 
@@ -84,7 +85,7 @@ def toggle_full_screen(session: Session) -> None:
 
 
 def save_scene(session: Session) -> None:
-    """Write the scene to its file; if another program has changed the file, copy it first. SceneError."""
+    """Write the scene to its file; if another program has changed the file, copy it first. SceneError, FileError."""
     check_name(session.path)
     copy = files.back_up(session.path) if session.file.changed else None
     session.state.scene.save(session.path)
@@ -122,7 +123,7 @@ def read_file(session: Session, keep_camera: bool = False) -> None:
 
 
 def open_another(session: Session, path: Path) -> None:
-    """Show another file; write unsaved changes to a recovery file beside the old one. SceneError."""
+    """Show another file; write unsaved changes to a recovery file beside the old one. SceneError, FileError."""
     scene = load(path, session.lenient, session.state.scene.camera.left_handed).scene
     kept = ""
     if contents_differ(session.state.scene, session.saved):

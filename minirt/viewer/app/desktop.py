@@ -148,7 +148,7 @@ def run_event_loop(session: Session) -> tuple[int, bool]:
 
 
 def end_recovery(session: Session) -> None:
-    """Write unsaved changes to a file beside the scene, and say so. Where that fails they stay kept: SceneError."""
+    """Write unsaved changes to a file beside the scene, and say so. Where that fails they stay kept: FileError."""
     saved = False
     try:
         if contents_differ(session.state.scene, session.saved):

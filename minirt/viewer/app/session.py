@@ -14,21 +14,20 @@ from typing import TYPE_CHECKING
 from minirt.errors import MiniRTError, RenderError
 from minirt.mlx import Cursor, Mlx, Modifier
 from minirt.rendering.image import Image
+from minirt.rendering.queries.pick import Picked
 from minirt.scene import Scene
-from minirt.shapes import Shape
 from minirt.viewer.bindings import Keymap
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
-from minirt.viewer.editing.projection import Pick, Projection, projection_of, surface_at
+from minirt.viewer.editing.projection import Pick, Projection, projection_of
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.files import WatchedFile, error_summary, save_picture
+from minirt.viewer.files import WatchedFile, create_numbered, error_summary
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 if TYPE_CHECKING:
-    from minirt.fields import Triple
     from minirt.mlx.display import Display
 
 FINE_STEP = 0.1  # of a step, while Shift is held
@@ -120,10 +119,10 @@ class Session:
             self.refinement.resolution.display_times.append(self._drawn_at - start)
 
     def take_screenshot(self) -> None:
-        """Save the picture if a screenshot is pending and the picture is complete. RenderError."""
+        """Save the picture if a screenshot is pending and the picture is complete. FileError."""
         if self.screenshot_pending and self.refinement.complete:
             self.screenshot_pending = False
-            file = save_picture(Image.from_bgra(self.picture), self.path)
+            file = create_numbered(self.path, ".png", Image.from_bgra(self.picture).encode())
             self.say(f"picture: {file}")
 
     def give_back_memory(self) -> None:
@@ -171,9 +170,9 @@ class Session:
         self.screen.banner = ""
         self.has_unused_memory = True
 
-    def surface_at(self, x: int, y: int) -> tuple[Shape | None, Triple | None]:
-        """Return the shape at a pixel and the point on it, None for both where the background is."""
-        return surface_at(self.pick, self.state.scene, self.window.width, self.window.height, x, y)
+    def surface_at(self, x: int, y: int) -> Picked:
+        """Return the shape at a pixel of the window, and the point on it."""
+        return self.pick(self.state.scene, self.window.width, self.window.height, x, y)
 
     def release_button(self) -> None:
         """Forget the mouse button that is down; the edits of a drag are then one undo step."""

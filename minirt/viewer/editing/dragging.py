@@ -18,7 +18,7 @@ from minirt.shapes import Shape
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.adding import dropped, middle_of, stand
 from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, shifted
-from minirt.viewer.editing.projection import UP, Projection, aim, extent, scene_centre, subtract, surface_at
+from minirt.viewer.editing.projection import UP, Projection, aim, extent, scene_centre, subtract
 from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels
@@ -64,7 +64,7 @@ def place(state: State, start: DragStart, x: int, y: int) -> State:
     if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
         return move(state, start, x, y)
     others, view = state.scene.edit(state.selected), start.projection
-    behind = surface_at(pick, others, view.width, view.height, x, y)
+    behind = pick(others, view.width, view.height, x, y)
     there = aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *behind)
     standing = stand(shifted(shape, subtract(there.point, middle_of(shape)[0])), there.point, UP)
     return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)

@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 from minirt.element import Element, fields_of
 from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp, unit
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.queries.pick import surface_normal, surface_point
+from minirt.rendering.queries.pick import Picked, surface_normal
 from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 
 Pixel = tuple[float, float]
-Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
+Pick = Callable[[Scene, int, int, int, int], Picked]  # (scene, width, height, x, y)
 
 MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in front of the eye are on no picture
 FAR = 1e3  # times the distance to the eye: length to which a line is drawn
@@ -207,12 +207,6 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
         x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
         point, normal = (x, 0.0, z), UP if height > 0 else (0.0, -1.0, 0.0)
     return Aim(view.eye, point, normal, 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up)))
-
-
-def surface_at(pick: Pick, scene: Scene, width: int, height: int, x: int, y: int) -> tuple[Shape | None, Triple | None]:
-    """The shape at a pixel of a picture of that size, and the point on it; None for both where the background is."""
-    shape = pick(scene, width, height, x, y)
-    return shape, surface_point(shape, scene.camera, width, height, x, y) if shape else None
 
 
 def aim_ahead(camera: Camera, size: float) -> Aim:

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.rendering import Renderer
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import pick, surface_point
+from minirt.rendering.queries.pick import pick
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -35,7 +35,8 @@ def assert_picks(scene: Scene, allowed: int = 0) -> None:
     flat, shape_arrays = Scene((scene.camera, *shapes)), ShapeArrays()
     wrong = 0
     for (y, x), index in np.ndenumerate(seen):
-        wrong += pick(flat, WIDTH, HEIGHT, x, y, shape_arrays) is not (shapes[index] if index >= 0 else None)
+        shown = shapes[index] if index >= 0 else None
+        wrong += pick(flat, WIDTH, HEIGHT, x, y, shape_arrays)[0] is not shown
     assert wrong <= allowed
 
 
@@ -57,9 +58,9 @@ def test_a_click_hits_the_visible_one_of_coincident_surfaces(name: str) -> None:
 def test_the_point_on_a_shape() -> None:
     camera = Camera((0, 0, 0), (0, 0, 1), 90)
     ball = Sphere((0, 0, 5), 2, (1, 2, 3))
-    assert surface_point(ball, camera, 101, 101, 50, 50) == pytest.approx((0, 0, 4))
-    assert surface_point(ball, camera, 101, 101, 0, 0) is None
-    x, y, z = surface_point(Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)), camera, 100, 100, 75, 99)
+    assert pick(Scene((camera, ball)), 101, 101, 50, 50)[1] == pytest.approx((0, 0, 4))
+    assert pick(Scene((camera, ball)), 101, 101, 0, 0) == (None, None)
+    _, (x, y, z) = pick(Scene((camera, Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)))), 100, 100, 75, 99)
     assert (x / z, y, y / z) == pytest.approx((-0.51, -1, -0.99))  # looking along +z, x points to the left
 
 
@@ -69,7 +70,7 @@ def test_a_click_does_not_wait_for_a_long_picture() -> None:
     renderer.busy.acquire()
     cancelled = threading.Event()
     renderer.cancel = lambda: (cancelled.set(), renderer.busy.release())  # type: ignore[method-assign]
-    assert renderer.pick(scene, 11, 11, 5, 5) is scene.shapes[0]
+    assert renderer.pick(scene, 11, 11, 5, 5)[0] is scene.shapes[0]
     assert cancelled.is_set()
     assert not renderer.busy.locked()
 
@@ -78,13 +79,13 @@ def test_a_click_does_not_wait_for_the_compiler() -> None:
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 1, (1, 2, 3))))
     renderer = Renderer()
     renderer.busy.acquire()
-    assert renderer.pick(scene, 11, 11, 5, 5) is scene.shapes[0]
+    assert renderer.pick(scene, 11, 11, 5, 5)[0] is scene.shapes[0]
     assert renderer.busy.locked()
 
 
 def test_a_click_on_the_background_hits_nothing() -> None:
-    assert pick(Scene((Camera((0, 0, 0), (0, 0, 1), 60),)), 10, 10, 5, 5) is None
+    assert pick(Scene((Camera((0, 0, 0), (0, 0, 1), 60),)), 10, 10, 5, 5) == (None, None)
     ball, wall = Sphere((0, 0, 5), 1, (1, 2, 3)), Plane((0, 0, -3), (0, 0, 1), (1, 2, 3))
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), wall, ball))
-    assert pick(scene, 11, 11, 5, 5) is scene.shapes[1]
-    assert pick(scene, 11, 11, 0, 0) is None
+    assert pick(scene, 11, 11, 5, 5)[0] is scene.shapes[1]
+    assert pick(scene, 11, 11, 0, 0) == (None, None)

@@ -179,7 +179,6 @@ ACTIONS: dict[str, Play] = {
 def harness() -> SessionHarness:
     """Return a session that shows a picture, in which a sphere is selected and was edited once."""
     harness = SessionHarness()
-    harness.session.pick = lambda scene, *_: scene.spheres[0]
     harness.finish(0.001)
     harness.memory.resize(WIDTH, HEIGHT)
     harness.play("click 320,240", "text +")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from minirt.fields import Triple
-from minirt.rendering.queries.pick import clearance, pick, surface_point
+from minirt.rendering.queries.pick import clearance, pick
 from minirt.scene import Scene, load
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Shape
@@ -31,9 +31,7 @@ BARE = "A 0.2 255,255,255\nC 3,1,4 0.6,-0.2,0.7 50 roll:30\n"
 def aiming(state: State, x: int, y: int) -> State:
     """The state that aims through the centre of a pixel of a window of SIZE."""
     camera = state.scene.camera
-    shape = pick(state.scene, *SIZE, x, y)
-    point = surface_point(shape, camera, *SIZE, x, y) if shape else None
-    found = aim(projection_of(camera, *SIZE), state.size, x + 0.5, y + 0.5, shape, point)
+    found = aim(projection_of(camera, *SIZE), state.size, x + 0.5, y + 0.5, *pick(state.scene, *SIZE, x, y))
     return State(state.scene, state.selected, state.file_camera, state.size, aim=found)
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minirt.mlx import Key
-from minirt.rendering.queries.pick import surface_point
+from minirt.rendering.queries.pick import pick
 from minirt.scene import Camera
 from minirt.viewer.editing.projection import dot, projection_of, scene_centre
 from tests.viewer.fake import played, scene
@@ -34,18 +34,13 @@ def test_projecting_to_pixels_and_back_is_the_identity(x, y, z, fov, roll, at):
     assert projection.pixel(projection.point_at_depth(*pixel, -7.0)) is None
 
 
-def point_under_pixel(shape, x, y):
-    """The point on a shape under a pixel."""
-    return surface_point(shape, scene().camera, WIDTH, HEIGHT, x, y)
-
-
 def test_the_point_under_the_pointer_stays_there():
     session = played(DRAG)
     (old,), (new,) = scene().spheres, session.state.scene.spheres
     assert session.state.element is new
     offset = [b - a for a, b in zip(old.centre, new.centre, strict=True)]
     assert dot(offset, PROJECTION.forward) == pytest.approx(0, abs=1e-9)
-    moved = tuple(a + b for a, b in zip(point_under_pixel(old, *FROM), offset, strict=True))
+    moved = tuple(a + b for a, b in zip(pick(scene(), WIDTH, HEIGHT, *FROM)[1], offset, strict=True))
     assert PROJECTION.pixel(moved) == pytest.approx([each + HALF for each in TO], abs=1e-3)
 
 
@@ -57,8 +52,7 @@ def test_a_drag_along_an_axis_changes_one_coordinate(presses, axis):
     assert [i for i in range(3) if centre[i] != 0] == [axis]
     # No other point of the axis is nearer to the pointer's ray.
     projection = projection_of(session.state.scene.camera, WIDTH, HEIGHT)
-    (ball,) = scene(text).spheres
-    start = surface_point(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
+    _, start = pick(scene(text), WIDTH, HEIGHT, 32, 24)
 
     def distance(step):
         point = [a + (centre[axis] + step) * (i == axis) for i, a in enumerate(start)]
@@ -115,7 +109,7 @@ def test_orbiting_stops_straight_above():
 def test_the_camera_pans():
     session = played("drag 33,23 45,15 middle")
     camera = session.state.scene.camera
-    point = point_under_pixel(scene().spheres[0], *FROM)
+    point = pick(scene(), WIDTH, HEIGHT, *FROM)[1]
     assert projection_of(camera, WIDTH, HEIGHT).pixel(point) == pytest.approx([each + HALF for each in TO], abs=1e-3)
     assert camera.direction == scene().camera.direction
     assert played("drag 5,3 9,3 middle").state.scene.camera.position[0] < 0
@@ -144,7 +138,6 @@ def test_drags_are_steps_of_their_own_whatever_their_paths_and_pauses():
 def dragging() -> SessionHarness:
     """A session in the middle of a drag of the sphere."""
     harness = SessionHarness()
-    harness.session.pick = lambda scene, *_: scene.spheres[0]
     harness.memory.button_press(1, *FROM)
     harness.play("move 40,20")
     assert len(harness.session.state.undo_stack) == 1
@@ -174,7 +167,6 @@ def test_these_actions_end_a_drag(end):
 
 def test_a_click_with_a_small_movement_moves_nothing():
     harness = SessionHarness()
-    harness.session.pick = lambda scene, *_: scene.spheres[0]
     harness.memory.button_press(1, *FROM)
     harness.memory.motion(FROM[0] + 3, FROM[1] - 3)
     harness.memory.button_release(1, FROM[0] + 3, FROM[1] - 3)
