@@ -110,8 +110,8 @@ bench: $(DEV)  ## time frames beside other programs: make bench BENCH=--quick fo
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
 bench-peers: $(NAME)  ## install what `make bench` compares with (Debian, Ubuntu)
-	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox xvfb
-	$(PIP) install --quiet embreex
+	$(SUDO) apt-get install -y --no-install-recommends g++ llvm povray tachyon-bin-nox xvfb
+	$(PIP) install --quiet embreex mitsuba
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 

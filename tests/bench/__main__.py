@@ -11,13 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from minirt import load
+from minirt.element import fields_of
+from minirt.fields import Point
 from minirt.rendering import Renderer
 from minirt.rendering.threads import usable_cores
-from minirt.report.bench import moved, runs
+from minirt.report.bench import STEP, moved, runs
 from minirt.report.findings import processor
+from minirt.scene import Scene
 from tests.bench import sampling, scenes, starts
 from tests.bench.measure import Setting, System, available, table, take_turns
 from tests.bench.peers.embree import Embree
+from tests.bench.peers.mitsuba import Mitsuba
 from tests.bench.peers.programs import PovRay, Tachyon
 from tests.bench.yardstick import Yardstick
 
@@ -38,6 +42,10 @@ class MiniRT(System):
         self.precision = precision
         self.renderer = lru_cache(RECENT)(self.new_renderer)
 
+    def changed(self, scene: Scene) -> Scene:
+        """Return the scene of every second frame."""
+        return moved(scene)
+
     def new_renderer(self, path: Path) -> Renderer:
         """Make a renderer for a scene, with its kernel; a renderer keeps only the last packed scene."""
         renderer = Renderer(self.setting.threads, self.precision)
@@ -46,15 +54,32 @@ class MiniRT(System):
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         scene, renderer = read(path), self.renderer(path)
-        frames = cycle((scene, moved(scene)))
+        frames = cycle((scene, self.changed(scene)))
         pixels = np.empty((self.setting.height, self.setting.width, 4), np.uint8)
         renderer.render(next(frames), pixels)
         timed = runs(lambda: renderer.render(next(frames), pixels), LEAST_FRAMES, seconds)
         return [run.wall * 1e3 for run in timed]
 
 
+class MovedShape(MiniRT):
+    """miniRT while the last shape of a scene moves, in place of the camera."""
+
+    how = "Renderer.render while the last shape moves, the mesh of a scene that has one"
+
+    def __init__(self, setting: Setting, precision: str) -> None:
+        super().__init__(setting, precision)
+        self.name += " (shape)"
+
+    def changed(self, scene: Scene) -> Scene:
+        shape = scene.shapes[-1]
+        place = next(each.name for each in fields_of(type(shape)) if isinstance(each, Point))
+        x, y, z = getattr(shape, place)
+        return scene.replace(shape, **{place: (x + STEP, y, z)})
+
+
 OWN = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
-PEERS = [Embree, Tachyon, PovRay]
+MOVED = [partial(MovedShape, precision="double"), partial(MovedShape, precision="single")]
+PEERS = [Embree, Mitsuba, Tachyon, PovRay]
 WIDTH, HEIGHT = 1280, 720
 OUT = Path("out")
 
@@ -68,6 +93,7 @@ def main(quick: bool) -> None:
     own, reasons = available(partial(make, setting) for make in OWN)
     peers, more_reasons = available(partial(make, setting) for make in PEERS)
     systems = own + peers
+    with_moved = own[:2] + [make(setting) for make in MOVED] + own[2:] + peers
 
     print(f"{processor()}, {usable_cores()} threads each.")
     print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {rounds} rounds")
@@ -75,6 +101,9 @@ def main(quick: bool) -> None:
     four = scenes.compared(folder)
     compared = take_turns(systems, four, rounds, seconds)
     print(table(compared), end="\n\n", flush=True)
+
+    harder = take_turns(with_moved, scenes.harder(folder), rounds, seconds)
+    print(table(harder), end="\n\n", flush=True)
 
     started, start_reasons = starts.measured(setting, four[:3], start_rounds)
     print(f"Whole programs, until their picture of {starts.WIDTH}x{starts.HEIGHT} pixels is in a file or in a window.")
@@ -87,7 +116,7 @@ def main(quick: bool) -> None:
 
     print(sampling.summary(sampling.cells(9 if quick else 100)), end="\n\n", flush=True)
 
-    for system in systems:
+    for system in with_moved:
         print(f"{system.name}: {system.how}")
     reasons += more_reasons + start_reasons
     for reason in reasons:
@@ -98,9 +127,10 @@ def main(quick: bool) -> None:
     from tests.bench import charts
 
     charts.dots(compared, OUT / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
+    charts.dots(harder, OUT / "harder.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
     charts.dots(started, OUT / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
     charts.growth(growth, OUT / "growth.png")
-    print(f"{OUT}: bench.png, starts.png, growth.png")
+    print(f"{OUT}: bench.png, harder.png, starts.png, growth.png")
 
 
 if __name__ == "__main__":

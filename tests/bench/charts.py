@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
 from tests.bench.measure import Cells, figure, names
 
-COLOURS, MARKS = ("#d1495b", "#30638e", "#edae49", "#5b8e7d"), "osD^"
+COLOURS, MARKS = ("#d1495b", "#30638e", "#edae49", "#5b8e7d", "#9a6fb0"), "osD^v"
 HEIGHTS = (7, -15, 17, -25)  # of labels in points, above and below their dots in turn, so that near ones do not overlap
 ROOT_FROM = 100  # spheres at which the line of comparison begins
 STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "svg.hashsalt": "minirt"}

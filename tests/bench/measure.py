@@ -10,6 +10,7 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
+MESH, MIRROR, GLASS = "\nob ", "mirror:", "glass:"  # as they stand in a file
 INSTALL = "`make bench-peers` installs it"  # on Debian and Ubuntu
 
 
@@ -31,13 +32,15 @@ class System(ABC):
 
     name: str
     how: str  # what its time includes
+    lacks: tuple[str, ...] = ()  # what stands in the files of scenes that it cannot render
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
 
     def renders(self, path: Path) -> bool:
         """Whether the system has all that a scene needs."""
-        return True
+        text = path.read_text(encoding="utf-8")
+        return not any(each in text for each in self.lacks)
 
     @abstractmethod
     def frame_times(self, path: Path, seconds: float) -> list[float]:

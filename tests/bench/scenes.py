@@ -1,4 +1,4 @@
-"""Benchmark scenes of many spheres, and of one mesh (a wavy ball), the same at each run.
+"""Benchmark scenes of many spheres, of many lamps, and of one mesh (a wavy ball), the same at each run.
 
 `tenthousand` fills a box with small balls. `growth` keeps the picture equally full for any count: all spheres are in
 view, and their radius goes with 1 / sqrt(count), so that they would cover the picture once if none overlapped.
@@ -6,12 +6,14 @@ view, and their radius goes with 1 / sqrt(count), so that they would cover the p
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import cos, pi, radians, sin, sqrt, tan
 from pathlib import Path
 from random import Random
 
 HERE = Path(__file__).parent
+TRIANGLES = 100_000  # of the mesh on which all systems are compared
+MESHES = {"mesh-10k": 10_000, "mesh-1M": 1_000_000}
 COUNTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
 
 FOV, ASPECT = 70.0, 16 / 9
@@ -31,22 +33,46 @@ C 0,0,0 0,0,1 70
 L -60,120,-20 0.7 255,255,255
 pl 0,-80,0 0,1,0 200,200,200
 """
+STAGE = """\
+A 0.2 255,255,255
+C 0,7,-11 0,-0.4,1 60
+L -20,30,-20 0.7 255,255,255
+pl 0,0,0 0,1,0 200,200,200
+"""
 
 
-def sphere(random: Random, centre: tuple[float, float, float], diameter: float) -> str:
+def sphere(random: Random, centre: tuple[float, float, float], diameter: float, material: str = "") -> str:
     """Return the line of a sphere of a random light colour."""
     red, green, blue = (60 + int(random.random() * 196) for _ in range(3))
     x, y, z = centre
-    return f"sp {x:.5g},{y:.5g},{z:.5g} {diameter:.5g} {red},{green},{blue}\n"
+    return f"sp {x:.5g},{y:.5g},{z:.5g} {diameter:.5g} {red},{green},{blue}{material}\n"
 
 
-def tenthousand() -> Iterator[str]:
+def tenthousand(material: str = "") -> Iterator[str]:
     """Yield the lines of a scene of 10,000 spheres in a box of 100 x 60 x 100, with diameters from 1 to 2."""
     random = Random(42)
     yield TEN_THOUSAND
     for _ in range(10_000):
         centre = random.random() * 100, random.random() * 60, random.random() * 100 - 50
-        yield sphere(random, centre, 1 + random.random())
+        yield sphere(random, centre, 1 + random.random(), material)
+
+
+def glass() -> Iterator[str]:
+    """Yield the lines of a scene of 49 balls of glass above a floor, in 7 rows."""
+    random = Random(49)
+    yield STAGE
+    for number in range(49):
+        yield sphere(random, (number % 7 * 2.2 - 6.6, 1.0, number // 7 * 2.2), 2.0, " glass:1.5,0.9")
+
+
+def lights() -> Iterator[str]:
+    """Yield the lines of a scene of 100 lamps above 100 balls."""
+    random = Random(100)
+    yield STAGE.replace("L ", "# L ")
+    for number in range(100):
+        x, z = number % 10 * 1.6 - 7.2, number // 10 * 1.6
+        yield f"{'Ll'[number > 0]} {x + 0.7:.5g},{3 + random.random():.5g},{z + 0.7:.5g} 0.01 255,240,220\n"
+        yield sphere(random, (x, 0.6, z), 1.2)
 
 
 def radius(count: int) -> float:
@@ -82,19 +108,24 @@ def compared(folder: Path) -> list[Path]:
     return [HERE / "one.rt", HERE / "fifty.rt", many, waves(folder, TRIANGLES)]
 
 
+def harder(folder: Path, meshes: Mapping[str, int] = MESHES) -> list[Path]:
+    """Return scenes of meshes of so many triangles, of mirrors, glass and many lights, written into the folder."""
+    made = {"mirrors": tenthousand(" mirror:0.5"), "glass": glass(), "lights": lights()}
+    written = [waves(folder, count, name) for name, count in meshes.items()]
+    return written + [write(folder / f"{name}.rt", lines) for name, lines in made.items()]
+
+
 def grown(folder: Path, count: int) -> Path:
     """Write a scene of the growth curve; return its file."""
     return write(folder / "growth" / f"{count}.rt", growth(count))
 
-
-TRIANGLES = 100_000  # of the compared mesh
 
 MESH = """\
 A 0.2 255,255,255
 C 0,2,-14 0,-0.1,1 60
 L -40,30,-30 0.7 255,255,255
 pl 0,-6,0 0,1,0 200,200,200
-ob mesh.obj 0,0,0 5 200,140,90
+ob {name}.obj 0,0,0 5 200,140,90
 """
 
 
@@ -121,7 +152,7 @@ def ball(count: int) -> Iterator[str]:
         yield f"f {last} {last - around + step} {last - around + (step + 1) % around}\n"
 
 
-def waves(folder: Path, count: int) -> Path:
+def waves(folder: Path, count: int, name: str = "mesh") -> Path:
     """Write the scene of a mesh of about `count` triangles; return its file."""
-    write(folder / "mesh.obj", ball(count))
-    return write(folder / "mesh.rt", iter([MESH]))
+    write(folder / f"{name}.obj", ball(count))
+    return write(folder / f"{name}.rt", iter([MESH.format(name=name)]))

@@ -12,6 +12,7 @@ import minirt
 from tests.bench import scenes
 from tests.bench.measure import MissingError, Setting, System
 from tests.bench.peers.embree import Embree
+from tests.bench.peers.mitsuba import Mitsuba
 from tests.bench.peers.programs import PovRay, Tachyon
 from tests.bench.yardstick import Yardstick
 from tests.compare import Bytes, edges
@@ -47,8 +48,10 @@ def shows_the_same(picture: Bytes, ours: Bytes, tolerance: int) -> bool:
     return bool(wrong.mean() < 1e-3) and bool(ours.std() > 20)
 
 
-# Embree's prisms have flat sides, and Tachyon's rays go through the corners of pixels.
-@pytest.mark.parametrize(("kind", "tolerances"), [(PovRay, (1, 1)), (Tachyon, (6, 12)), (Embree, (12, 1))])
+# Prisms in place of cylinders have flat sides, and Tachyon's rays go through the corners of pixels.
+@pytest.mark.parametrize(
+    ("kind", "tolerances"), [(PovRay, (1, 1)), (Tachyon, (6, 12)), (Embree, (12, 1)), (Mitsuba, (12, 1))]
+)
 def test_peers_show_the_same_scene_and_mesh(kind: type[System], tolerances: tuple[int, int], tmp_path: Path) -> None:
     (tmp_path / "scene.rt").write_text(LINES)
     for path, tolerance in zip((tmp_path / "scene.rt", scenes.waves(tmp_path, 1000)), tolerances, strict=True):
@@ -56,6 +59,31 @@ def test_peers_show_the_same_scene_and_mesh(kind: type[System], tolerances: tupl
         assert min(system.frame_times(path, 0)) > 0
         picture = np.asarray(Image.open(system.picture(path)).convert("RGB"))
         assert shows_the_same(picture, minirt.render(minirt.load(path), WIDTH, HEIGHT).array, tolerance)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [(PovRay, "mirrors"), (PovRay, "glass"), (PovRay, "lights"), (Embree, "lights"), (Mitsuba, "lights")],
+)
+def test_peers_show_mirrors_glass_and_many_lights(kind: type[System], name: str, tmp_path: Path) -> None:
+    assert shows_the_same(*pictures(kind, name, tmp_path), 3)
+
+
+def pictures(kind: type[System], name: str, folder: Path) -> tuple[Bytes, Bytes]:
+    """Return the picture of a system, and miniRT's, of a scene without a mesh."""
+    system = made(kind, folder)
+    path = next(each for each in scenes.harder(folder, meshes={}) if each.stem == name)
+    assert system.renders(path)
+    system.frame_times(path, 0)
+    ours = minirt.render(minirt.load(path), WIDTH, HEIGHT).array
+    return np.asarray(Image.open(system.picture(path)).convert("RGB")), ours
+
+
+@pytest.mark.parametrize("name", ["mirrors", "lights"])
+def test_tachyon_shows_as_much_light(name: str, tmp_path: Path) -> None:
+    """Its rays through the corners of pixels show other pixels where there is so much to see."""
+    picture, ours = pictures(Tachyon, name, tmp_path)
+    assert np.abs(picture.mean(axis=(0, 1)) - ours.mean(axis=(0, 1))).max() < 1
 
 
 def test_the_yardstick_shows_the_compared_scenes_with_any_lamp(tmp_path: Path) -> None:

@@ -12,7 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from minirt import load
+from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_frame, camera_numbers
+from minirt.rendering.packing.features import DEPTH
 from minirt.report import povray
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
@@ -20,7 +22,7 @@ from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 from minirt.shapes.sphere import Sphere
-from tests.bench.measure import INSTALL, MissingError, Setting, System
+from tests.bench.measure import GLASS, INSTALL, MissingError, Setting, System
 from tests.bench.triangles import light, triangulated
 from tests.processes import run
 
@@ -66,10 +68,15 @@ TRACE_TIME = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)")
 
 
 def in_povray(scene: Scene, width: int, height: int) -> Iterator[str]:
-    """Translate a scene to POV-Ray's language, meshes too, of which reports translate none."""
+    """Translate a scene to POV-Ray's language, meshes and plain glass too, of which reports translate none."""
+    glass = [each for each in scene.shapes if each.glass]
+    untranslated = {*scene.meshes, *glass}
     yield from povray.translated(
-        Scene((each for each in scene.elements if not isinstance(each, Mesh)), scene.file), width, height
+        Scene((each for each in scene.elements if each not in untranslated), scene.file), width, height
     )
+    for shape in glass:
+        own = f"pigment {{ rgb {povray.vector(shape.colour)} / 255 transmit {shape.glass.share} }}"
+        yield f"{povray.solid(shape)} {own} finish {{ ambient 1 diffuse 1 }} interior {{ ior {shape.glass.ior} }} }}"
     for mesh in scene.meshes:
         points, corners = triangulated(mesh)
         vertices, faces = (", ".join([str(len(rows)), *map(povray.vector, rows)]) for rows in (points, corners))
@@ -110,9 +117,9 @@ def mirrored(triple: Iterable[float]) -> str:
 def solid(shape: Shape, ambient: float) -> Iterator[str]:
     """Translate a shape to Tachyon's language; a cylinder becomes a tube and two discs."""
     red, green, blue = (level / 255 for level in shape.colour)
-    finish = (
-        f"TEXTURE AMBIENT {ambient:.9g} DIFFUSE 1 SPECULAR 0 OPACITY 1 COLOR {numbers((red, green, blue))} TEXFUNC 0"
-    )
+    mirror = mirror_of(shape).share
+    own = f"AMBIENT {ambient * (1 - mirror):.9g} DIFFUSE {1 - mirror:.9g} SPECULAR {mirror:.9g}"
+    finish = f"TEXTURE {own} OPACITY 1 COLOR {numbers((red, green, blue))} TEXFUNC 0"
     match shape:
         case Sphere():
             yield f"SPHERE CENTER {mirrored(shape.centre)} RAD {shape.diameter / 2:.9g} {finish}"
@@ -141,7 +148,7 @@ def in_tachyon(scene: Scene, width: int, height: int) -> Iterator[str]:
     yield "BEGIN_SCENE"
     yield f"RESOLUTION {width} {height}"
     yield (
-        f"CAMERA PROJECTION PERSPECTIVE ZOOM {zoom:.9g} ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 1 "
+        f"CAMERA PROJECTION PERSPECTIVE ZOOM {zoom:.9g} ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH {DEPTH + 1} "
         f"CENTER {mirrored(scene.camera.position)} VIEWDIR {mirrored(forward)} UPDIR {mirrored(up)} END_CAMERA"
     )
     for lamp in scene.lights:
@@ -154,6 +161,7 @@ def in_tachyon(scene: Scene, width: int, height: int) -> Iterator[str]:
 class Tachyon(Command):
     name, command, suffix = "Tachyon", "tachyon", ".dat"
     how = "what it prints as Ray Tracing Time: the rays, without reading the scene"
+    lacks = (GLASS,)
     translate = staticmethod(in_tachyon)
 
     def arguments(self, file: Path, picture: Path) -> list[str]:

@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Collection
 from pathlib import Path
 
-from tests.bench.measure import INSTALL, MissingError, Setting, System
+from tests.bench.measure import GLASS, INSTALL, MESH, MIRROR, MissingError, Setting, System
 from tests.processes import run
 
 FLAGS = [
@@ -42,6 +42,7 @@ HERE = Path(__file__).parent
 class Yardstick(System):
     name = "C++ yardstick"
     how = "frames on the same terms as miniRT's, in single precision"
+    lacks = MESH, MIRROR, GLASS
 
     def __init__(self, setting: Setting) -> None:
         super().__init__(setting)
@@ -56,9 +57,6 @@ class Yardstick(System):
             raise RuntimeError(f"{self.name} on {path}: {ran.stderr}")
         printed: dict[str, float] = json.loads(ran.stdout)
         return printed
-
-    def renders(self, path: Path) -> bool:
-        return "\nob " not in path.read_text(encoding="utf-8")
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         return [self.run(path, "--seconds", str(seconds))["ms_median"]]

@@ -20,7 +20,7 @@ from minirt import load
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.report.bench import runs
 from minirt.shapes.sphere import Sphere
-from tests.bench.measure import INSTALL, MissingError, Setting, System
+from tests.bench.measure import GLASS, INSTALL, MIRROR, MissingError, Setting, System
 from tests.bench.triangles import light, triangulated
 from tests.bench.yardstick import compiled
 
@@ -87,6 +87,7 @@ def library() -> CDLL:
 class Embree(System):
     name = "Embree"
     how = "frames by packets of 16 rays, with cylinders and planes as triangles; the trees are built before"
+    lacks = MIRROR, GLASS
 
     def __init__(self, setting: Setting) -> None:
         super().__init__(setting)
