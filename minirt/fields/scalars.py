@@ -94,9 +94,10 @@ class Scalar(Field):
         return f"{spelled(value)} {self.ends}" if self.ends and value in (self.low, self.high) else ""
 
     def column(self, texts: Sequence[str]) -> Sequence[float | None]:
-        kind = self.kind
         try:
-            values = [kind(text) + 0 for text in texts]  # -0 becomes 0
+            values = list(map(self.kind, texts))
+            if 0 in values:
+                values = [value + 0 for value in values]  # -0 becomes 0
             if not any(self.remark(self.check(end)) for end in (min(values), max(values))):
                 return values  # if the least and the greatest are in range, all are
         except ValueError:

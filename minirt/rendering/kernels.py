@@ -20,7 +20,7 @@ from minirt.kernel.machine_code.library import LIBRARY, Call, Entry
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.packing import generic_kernels
-from minirt.rendering.packing.features import DEPTH, SPREAD, features, primitive_count, shape_features
+from minirt.rendering.packing.features import DEPTH, SPREAD, examples, features
 from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.sampling.packets import classify_call
@@ -181,14 +181,18 @@ def kernel_features(scene: Scene) -> frozenset[Hashable]:
     a BVH.
     """
     used = features(scene)
-    return used | {"bvh"} if primitive_count(scene) > SMALL and not SPREAD.isdisjoint(used) else used
+    return used | {"bvh"} if some_primitives(scene) > SMALL and not SPREAD.isdisjoint(used) else used
+
+
+def some_primitives(scene: Scene) -> int:
+    """Count the primitives of a scene, at least up to `SMALL` and one: shapes, and for each mesh its triangles."""
+    return sum(shape.parts for shape in scene.shapes[: SMALL + 1])
 
 
 def minimal_scene(scene: Scene) -> Scene:
     """Return a scene of few shapes that needs the same kernel, to compile it for."""
-    examples = {(type(shape), *shape_features(shape)): shape for shape in scene.shapes}.values()
-    shapes = [shape.some(np.arange(1)) for shape in examples]
-    more = min(primitive_count(scene), SMALL + 1) - len(shapes)
+    shapes = [shape.some(np.arange(1)) for shape in examples(scene).values()]
+    more = min(some_primitives(scene), SMALL + 1) - len(shapes)
     background = (scene.background,) if scene.background else ()
     return Scene((scene.camera, *background, *scene.lights, *shapes, *shapes[:1] * more), scene.file)
 

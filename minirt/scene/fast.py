@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from functools import cache
 
-from minirt.element import Element, positional_fields
+from minirt.element import Element, cached_per_kind, positional_fields
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS
 
@@ -45,10 +45,20 @@ def plain_line() -> re.Pattern[str]:
     return re.compile(rf"[ \t]*+(?:(?=[#\r]|\Z)|{elements})[ \t]*+(?:#[^\r\n\0]*)?\r?")
 
 
-def read(sources: Sequence[str], length: int) -> Sequence[Item | None]:
+@cached_per_kind
+def plain_lines(kind: type[Element]) -> re.Pattern[str]:
+    """Return the pattern of any number of plain lines of a kind, without comments."""
+    return re.compile(rf"(?:[ \t]*+{line_pattern(kind)}[ \t]*+\r?\n)*+")
+
+
+def read(sources: list[str], length: int) -> list[Item | None]:
     """Parse lines as they stand in a file of `length` lines; None for each that is left to the diagnosing reader."""
     if length <= FEW_LINES:
         return [None] * len(sources)
+    text = "\n".join([*sources, ""])
+    kind = frequent_kinds().get(text.partition(" ")[0])
+    if kind and text.count("\n") == len(sources) and plain_lines(kind).fullmatch(text):
+        return [*read_kind(kind, sources, sources)]  # in half the time
     lines: dict[str, list[tuple[int, str]]] = defaultdict(list)  # by identifier: indices and texts
     items: list[Item | None] = [None] * len(sources)
     match = plain_line().fullmatch

@@ -73,18 +73,15 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     items: list[Item] = []
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
     for start in range(0, len(sources), BLOCK):
-        block = sources[start : start + BLOCK]
-        for number, (source, plain) in enumerate(zip(block, fast.read(block, len(sources)), strict=True), start + 1):
-            item = plain
-            if isinstance(plain, Element):
-                seen.setdefault(plain.code, number)
-            elif plain is None:
-                item = read_line(line_from(number, source), seen, log)
-            if item is not None:
-                items.append(item)
-            elif len(log.errors) >= MAX_ERRORS:
-                log.error(line_from(number, source), "too many errors: the rest of the file is not read", 1)
+        block = fast.read(sources[start : start + BLOCK], len(sources))
+        seen.update((kind.code, start + 1) for kind in set(map(type, block)) if issubclass(kind, Element))
+        for at in [at for at, item in enumerate(block) if item is None]:
+            line = line_from(start + at + 1, sources[start + at])
+            block[at] = read_line(line, seen, log)
+            if block[at] is None and len(log.errors) >= MAX_ERRORS:
+                log.error(line, "too many errors: the rest of the file is not read", 1)
                 return items
+        items += [item for item in block if item is not None]
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
     return items

@@ -63,6 +63,7 @@ class Shape(Attributes):
     """A surface that rays can hit, with its materials. The last field of every shape is its colour."""
 
     batched: ClassVar[bool] = False  # whether one element is many primitives, as a mesh is many triangles
+    columnar: ClassVar[bool] = False  # whether `pack`, `balls` and `bounds` take fields that are columns of many shapes
     infinite: ClassVar[bool] = False  # whether the shapes of this kind have no bounding box, as planes
     solid: ClassVar[bool] = True  # whether it has an inside, that of a plane being below it
     smooth: ClassVar[bool] = False  # whether its flat parts are shaded as if they were curved; a mesh may be

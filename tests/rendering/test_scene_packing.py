@@ -20,11 +20,13 @@ from minirt.rendering.packing.view import Rounding, View
 from minirt.rendering.renderer import PRECISIONS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, FurtherLight, Light, Scene
+from minirt.shapes import ALL_KINDS
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL, EYE, SHAPES
 from tests.random_scenes import random_scene
+from tests.shapes.examples import example
 
 
 @pytest.fixture
@@ -32,7 +34,7 @@ def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The shapes that were packed so far."""
     done: list[Any] = []
     monkeypatch.setattr(
-        shape_arrays, "packed_rows", lambda new, numbers=shape_arrays.packed_rows: done.extend(new) or numbers(new)
+        shape_arrays, "primitives_of", lambda new, pack=shape_arrays.primitives_of: done.extend(new) or pack(new)
     )
     return done
 
@@ -81,14 +83,27 @@ def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
 
     moved = ALL.replace(ALL.spheres[1], centre=(9, 9, 9))
     packing.pack(moved, 24, 16)
-    assert [repr(each) for each in packed] == [repr(moved.spheres[1].pack())]
+    assert packed == [moved.spheres[1]]
     packed.clear()
     packing.pack(moved, 24, 16)
     packing.pack(moved.replace(moved.camera, fov=30), 24, 16)
     packing.pack(moved.replace(moved.lights[0], brightness=0.1), 30, 20)
     assert packed == []
     packing.pack(ALL, 24, 16)
-    assert [repr(each) for each in packed] == [repr(ALL.spheres[1].pack())]
+    assert packed == [ALL.spheres[1]]
+
+
+def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_one() -> None:
+    seed = SystemRandom().randrange(2**32)
+    crowded = [kind for kind in ALL_KINDS if kind.element.columnar]
+    assert crowded
+    for kind in crowded:
+        random = np.random.default_rng(seed)
+        shapes = [example(kind, random, 10.0 ** (i % 9 - 4), i % 2) for i in range(99)]
+        crowd = shape_arrays.primitives_of(shapes)
+        assert np.array_equal(crowd.rows, shape_arrays.packed_rows([shape.pack() for shape in shapes])), seed
+        assert np.array_equal(crowd.boxes, shape_arrays.bounding_boxes(shapes)), seed
+        assert np.array_equal(crowd.balls, shape_arrays.bounding_balls(shapes)), seed
 
 
 @pytest.mark.parametrize(

@@ -73,30 +73,29 @@ def features(scene: Scene) -> frozenset[Hashable]:
     Of these "parallel", "transparent", "fades" and "smooth" are parts: parallel light, glass, fading reflections, and
     smooth meshes.
     """
-    return frozenset().union(*(page.cached(features_of_items) for page in scene.pages))
+    return frozenset().union(*examples(scene), *(page.cached(features_beside_shapes) for page in scene.pages))
 
 
-def primitive_count(scene: Scene) -> int:
-    """Count the primitives of a scene: its shapes, and for each mesh its triangles."""
-    return sum(page.cached(primitive_count_of_items) for page in scene.pages)
+def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
+    """A shape of a scene for each kind, with each set of features, by these."""
+    found: dict[tuple[Any, ...], Shape] = {}
+    for page in scene.pages:
+        found.update(page.cached(examples_among))
+    return found
 
 
-def primitive_count_of_items(items: Iterable[Element | str]) -> int:
-    """Count the primitives of some elements."""
-    return sum(item.parts for item in items if isinstance(item, Shape))
+def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shape]:
+    """Find the `examples` among some elements."""
+    return {(type(item), *shape_features(item)): item for item in items if isinstance(item, Shape)}
 
 
-def features_of_items(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    """The features that some elements use."""
-    return frozenset().union(*map(features_of, items))
+def features_beside_shapes(items: Iterable[Element | str]) -> frozenset[Hashable]:
+    """The features that some elements use, but for shapes."""
+    return frozenset().union(*(features_of(item) for item in items if not isinstance(item, Shape)))
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:
-    """The features that an element uses, with repetitions."""
-    if isinstance(item, Shape):
-        kind: Any = type(item)
-        plain = ATTRIBUTES(item) == PLAIN and not item.smooth
-        return (kind,) if plain else (kind, *shape_features(item))
+    """The features that an element uses, but for a shape."""
     if isinstance(item, Lamp) and item.brightness and any(item.colour):
         return item.features()
     if isinstance(item, Camera) and item.lens:
@@ -108,6 +107,8 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 
 def shape_features(shape: Shape) -> Iterable[str]:
     """The features that a shape needs for itself and for its materials."""
+    if not shape.smooth and ATTRIBUTES(shape) == PLAIN:
+        return ()
     return ("smooth", *material_features(shape)) if shape.smooth else material_features(shape)
 
 

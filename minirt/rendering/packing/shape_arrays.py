@@ -5,12 +5,15 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from copy import copy
+from itertools import chain, repeat
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.element import fields_of
+from minirt.element import fields_of, positional_fields
 from minirt.fields import Point
 from minirt.kernel.projection import MARGIN
 from minirt.kernel.scene_arrays import row_type
@@ -34,7 +37,25 @@ def primitives_of(shapes: list[Shape]) -> Primitives:
     if isinstance(shapes[0], Mesh):
         rows = [shape.rows() for shape in shapes if isinstance(shape, Mesh)]
         return Primitives(*map(np.concatenate, zip(*map(triangle_primitives, rows), strict=True)))
+    if shapes[0].columnar:
+        crowd = in_columns(shapes)
+        boxes, balls = np.array(crowd.bounds()), np.array([(*centre, radius) for centre, radius in crowd.balls()])
+        return Primitives(packed_rows([crowd.pack()]), np.moveaxis(boxes, -1, 0), np.moveaxis(balls, -1, 0))
     return Primitives(packed_rows([shape.pack() for shape in shapes]), bounding_boxes(shapes), bounding_balls(shapes))
+
+
+def in_columns(shapes: list[Shape]) -> Any:
+    """One shape, of a kind that is `columnar`, that stands for n of them: its numbers are arrays (n,)."""
+    kind = type(shapes[0])
+    columns: Any = {field.name: [column(shapes, field.name, field.width).T] for field in positional_fields(kind)}
+    return kind.checked(1, columns)[0]
+
+
+def column(shapes: list[Shape], name: str, width: int) -> np.ndarray:
+    """A field of n shapes, one number or several: (n,) or (n, width)."""
+    values = map(attrgetter(name), shapes)
+    flat: Iterable[Any] = values if width == 1 else chain.from_iterable(values)
+    return np.fromiter(flat, np.float64, width * len(shapes)).reshape((len(shapes), width)[: 1 + (width > 1)])
 
 
 def triangle_primitives(rows: np.ndarray) -> Primitives:
@@ -63,7 +84,7 @@ def packed_rows(packed: list[Any]) -> np.ndarray:
             columns += [[v.x for v in parts], [v.y for v in parts], [v.z for v in parts]]
         else:
             columns.append(parts)
-    return np.array(columns).T
+    return np.array(columns).reshape(len(columns), -1).T
 
 
 def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
@@ -121,7 +142,7 @@ class ShapeArrays:
         old = copy(self)
         self.allocate(shapes)
         places = {id(shape): index for index, shape in enumerate(old.shapes)}
-        found = np.array([places.get(id(shape), -1) for shape in shapes], np.int64)
+        found = np.fromiter(map(places.get, map(id, shapes), repeat(-1)), np.int64, len(shapes))
         kept = np.flatnonzero(found >= 0)
         new, before = (ranges(each.first_primitive, which) for each, which in ((self, kept), (old, found[kept])))
         self.colours_and_extents[new], self.boxes[new] = old.colours_and_extents[before], old.boxes[before]
@@ -138,14 +159,14 @@ class ShapeArrays:
 
     def allocate(self, shapes: tuple[Shape, ...]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
-        kinds = [type(shape) for shape in shapes]
+        kinds = list(map(type, shapes))
         present = set(kinds)
         used = [kind for kind in ALL_KINDS if kind.element in present]
         examples = [shapes[kinds.index(kind.element)].some(FIRST) for kind in used]
         self.shapes, self.group_numbers = shapes, {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.flat() is not None for each in examples], bool)
-        sizes = np.fromiter((shape.parts for shape in shapes), np.int64, len(shapes))
-        groups = np.repeat(np.fromiter((self.group_numbers[kind] for kind in kinds), np.int64, len(kinds)), sizes)
+        sizes = np.fromiter(map(attrgetter("parts"), shapes), np.int64, len(shapes))
+        groups = np.repeat(np.fromiter(map(self.group_numbers.__getitem__, kinds), np.int64, len(kinds)), sizes)
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
         self.first_primitive = np.concatenate([[0], np.cumsum(sizes)])
@@ -174,7 +195,7 @@ class ShapeArrays:
         corners = corners_last(primitives.boxes)
         low, high = corners.min(axis=0), corners.max(axis=0)
         extents = np.maximum(np.abs(low), np.abs(high)).max(axis=0)
-        self.colours_and_extents[indices, :3] = np.repeat([shape.colour for shape in members], sizes, axis=0) / 255
+        self.colours_and_extents[indices, :3] = np.repeat(column(members, "colour", 3), sizes, axis=0) / 255
         self.colours_and_extents[indices, 3] = extents
         self.boxes[indices, 0], self.boxes[indices, 1] = low.T, high.T
         if self.is_plane[group]:
