@@ -66,7 +66,12 @@ def nearest(word: str, known: Iterable[str], cutoff: float = 0.6, count: int = 1
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return `, did you mean 'Tab'?` for a similar known word, or an empty string."""
-    return "".join(f", did you mean '{each}'?" for each in nearest(word, known))
+    return hint("".join(nearest(word, known)))
+
+
+def hint(word: str) -> str:
+    """Return `, did you mean 'Tab'?`, or an empty string without a word."""
+    return f", did you mean '{word}'?" if word else ""
 
 
 def excerpt(text: str, column: int, length: int, width: int = 100) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sized
 from fractions import Fraction
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +20,7 @@ from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, check_quality, encoding, format_of
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, in_notebooks
-
-if TYPE_CHECKING:
-    from PIL.Image import Image as PillowImage
-
-    from minirt.rendering.image import Image
+from minirt.rendering.image import Image
 
 FPS = 25.0  # frames per second
 INLINE = 32 * 2**20  # bytes of the largest film that a notebook shows: it becomes a part of the notebook
@@ -130,7 +126,7 @@ class LoopFilm:
         self.name, self.quality = name, quality
         # GIF counts hundredths of a second, and many programs slow down pictures of fewer than two.
         self.each = 10 * max(2, round(100 / fps)) if name == "GIF" else round(1000 / fps)
-        self.pictures: list[PillowImage] = []
+        self.pictures: list[Any] = []  # of Pillow
         self.durations: list[int] = []  # milliseconds
         self.last: np.ndarray | None = None
 

@@ -9,13 +9,13 @@ import argparse
 import re
 import sys
 from argparse import ArgumentTypeError
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import nan
 from typing import Any, NoReturn
 
 from minirt.cli.output import say, tell
-from minirt.errors import nearest
+from minirt.errors import did_you_mean
 
 OK = 0  # exit statuses
 FAILED = 1  # an error in a scene, in rendering or in writing
@@ -215,15 +215,10 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
     if unknown := UNKNOWN.match(message):
         word = unknown[1].partition("=")[0]
         options = [option for action in parser._actions for option in action.option_strings]
-        return f"unknown option {word}{suggestion(word, options) or '; miniRT --help lists all'}"
+        return f"unknown option {word}{did_you_mean(word, options) or '; miniRT --help lists all'}"
     if choice := CHOICE.fullmatch(message):
         choices = re.sub(r"'", "", choice["choices"])
-        hint = suggestion(choice["value"], choices.split(", "))
+        hint = did_you_mean(choice["value"], choices.split(", "))
         listed = " or ".join(choices.rsplit(", ", 1))
         return f"argument {choice['option']}: must be {listed}, got '{choice['value'][:40]}'{hint}"
     return message.removeprefix("unrecognized arguments: ")
-
-
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """Return `, did you mean --size?`, or '' without a word that is near."""
-    return "".join(f", did you mean {each}?" for each in nearest(word, known))

@@ -8,16 +8,14 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES
 from minirt.cli.output import say
 from minirt.errors import MlxError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
-
-if TYPE_CHECKING:
-    from minirt.scene import Scene
+from minirt.scene import Scene, size_of
 
 MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
 
@@ -58,7 +56,6 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
 def report(scene: Scene, options: argparse.Namespace) -> int:
     """Measure error against run time and write the report into a folder."""
     from minirt.report.measure import report as write_report
-    from minirt.scene import size_of
 
     size = options.size or size_of(scene)
     how = options.threads, options.quick, options.ablation
@@ -106,7 +103,6 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.movie import Film
     from minirt.rendering.image import Image
     from minirt.rendering.renderer import renderer
-    from minirt.scene import size_of
     from minirt.viewer.app.replay import FPS, record
     from minirt.viewer.app.replay import replay as play
 

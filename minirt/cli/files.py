@@ -13,7 +13,7 @@ from minirt.cli.output import say, tell
 from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
-from minirt.helpers.progress import progress
+from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
@@ -25,7 +25,6 @@ PLACE = "{name}"  # in an output, stands for the name of the scene's file withou
 
 def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     """Load the scene; print its notices, one for each tolerated mistake, to `stream`."""
-    from minirt.helpers.progress import State
     from minirt.scene import Reading, load, parse
     from minirt.scene.parser import example
 

@@ -13,8 +13,9 @@ from contextlib import suppress
 from itertools import zip_longest
 from pathlib import Path
 
-from minirt.cli.arguments import MAX_SIDE, suggestion
-from minirt.errors import FileError
+from minirt.cli.arguments import MAX_SIDE
+from minirt.errors import FileError, did_you_mean
+from minirt.helpers import file_io
 
 # Options that the configuration file may set, those that a picture carries, and those of them that windows use, where
 # samples mean something else.
@@ -71,8 +72,6 @@ def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, obje
     """Return the defaults in a file by the names of options; FileError for what no option takes."""
     import tomllib
 
-    from minirt.helpers import file_io
-
     try:
         table = tomllib.loads(file_io.read(path, LARGEST).decode())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -83,7 +82,7 @@ def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, obje
         name = written.replace("-", "_")
         if name not in actions:
             known = [each.replace("_", "-") for each in actions]
-            raise FileError(path, f"no option '{written[:40]}' that has a default{suggestion(written, known)}")
+            raise FileError(path, f"no option '{written[:40]}' that has a default{did_you_mean(written, known)}")
         try:
             defaults[name] = value_of(actions[name], value)
         except ValueError as error:

@@ -8,26 +8,24 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import islice
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.files import check_output, format_name, is_film, needs_light, write
+from minirt.cli.options import settings_text
 from minirt.cli.output import tell
-from minirt.cluster.job import Job
-from minirt.cluster.journal import BANDS, Journal, delete, path_for
+from minirt.cluster.job import Job, Workers
+from minirt.cluster.journal import BANDS, Journal, path_for
 from minirt.cluster.pictures import picture_of, results, stream
 from minirt.errors import RenderError
 from minirt.formats.table import memory_of
-from minirt.helpers import system
+from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, progress
+from minirt.rendering.image import Image
+from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Region, cut_for
 from minirt.rendering.settings import LIGHT, RenderSettings
-from minirt.scene import size_of
-
-if TYPE_CHECKING:
-    from minirt.cluster.executor import Workers
-    from minirt.rendering.outcome import Outcome
-    from minirt.scene import Scene
+from minirt.scene import Scene, dump, files, size_of
 
 LONG = 2**24  # rays: work of about a second of two processors, which an interrupt does not undo
 GIVEN = ("error", "time", "threads", "precision", "depth", "dither", "region")  # options that are settings
@@ -36,7 +34,8 @@ PATIENCE = 10  # seconds for a scheduler to answer
 
 def render_output(scene: Scene, options: argparse.Namespace) -> int:
     """Render a picture, or the pictures of a turntable, and write the output."""
-    size, settings = options.size or size_of(scene), settings_for(options)
+    size, given = options.size or size_of(scene), {name: getattr(options, name) for name in GIVEN}
+    settings = RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
     region = cut_for(settings.region, *size).region
     render = stream_picture if is_streamed(options, region) else render_film if options.turntable else render_picture
     with system.gc_paused(), workers(options) as executor:
@@ -91,7 +90,7 @@ def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bo
     """
     if options.output == "-" or not (options.resume or share.rays >= LONG):
         if options.output != "-":
-            delete(path_for(options.output))
+            file_io.delete(path_for(options.output))
         with progress(share.state):
             yield None
         return
@@ -158,7 +157,6 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
 def render_film(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render the scene from all around it and write the film, or numbered pictures; return the worst outcome."""
     from minirt.movie import Film, numbered
-    from minirt.rendering.image import Image
     from minirt.viewer.app.replay import turntable
 
     wanted = options.frames or range(1, options.turntable + 1)
@@ -192,18 +190,9 @@ def encoding(scene: Scene, output: str, options: argparse.Namespace) -> dict[str
     """Return how the picture of a scene is encoded: the arguments of `Image.encode`. PNG carries scene and settings."""
     name, texts = format_name(output), {}
     if options.metadata and name == "PNG":
-        from minirt.cli.options import settings_text
-        from minirt.scene import dump, files
-
         way = files.way_to_scene("" if output == "-" else output, scene.file)
         texts = files.picture_texts(dump(scene), settings_text(options, *(options.size or size_of(scene))), way)
     return {"name": name, "bits": options.bits, "quality": options.quality, "texts": texts}
-
-
-def settings_for(options: argparse.Namespace) -> RenderSettings:
-    """Return the settings of a picture that goes to the output."""
-    given = {name: getattr(options, name) for name in GIVEN}
-    return RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
 
 
 def is_streamed(options: argparse.Namespace, region: Region) -> bool:

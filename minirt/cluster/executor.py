@@ -13,9 +13,9 @@ from itertools import islice
 from multiprocessing import get_context, parent_process
 from threading import Thread
 from time import perf_counter
-from typing import Any, TypeAlias
+from typing import Any
 
-from minirt.cluster.job import Job, Made
+from minirt.cluster.job import Job, Made, Workers
 from minirt.cluster.worker import packed, version, work
 from minirt.errors import MiniRTError, RenderError
 from minirt.rendering.threads import usable_cores
@@ -28,13 +28,11 @@ LATE, LONGER = 60.0, 10  # seconds, and times the longest band so far, after whi
 SILENT, DESERTED = 60.0, 300.0  # seconds without an answer of the scheduler, and without workers, that end the work
 WATCH = 1.0  # seconds between two looks at what is late
 
-Workers: TypeAlias = Executor | Callable[[], Executor] | Any  # the last is a client of dask.distributed
-
 
 class Dispatcher:
     """Bands in flight to an executor. One that is late is sent to another worker, too, since the first may hang."""
 
-    def __init__(self, workers: Any) -> None:
+    def __init__(self, workers: Workers) -> None:
         self.is_own = callable(workers) and not hasattr(workers, "submit")
         made = workers() if self.is_own else workers
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)

@@ -71,6 +71,7 @@ class Strips(NamedTuple):
     reached: Outcome | None
 
 
+Workers: TypeAlias = Any  # an executor of concurrent.futures, a function that makes one, or a dask client
 Made: TypeAlias = Any  # what is made of a band: an `Image`, or `Strips` where the band has bits
 
 

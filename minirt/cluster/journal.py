@@ -63,7 +63,7 @@ class Journal:
         if resume:
             self.open_existing()
         else:
-            delete(self.path)
+            file_io.delete(self.path)
 
     def open_existing(self) -> None:
         """Open the file of an interrupted program, if there is one, and find its whole records."""
@@ -145,7 +145,7 @@ class Journal:
         with suppress(OSError):
             self.file.close()
         if error is None or not self.places:
-            delete(self.path)
+            file_io.delete(self.path)
         else:
             kept = f"{len(self.places)} of {self.total} {self.what} are kept in {self.path}"
             error.add_note(f"{kept}; {self.again} goes on")
@@ -180,9 +180,3 @@ def path_for(output: str | os.PathLike[str]) -> Path:
     """Return the path of the journal of an output: `.spin.gif.journal` beside `spin.gif`."""
     path = Path(output)
     return path.with_name(f".{path.name}.journal")
-
-
-def delete(path: Path) -> None:
-    """Delete a file, if there is one that can be deleted."""
-    with suppress(OSError):
-        path.unlink()

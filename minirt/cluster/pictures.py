@@ -8,11 +8,11 @@ from itertools import chain
 from operator import length_hint
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Literal, Unpack
+from typing import Literal, Unpack
 
 import numpy as np
 
-from minirt.cluster.job import Job, Made, render_band, rows_of, whole
+from minirt.cluster.job import Job, Made, Workers, render_band, rows_of, whole
 from minirt.cluster.journal import Journal
 from minirt.errors import RenderError
 from minirt.formats import tiff
@@ -21,11 +21,7 @@ from minirt.helpers import file_io
 from minirt.rendering.image import Image
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.settings import Keywords, RenderSettings, takes_settings
-from minirt.scene import Scene
-from minirt.scene.scene import check_scene, size_for
-
-if TYPE_CHECKING:
-    from minirt.cluster.executor import Workers
+from minirt.scene.scene import Scene, check_scene, size_for
 
 Progress = Callable[[int, int], object]  # gets the number of bands that are done, and of all
 

@@ -17,6 +17,7 @@ from minirt.fields.scalars import (
     Real,
     Whole,
     clamp,
+    clamp_length,
     number,
     spelled,
     whole,

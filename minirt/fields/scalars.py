@@ -62,6 +62,11 @@ def clamp(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
 
 
+def clamp_length(length: float) -> float:
+    """Clamp a length to what editing makes, from `LEAST_LENGTH` to `FARTHEST`."""
+    return clamp(length, LEAST_LENGTH, FARTHEST)
+
+
 def scaled(sizes: Sequence[float], factor: float) -> list[float]:
     """Multiply sizes by a factor, but no farther than one of them becomes `LEAST_LENGTH` or `FARTHEST`."""
     factor = clamp(factor, min(1.0, LEAST_LENGTH / min(sizes)), max(1.0, FARTHEST / max(sizes)))

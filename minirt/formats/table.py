@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -78,8 +79,6 @@ def is_installed(name: str) -> bool:
     if name in OWN:  # without Pillow, which loads the plug-ins of all formats to answer
         return True
     if name in FILMS_BY_PYAV:
-        from importlib.util import find_spec
-
         return find_spec("av") is not None
     from PIL import Image as pillow  # noqa: N813
 

@@ -110,9 +110,15 @@ def temporary_file(
             os.fsync(descriptor)
         yield path
     except BaseException:
-        with suppress(OSError):
-            path.unlink()
+        delete(path)
         raise
+
+
+def delete(*paths: Path) -> None:
+    """Delete files, as far as they are there and can be deleted."""
+    for each in paths:
+        with suppress(OSError):
+            each.unlink()
 
 
 def status_of_existing(target: Path) -> os.stat_result | None:

@@ -76,17 +76,12 @@ def resident() -> int:
     return 0
 
 
-def is_small_need(needed: int) -> bool:
-    """Whether nobody need count so few bytes."""
-    return needed <= min(SMALL, total() // SMALL_SHARE)
-
-
 def check_memory(needed: int, what: str, advice: str, largest: int = UNLIMITED) -> None:
     """Check that there is room for something that may have at most `largest` bytes; `TooLargeError` otherwise.
 
     The sentence of the error begins with `what`, including a verb, and ends with the `advice`.
     """
-    if not is_small_need(needed) and needed > (allowed := min(room(), largest)):
+    if needed > min(SMALL, total() // SMALL_SHARE) and needed > (allowed := min(room(), largest)):
         rest = "" if allowed >= largest else f" (what is left of {size_in_words(total())})"
         raise TooLargeError(
             f"{what} about {size_in_words(needed)} of memory, allowed {size_in_words(allowed)}{rest}; {advice}"

@@ -11,25 +11,19 @@ import runpy
 import sys
 import threading
 import time
+from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from minirt.errors import MlxError, ReplayError
 from minirt.mlx import recording
 from minirt.mlx.api import Mlx
-from minirt.mlx.arguments import MaybeNone, integer
-from minirt.mlx.display import ADVICE
+from minirt.mlx.arguments import Host, Integer, MaybeNone, integer
+from minirt.mlx.display import ADVICE, Display
 from minirt.mlx.memory import Headless
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from minirt.mlx.arguments import Host, Integer
-    from minirt.mlx.display import Display
-    from minirt.mlx.window import Window
-
+from minirt.mlx.window import Window
 
 FAILED = 1  # exit status
 READING = 1e-6  # seconds that pass with each reading of a clock, so that a loop that waits for a time ends

@@ -13,24 +13,17 @@ Handles, which are numbers in the wrapper, are objects here, and numbers, too: `
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from signal import SIGINT, SIGTERM
-from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
 from minirt.helpers.signals import signal_handlers
-from minirt.mlx.arguments import MaybeNone, integer, set_hook
+from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, integer, set_hook
 from minirt.mlx.calls import Calls
-from minirt.mlx.display import ADVICE
-from minirt.mlx.events import Event
+from minirt.mlx.display import ADVICE, Display
+from minirt.mlx.events import Cursor, Event, Modifier
 from minirt.mlx.text import draw_text
 from minirt.mlx.window import Window
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from minirt.mlx.arguments import Hook, Host, Image, Integer
-    from minirt.mlx.display import Display
-    from minirt.mlx.events import Cursor, Modifier
 
 PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre and align text by it
 

@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from minirt.errors import MlxError
-from minirt.mlx.arguments import Image, MaybeNone, Options, integer, set_hook
+from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, Options, integer, set_hook
+from minirt.mlx.display import Display
 from minirt.mlx.events import Event
 from minirt.mlx.window import Window
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-    from os import PathLike
-
-    from numpy.typing import NDArray
-
-    from minirt.mlx.arguments import Hook, Host, Integer
-    from minirt.mlx.display import Display
-
-    FileName = str | PathLike[str]
-    ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure
+FileName = str | PathLike[str]
+ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure
 
 GREATEST = 32767  # pixels of an image's side
 

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import threading
 from abc import abstractmethod
-from typing import TYPE_CHECKING
 
-from minirt.mlx.arguments import Host
+from minirt.mlx.arguments import Host, Options
 from minirt.mlx.events import Event
-
-if TYPE_CHECKING:
-    from minirt.mlx.arguments import Options
-    from minirt.mlx.window import Window
-
+from minirt.mlx.window import Window
 
 TICK = 1 / 60  # seconds between two turns of a busy loop
 ADVICE = "-o FILE renders without one"  # the end of an error where no window can be opened

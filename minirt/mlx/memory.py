@@ -18,21 +18,18 @@ from __future__ import annotations
 import math
 import sys
 import time
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from minirt.errors import MlxError
 from minirt.mlx.canvas import stretch
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.events import Button, Event
 from minirt.mlx.window import Window
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 class MemoryWindow(Window):

@@ -13,13 +13,11 @@ import re
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from minirt.errors import Problem, ReplayError, did_you_mean, quoted
 from minirt.mlx.events import KEYS, Button, Key
-
-if TYPE_CHECKING:
-    from minirt.mlx.memory import Memory
+from minirt.mlx.memory import Memory
 
 WORD = re.compile(r"\S+")
 NUMBER = "([0-9]{1,5})"

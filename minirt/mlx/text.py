@@ -8,15 +8,12 @@ Rendered lines are cached, independent of position and colour.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from minirt.mlx.canvas import OPAQUE, blend
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from PIL.ImageFont import FreeTypeFont
 
 SIZE = 16  # pixels
 
@@ -93,11 +90,11 @@ def _width(line: str, size: int, pitch: int) -> int:
 
 def _line_height(size: int) -> int:
     """Height of a line in pixels."""
-    return sum(_font(size).getmetrics())
+    return int(sum(_font(size).getmetrics()))
 
 
 @lru_cache(maxsize=64)
-def _font(size: int) -> FreeTypeFont:
+def _font(size: int) -> Any:
     from PIL import ImageFont
 
     font = ImageFont.load_default(size)

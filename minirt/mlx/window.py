@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-from minirt.mlx.arguments import Handle
+from minirt.mlx.arguments import Handle, Hooks, Host, Image, Options
 from minirt.mlx.canvas import Canvas
 from minirt.mlx.events import MODIFIER_KEYS, Button, Cursor, Event, Modifier
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from minirt.mlx.arguments import Hooks, Host, Image, Options
-
 
 REPEAT_DELAY = 0.5  # seconds until a held key repeats
 REPEAT_INTERVAL = 0.04  # seconds

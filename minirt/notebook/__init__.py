@@ -11,13 +11,12 @@ from minirt.errors import MlxError
 from minirt.helpers.progress import in_notebook
 from minirt.mlx import Mlx
 from minirt.rendering.settings import takes_settings
-from minirt.scene.scene import check_scene
+from minirt.scene import Scene, check_scene
 from minirt.viewer.app import desktop
+from minirt.viewer.app.desktop import ViewSettings
 
 if TYPE_CHECKING:
     from minirt.notebook.widget import Viewer
-    from minirt.scene import Scene
-    from minirt.viewer.app.desktop import ViewSettings
 
 INSTALL = "a viewer in a notebook needs anywidget: pip install 'minirt[notebook]'"
 Size = tuple[int, int] | None

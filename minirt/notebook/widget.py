@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 import anywidget
 import traitlets
@@ -13,14 +13,9 @@ from minirt.errors import MiniRTError
 from minirt.mlx import Mlx
 from minirt.notebook.page_back_end import PageDisplay, deliver
 from minirt.rendering.image import Image
-from minirt.scene import size_of
-from minirt.scene.scene import check_scene
-from minirt.viewer.app.desktop import STOP_TIMEOUT, open_view
+from minirt.scene import Scene, check_scene, size_of
+from minirt.viewer.app.desktop import STOP_TIMEOUT, ViewSettings, open_view
 from minirt.viewer.editing.state import state_after_reading
-
-if TYPE_CHECKING:
-    from minirt.scene import Scene
-    from minirt.viewer.app.desktop import ViewSettings
 
 DEFAULT_SIZE = 960, 540  # pixels, of a scene that does not name a size
 

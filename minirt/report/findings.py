@@ -175,9 +175,5 @@ def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed
     digest = hashlib.sha256(dump(scene).encode()).hexdigest()
     versions = {"minirt": minirt.__version__, "python": platform.python_version()}
     versions |= {package: version(package) for package in PACKAGES}  # that compute or draw
-    return Subject(name, digest, width, height, threads, seed, processor(), versions)
-
-
-def processor() -> str:
-    """Return the name of the processor: from /proc/cpuinfo on Linux, from `platform` elsewhere."""
-    return cpu_information("model name") or platform.processor()
+    processor = cpu_information("model name") or platform.processor()  # the former on Linux
+    return Subject(name, digest, width, height, threads, seed, processor, versions)

@@ -157,8 +157,7 @@ def flip(a: Picture, b: Picture) -> Picture:
     # Small differences of colours, which are in [0, MOST], take most of the range of errors.
     colour = np.interp(far, (0.0, KNEE * MOST, MOST), (0.0, KNEE_ERROR, 1.0))
     feature = np.abs(a - b)[..., 3:].max(axis=-1) / sqrt(2)
-    error: Picture = colour ** (1 - feature**FEATURE_POWER)
-    return error
+    return colour ** (1 - feature**FEATURE_POWER)
 
 
 def perceived(picture: Picture) -> Picture:
@@ -208,8 +207,7 @@ def gradient_strength(channel: Picture, bell: Picture, slope: Picture) -> Pictur
 def balanced(weights: Picture) -> Picture:
     """Scale filter weights so that the positive ones sum to 1 and the negative ones to -1."""
     positive, negative = np.maximum(weights, 0.0), np.minimum(weights, 0.0)
-    scaled: Picture = positive / positive.sum() - negative / negative.sum()
-    return scaled
+    return positive / positive.sum() - negative / negative.sum()
 
 
 def filtered(channel: Picture, across: Picture, down: Picture) -> Picture:
@@ -224,8 +222,7 @@ def filtered(channel: Picture, across: Picture, down: Picture) -> Picture:
 
 def difference(a: Picture, b: Picture) -> Picture:
     """HyAB colour distance, for large differences (Abasi et al. 2020)."""
-    far: Picture = np.abs(a[..., 0] - b[..., 0]) + np.hypot(a[..., 1] - b[..., 1], a[..., 2] - b[..., 2])
-    return far
+    return np.abs(a[..., 0] - b[..., 0]) + np.hypot(a[..., 1] - b[..., 1], a[..., 2] - b[..., 2])
 
 
 GREEN, BLUE = (lab(np.array([[colour]]) @ TO_XYZ.T) for colour in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))

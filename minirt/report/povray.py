@@ -24,13 +24,7 @@ from minirt.report.bench import Run
 from minirt.report.metrics import Picture, rmse
 from minirt.report.pictures import FEW, TOO_SLOW, Budget, Reference, Row, Step, measure_times
 from minirt.scene import Ambient, Lamp, Light, Scene
-from minirt.shapes import Shape
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.disc import Disc
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.triangle import Triangle
+from minirt.shapes import Cone, Cylinder, Disc, Plane, Shape, Sphere, Triangle
 
 TRANSLATED = {"specular", "mirror"}  # materials
 LEAST_SHARE = 2.0**-10  # rays that would add less to a pixel are not traced, as in `minirt.kernel.shading.whitted`

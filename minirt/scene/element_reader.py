@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, pattern, positional_fields
-from minirt.errors import FieldError, FileError, quoted
+from minirt.errors import FieldError, FileError, hint, quoted
 from minirt.fields import Colour, Field, MeshFile, PictureFile
 from minirt.fields.scalars import code_point_name
+from minirt.materials import pictures
+from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
-from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, SPELLINGS, hint, nearest_element, nearest_key
+from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, SPELLINGS, nearest_element, nearest_key
 
 SLASHES = re.compile(r"(?<![^ \t])//")
 COMMA_AND_BLANK = re.compile(r"[ \t],|,[ \t]")
@@ -194,12 +196,8 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
 def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
     """Load the mesh that a value names, and try its pictures; an error for each file that cannot be used."""
     if isinstance(value, MeshFile):
-        from minirt.meshes import load_mesh  # imports numpy, which few scenes need this early
-
         return MeshFile(value.name, load_file(load_mesh, PictureFile(value.name), "mesh", slot, line, log))
     for file in slot.field.pictures(value):
-        from minirt.materials import pictures
-
         load_file(pictures.reader(file), file, "picture", slot, line, log)
     return value
 

@@ -52,8 +52,3 @@ def nearest_key(word: str, known: list[str]) -> str:
     """Return the key of `known` that `word` may mean, or ''."""
     key = next((key for key, beginnings in FOREIGN_KEYS.items() if word.lower().startswith(beginnings)), "")
     return key if key in known else nearest_word(word, known)
-
-
-def hint(word: str) -> str:
-    """Return `, did you mean 'sp'?`, or '' without a suggestion."""
-    return f", did you mean '{word}'?" if word else ""

@@ -10,18 +10,15 @@ from operator import indexOf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from minirt import shapes as kinds
 from minirt.element import Element
 from minirt.errors import check_whole
 from minirt.records import Immutable
 from minirt.scene import writer
-from minirt.scene.elements import Ambient, Background, Camera, Lamp, Resolution
+from minirt.scene.elements import Ambient, Background, Camera, FurtherLight, Lamp, ParallelLight, Resolution, SpotLight
 from minirt.scene.pages import Item, Page, replace_item, split_into_pages
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
-
-if TYPE_CHECKING:
-    from minirt import shapes as kinds
-    from minirt.scene.elements import FurtherLight, ParallelLight, SpotLight
 
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 Answer = TypeVar("Answer")

@@ -18,8 +18,7 @@ from functools import partial
 from itertools import groupby
 from typing import Any, Final, NamedTuple
 
-from minirt.mlx import Button, Key, Modifier
-from minirt.mlx.events import KEYS
+from minirt.mlx.events import KEYS, Button, Key, Modifier
 
 PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
 MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}

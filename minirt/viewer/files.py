@@ -14,6 +14,7 @@ from minirt.fields import MeshFile
 from minirt.fields.triples import file_name
 from minirt.helpers import file_io
 from minirt.helpers.file_io import reason
+from minirt.materials.pictures import picture
 from minirt.meshes import load_mesh
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX
@@ -141,8 +142,6 @@ def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.
     In reverse order if `steps` is negative. Names that a scene line cannot spell, and files of wrong content, are left
     out.
     """
-    from minirt.materials.pictures import picture  # loads numpy and Pillow, which no other key needs
-
     names = asset_names(scene, MESH_SUFFIXES if is_mesh else PICTURE_SUFFIXES)
     if steps < 0:
         names.reverse()

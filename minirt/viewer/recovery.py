@@ -110,7 +110,7 @@ class Recovery:
         """Delete the file, if there is one."""
         if self.path:
             os.close(self._lock)
-            delete(self.path)
+            file_io.delete(self.path, self.path.with_suffix(".lock"))
         self.path = None
 
 
@@ -172,11 +172,4 @@ def abandoned(file: Path, saved: float) -> Iterator[Path]:
                 if not path.exists() or path.stat().st_mtime >= min(saved, time.time() - KEPT):
                     yield path
                 else:
-                    delete(path)
-
-
-def delete(path: Path) -> None:
-    """Delete unsaved changes, and their lock."""
-    for each in (path, path.with_suffix(".lock")):
-        with suppress(OSError):
-            each.unlink()
+                    file_io.delete(path, lock)

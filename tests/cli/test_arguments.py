@@ -40,7 +40,7 @@ VALUES = (  # an option, what is said of a wrong value, and such values
         "must be an amount of memory from 1M to 1024T, like 512M or 4G, got '%s'",
         "1.5k G 1,5G 1K \u0663G 99999999999999999G 4X nan 1e9 B",
     ),
-    ("--tone", "must be plain, srgb or filmic, got '%s', did you mean srgb?", "sgrb"),
+    ("--tone", "must be plain, srgb or filmic, got '%s', did you mean 'srgb'?", "sgrb"),
     ("--tone", "must be plain, srgb or filmic, got '%s'", "gamma"),
     ("--keys", "must be auto, qwerty, azerty or qwertz, got '%s'", "dvorak"),
     ("--precision", "must be double or single, got '%s'", "half"),
@@ -49,8 +49,8 @@ VALUES = (  # an option, what is said of a wrong value, and such values
 RESUME = "--resume needs the name of a file: -o spin.gif, and no --replay or --samples auto"
 ONE_PICTURE = "--samples auto makes one picture: it needs -o, and no --replay or --turntable"
 TOGETHER = {  # arguments that do not go together, behind the name of a scene
-    "--sampels 4": "unknown option --sampels, did you mean --samples?",
-    "--wdth=4": "unknown option --wdth, did you mean --watch?",
+    "--sampels 4": "unknown option --sampels, did you mean '--samples'?",
+    "--wdth=4": "unknown option --wdth, did you mean '--watch'?",
     "--zzz": "unknown option --zzz; miniRT --help lists all",
     "-o": "argument -o/--output: expected one argument",
     **{f"{each} ": f"argument {each}: must be the name of a file, got ''" for each in ("--fallback", "--replay")},

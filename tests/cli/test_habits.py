@@ -44,7 +44,7 @@ def test_the_configuration_file_has_defaults(run: Run, configure: Callable[[str]
     ("text", "message"),
     [
         ("size = 640", "size must be WIDTHxHEIGHT, like 640x480, got '640'"),
-        ("sampels = 4", "no option 'sampels' that has a default, did you mean samples?"),
+        ("sampels = 4", "no option 'sampels' that has a default, did you mean 'samples'?"),
         ('output = "x.png"', "no option 'output' that has a default"),
         ("dither = 1", "dither must be true or false, got 1"),
         ('keys = "dvorak"', "keys must be one of auto, qwerty, azerty, qwertz, got 'dvorak'"),

@@ -20,8 +20,8 @@ SIZE = (64, 48)
 class ManualPainter(Painter):
     """A painter whose pictures are finished by the test, after as many seconds as it says."""
 
-    def __init__(self, notify) -> None:
-        super().__init__(FakeRenderer(), notify)
+    def __init__(self, renderer, notify) -> None:
+        super().__init__(renderer, notify)
         self.requests: list[Job] = []
         self.open: list[Job] = []  # the last request, until it is finished
 
@@ -52,9 +52,9 @@ class ManualPainter(Painter):
 
 
 class SessionHarness:
-    """A session that has processed its first events; by default it has a manual painter."""
+    """A session with a manual painter, which has processed its first events."""
 
-    def __init__(self, painter=ManualPainter, samples: int = 1, memory: Memory | None = None) -> None:
+    def __init__(self, samples: int = 1, memory: Memory | None = None) -> None:
         self.memory = memory or Memory()
         mlx = Mlx(self.memory)
         self.display = mlx.mlx_init()
@@ -64,8 +64,8 @@ class SessionHarness:
             scene(),
             path=Path("scene.rt"),
             size=SIZE,
-            painter=painter,
-            pick=FakeRenderer.pick,
+            renderer=FakeRenderer(),
+            painter=ManualPainter,
             samples=samples,
         )
         EventDispatcher(self.session).connect()

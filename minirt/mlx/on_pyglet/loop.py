@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import pyglet.app
 import pyglet.clock
 import pyglet.display
 from pyglet.app.base import EventLoop
 
 from minirt.helpers.signals import interruptible
+from minirt.mlx.arguments import Options
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.on_pyglet.native import NativeWindow
 from minirt.mlx.on_pyglet.x11 import end_program_when_connection_is_lost
-
-if TYPE_CHECKING:
-    from minirt.mlx.arguments import Options
 
 
 class PygletDisplay(Display):

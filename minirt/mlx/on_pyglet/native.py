@@ -12,13 +12,7 @@ from minirt.errors import MlxError
 from minirt.mlx.display import ADVICE
 from minirt.mlx.events import Button, Event, Key, Modifier
 from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow
-from minirt.mlx.on_pyglet.x11 import (
-    KeyEvent,
-    fix_drag_enter,
-    manager_has_full_screen,
-    report_key_events,
-    request_full_screen,
-)
+from minirt.mlx.on_pyglet.x11 import KeyEvent, fix_drag_enter, report_key_events, request_full_screen
 from minirt.mlx.window import Window
 
 BUTTONS = {
@@ -189,8 +183,7 @@ class NativeWindow(Window):
         """
         if not self.is_open:
             return
-        if self.resizable and not self.pyglet.fullscreen and manager_has_full_screen(self.pyglet):
-            request_full_screen(self.pyglet, on)
+        if self.resizable and not self.pyglet.fullscreen and request_full_screen(self.pyglet, on):
             return
         self.pyglet.set_fullscreen(on)
         self.pyglet.set_icons(self.icons)

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import pyglet.window
 from pyglet import gl
 
+from minirt.mlx.arguments import Image
+from minirt.mlx.canvas import Box, Canvas
 from minirt.mlx.events import Cursor
 from minirt.mlx.on_pyglet.x11 import is_x11, set_icon
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from minirt.mlx.arguments import Image
-    from minirt.mlx.canvas import Box, Canvas
-
 
 CURSORS = {
     Cursor.ARROW: pyglet.window.Window.CURSOR_DEFAULT,

@@ -10,18 +10,15 @@ import os
 import sys
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 with suppress(ImportError):  # other systems have no X11, and no windows for the functions here
     from pyglet.libs.x11 import xlib
+from collections.abc import Callable, Sequence
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
+from numpy.typing import NDArray
 
 CARDINAL, WINDOW, ATOM = 6, 33, 4  # X11's types of properties
 REMOVE, ADD = 0, 1  # requests to change a state
@@ -57,8 +54,11 @@ def manager_has_full_screen(window: Any) -> bool:
     return _atom(window, "_NET_WM_STATE_FULLSCREEN") in supported
 
 
-def request_full_screen(window: Any, on: bool) -> None:
-    """Ask the window manager to let the window fill the screen, or to give it its former size and place."""
+def request_full_screen(window: Any, on: bool) -> bool:
+    """Ask the window manager to let the window fill the screen, or to give it its former size and place; return whether
+    one is running that can."""
+    if not manager_has_full_screen(window):
+        return False
     event = xlib.XEvent()
     message = event.xclient
     message.type, message.format, message.window = CLIENT_MESSAGE, 32, window._window
@@ -68,6 +68,7 @@ def request_full_screen(window: Any, on: bool) -> None:
     message.data.l[3] = FROM_APPLICATION
     xlib.XSendEvent(window._x_display, window._get_root(), False, TO_WINDOW_MANAGER, ctypes.byref(event))
     xlib.XFlush(window._x_display)
+    return True
 
 
 def _atom(window: Any, name: str) -> int:

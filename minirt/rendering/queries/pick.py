@@ -18,8 +18,7 @@ from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera, Scene
-from minirt.shapes import Shape
-from minirt.shapes.mesh import Mesh
+from minirt.shapes import Mesh, Shape
 from minirt.shapes.shape import Bounds
 
 Picked = tuple[Shape | None, Triple | None]  # a shape and a point on it; None for both where the background is
@@ -166,5 +165,4 @@ def winding_numbers(
     crossing = ax[edge] + (row + 0.5 - ay[edge]) * (bx - ax)[edge] / (by - ay)[edge]
     column = np.clip(np.ceil(crossing - 0.5), 0, width).astype(np.int64)
     turns = np.bincount(row * (width + 1) + column, np.sign(last - first)[edge], height * (width + 1))
-    winding: np.ndarray = np.cumsum(np.rint(turns).reshape(height, width + 1)[:, :width], axis=1)
-    return winding
+    return np.cumsum(np.rint(turns).reshape(height, width + 1)[:, :width], axis=1)

@@ -17,8 +17,7 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.generic_kernels import generalised_tree
 from minirt.rendering.packing.ray_casting import camera_ray
 from minirt.rendering.renderer import renderer
-from minirt.scene import Camera, Scene
-from minirt.scene.scene import check_scene
+from minirt.scene import Camera, Scene, check_scene
 from minirt.shapes import Shape
 
 if TYPE_CHECKING:

@@ -20,8 +20,7 @@ from minirt.rendering.packing.ray_casting import camera_ray, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes, extents_from
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
-from minirt.shapes import Shape
-from minirt.shapes.mesh import Mesh
+from minirt.shapes import Mesh, Shape
 
 
 def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:

@@ -147,15 +147,13 @@ def allocate(
 def at_price(price: np.ndarray, value: np.ndarray, least: float) -> np.ndarray:
     """The numbers of samples for classes at the logarithm of the price of error; `value` is c by a sample's time."""
     ideal = 2.0 ** ((price + np.log2(np.maximum(value, LEAST * value.max()))) / (ERROR_EXPONENT + 1))
-    samples: np.ndarray = np.clip(ideal, least, COUNTS[-1])
-    return samples
+    return np.clip(ideal, least, COUNTS[-1])
 
 
 def cost(samples: np.ndarray, work: np.ndarray) -> np.ndarray:
     """The time of the samples of classes beyond the first sweep, in that of a sample of a packet on average. Of 1 to 2
     samples some packets get 2, others none."""
-    taken: np.ndarray = np.where(samples < 2, 2 * np.log2(samples), samples) @ work
-    return taken
+    return np.where(samples < 2, 2 * np.log2(samples), samples) @ work
 
 
 def with_neighbours(classes: np.ndarray) -> np.ndarray:
@@ -166,14 +164,12 @@ def with_neighbours(classes: np.ndarray) -> np.ndarray:
     beside[:, :-1] = np.maximum(beside[:, :-1], classes[:, 1:])
     around[1:] = np.maximum(around[1:], beside[:-1])
     around[:-1] = np.maximum(around[:-1], beside[1:])
-    raised: np.ndarray = np.maximum(classes, np.maximum(around, beside) - NEAR)
-    return raised
+    return np.maximum(classes, np.maximum(around, beside) - NEAR)
 
 
 def places_of(samples: np.ndarray) -> np.ndarray:
     """Numbers of samples as fractional levels: a random number in [0, 1) is to be added before the fraction is cut."""
-    places: np.ndarray = np.interp(np.log2(samples), np.log2(COUNTS), np.arange(len(COUNTS)))
-    return places
+    return np.interp(np.log2(samples), np.log2(COUNTS), np.arange(len(COUNTS)))
 
 
 class Packets:
@@ -195,8 +191,7 @@ class Packets:
         number = max(1, min(round(number), self.count))
         places = (np.arange(number) + self.random[:number]) / number
         ends = np.arange(1.0, self.count + 1) if chances is None else np.cumsum(chances[self.classes])
-        chosen: np.ndarray = np.unique(np.searchsorted(ends, places * ends[-1], "right"))
-        return chosen
+        return np.unique(np.searchsorted(ends, places * ends[-1], "right"))
 
     def learn_evenly(self, errors: np.ndarray, goal: float) -> bool:
         """Whether as many samples for all packets are likely to cost less than one for all and more by contrast: by
@@ -245,8 +240,7 @@ class Packets:
     def chances(self, samples: np.ndarray) -> np.ndarray:
         """The chance of a packet of each class to be the next in a pilot, with so many samples for each class."""
         expected = self.c * samples**-ERROR_EXPONENT
-        chances: np.ndarray = (1 - EVENLY) * expected / (self.sizes @ expected) + EVENLY / self.count
-        return chances
+        return (1 - EVENLY) * expected / (self.sizes @ expected) + EVENLY / self.count
 
     def correct(self, samples: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
         """Multiply c by what a pilot with so many samples for each class found, as a multiple of what was expected:
@@ -267,8 +261,7 @@ class Packets:
 
     def wanted(self, samples: np.ndarray) -> np.ndarray:
         """The levels of all packets that have so many samples for each class on average."""
-        levels: np.ndarray = (places_of(samples)[self.classes] + self.random).astype(np.uint8)
-        return levels
+        return (places_of(samples)[self.classes] + self.random).astype(np.uint8)
 
     def total(self) -> float:
         """Estimate the sum of the squared errors of all packets."""

@@ -6,15 +6,15 @@ import os
 import sys
 import zlib
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypedDict
+from typing import Any, Literal, NoReturn, TypedDict
 
 import numpy as np
 
 from minirt.helpers.signals import ended_by_signals
 from minirt.helpers.system import gc_paused
 from minirt.mlx import Image, Mlx
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Scene, size_of
 from minirt.viewer.app.commands import offer_found
@@ -24,17 +24,15 @@ from minirt.viewer.display.painter import BackgroundPainter
 from minirt.viewer.files import contents_differ, save_recovery
 from minirt.viewer.recovery import Recovery
 
-if TYPE_CHECKING:
-    from minirt.rendering.renderer import Renderer
 
-    class ViewSettings(TypedDict, total=False):
-        """Settings of `open_view` and `minirt.view`."""
+class ViewSettings(TypedDict, total=False):
+    """Settings of `open_view` and `minirt.view`."""
 
-        samples: int
-        threads: int | None
-        precision: Literal["double", "single"]
-        keys: str
-        dither: bool
+    samples: int
+    threads: int | None
+    precision: Literal["double", "single"]
+    keys: str
+    dither: bool
 
 
 OK, INTERRUPTED = 0, 130
@@ -103,8 +101,7 @@ def open_session(
             _, *screen = mlx.mlx_get_screen_size(display)
             wanted = size or size_of(scene)
             fitting = min(wanted[0], screen[0]), min(wanted[1], screen[1])
-            painter = partial(BackgroundPainter, renderer)
-            session = Session(mlx, display, scene, path, fitting, painter, renderer.pick, **options)
+            session = Session(mlx, display, scene, path, fitting, renderer, BackgroundPainter, **options)
             EventDispatcher(session).connect()
             mlx.mlx_set_window_icon(session.window, application_icons())
             return session

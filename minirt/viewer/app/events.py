@@ -7,8 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from minirt.mlx import Event
-from minirt.mlx.events import MODIFIER_KEYS
+from minirt.mlx.events import MODIFIER_KEYS, Event
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.panels import ADDING, LISTS, TYPE, Choosing, Typing

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError
+from minirt.fields import Triple
 from minirt.mlx import Button, Cursor
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
@@ -14,9 +14,6 @@ from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart
 from minirt.viewer.editing.projection import Aim, aim, extent
 from minirt.viewer.editing.state import index_of
-
-if TYPE_CHECKING:
-    from minirt.fields import Triple
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
 CURSORS = {"move by hand": Cursor.MOVE, "pan": Cursor.GRAB}  # while a drag goes on; other drags turn something

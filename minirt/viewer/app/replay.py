@@ -5,9 +5,8 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +14,13 @@ from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.mlx.recording import add_recording
 from minirt.rendering.image import Image
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Painter, Pixels
+from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.motion import orbit_camera
 from minirt.viewer.editing.projection import scene_centre
-
-if TYPE_CHECKING:
-    from minirt.rendering.renderer import Renderer
 
 FPS = 12  # frames per second of an animation
 TICKS = 60  # per second of simulated time
@@ -66,10 +63,7 @@ def play(
     add_recording(lines, file, memory)
     mlx = Mlx(memory)
     display = mlx.mlx_init()
-    painter = partial(Painter, renderer)
-    session = Session(
-        mlx, display, scene, Path(path), size, painter, renderer.pick, keys=keys, lenient=lenient, samples=samples
-    )
+    session = Session(mlx, display, scene, Path(path), size, renderer, keys=keys, lenient=lenient, samples=samples)
     EventDispatcher(session).connect()
     memory.after_tick = lambda: watch(session)
     try:

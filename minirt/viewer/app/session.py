@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError, RenderError
 from minirt.mlx import Cursor, Mlx, Modifier
+from minirt.mlx.display import Display
 from minirt.rendering.image import Image
 from minirt.rendering.queries.pick import Picked
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.bindings import Keymap
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
@@ -22,13 +23,10 @@ from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
-from minirt.viewer.editing.projection import Pick, Projection, projection_of
+from minirt.viewer.editing.projection import Projection, projection_of
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.files import WatchedFile, create_numbered, error_summary
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
-
-if TYPE_CHECKING:
-    from minirt.mlx.display import Display
 
 FINE_STEP = 0.1  # of a step, while Shift is held
 WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
@@ -44,8 +42,8 @@ class Session:
         scene: Scene,
         path: Path,
         size: tuple[int, int],
-        painter: Callable[[Callable[[], object]], Painter],
-        pick: Pick,
+        renderer: Renderer,
+        painter: Callable[[Renderer, Callable[[], object]], Painter] = Painter,
         *,
         keys: str = "auto",
         lenient: bool = False,
@@ -61,7 +59,7 @@ class Session:
         self.mlx = mlx
         self.display = display
         self.lenient = lenient
-        self.pick = pick
+        self.pick = renderer.pick
         self.state = initial_state(scene)
         self.opened = scene  # the first scene
         self.saved = saved or scene  # the scene as the file holds it
@@ -79,7 +77,7 @@ class Session:
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
-        self.refinement = Refinement(painter(lambda: mlx.mlx_wake(display)), self.window, samples)
+        self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), self.window, samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window

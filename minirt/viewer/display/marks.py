@@ -15,8 +15,7 @@ from minirt.mlx.text import draw_text, measure
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Scene
 from minirt.scene.registry import ELEMENTS
-from minirt.shapes import Shape
-from minirt.shapes.mesh import Mesh
+from minirt.shapes import Mesh, Shape
 from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, projection_of, subtract

@@ -10,16 +10,14 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.sampling.packets import estimated_error
 from minirt.scene import Scene
-
-if TYPE_CHECKING:
-    from minirt.rendering.renderer import Renderer
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 IsWanted: TypeAlias = Callable[[], bool]  # whether a picture is still wanted

@@ -9,20 +9,7 @@ from math import cos, dist, hypot, isfinite, pi, sin
 from typing import Any, TypeVar
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import (
-    FARTHEST,
-    LEAST_LENGTH,
-    Direction,
-    Field,
-    Length,
-    Lengths,
-    MeshField,
-    Picture,
-    Point,
-    Real,
-    Triple,
-    clamp,
-)
+from minirt.fields import Direction, Field, Length, Lengths, MeshField, Picture, Point, Real, Triple, clamp_length
 from minirt.materials import Compound
 from minirt.rendering.packing.camera import camera_frame
 from minirt.rendering.queries.pick import clearance
@@ -150,13 +137,11 @@ def drop(state: State, _amount: float, now: float) -> State:
 def addable_kinds(scene: Scene) -> list[type[Element]]:
     """Kinds of elements that can be added to a scene: shapes first, kinds made from a mesh file last.
 
-    Left out are kinds of which a scene has one and has it already, and kinds that need a mesh file where there is none.
+    Left out are kinds of which a scene has one and has it already.
     """
     there = {type(each) for kind in ELEMENTS.values() if kind.once for each in scene.of(kind)}
     missing = [kind for kind in ELEMENTS.values() if can_edit(kind) and not (kind.once and kind in there)]
-    has_file = next(usable_files(scene, is_mesh=True), None) is not None
-    useful = [kind for kind in missing if has_file or not field_names(kind, MeshField)]
-    return sorted(useful, key=lambda kind: (bool(field_names(kind, MeshField)), not issubclass(kind, Shape)))
+    return sorted(missing, key=lambda kind: (bool(field_names(kind, MeshField)), not issubclass(kind, Shape)))
 
 
 def default_element(kind: type[Element], state: State) -> Element:
@@ -186,7 +171,7 @@ def default_record(kind: type[RecordType], state: State, length: float) -> Recor
 
 def one_digit(length: float) -> float:
     """Round a length to its leading digit."""
-    return clamp(round(length, leading_decimal(length)), LEAST_LENGTH, FARTHEST)
+    return clamp_length(round(length, leading_decimal(length)))
 
 
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
@@ -225,7 +210,7 @@ def default_value(field: Field, state: State, length: float) -> Any:
     if isinstance(field, Lengths):
         return length, length, length
     if isinstance(field, Length) and field.unit:
-        return round_length(clamp(length * (field.initial or 1), LEAST_LENGTH, FARTHEST))
+        return round_length(clamp_length(length * (field.initial or 1)))
     usual = field.instead if field.initial is None and isinstance(field, Direction) else field.initial
     if usual is None and isinstance(field, Real):
         usual = (field.low + field.high) / 2

@@ -12,8 +12,7 @@ from typing import NamedTuple
 from minirt.element import Element
 from minirt.fields import Triple
 from minirt.rendering.queries.pick import pick
-from minirt.scene import Camera
-from minirt.scene.elements import linear_combination
+from minirt.scene.elements import Camera, linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.adding import dropped, middle_of, stand

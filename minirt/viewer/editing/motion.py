@@ -9,8 +9,7 @@ from typing import Any, TypeVar
 from minirt.element import Element
 from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Point, Triple, clamp, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
-from minirt.scene import Camera
-from minirt.scene.elements import TONES, linear_combination
+from minirt.scene.elements import TONES, Camera, linear_combination
 from minirt.shapes.shape import Oriented
 from minirt.viewer.editing.projection import dot, extent, field_names, scene_centre, subtract
 from minirt.viewer.editing.state import Frame, State

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import product
 from math import dist, hypot, inf
 from statistics import median
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
-from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp, unit
+from minirt.fields import Point, Triple, clamp_length, unit
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.queries.pick import Picked, surface_normal
+from minirt.rendering.queries.pick import surface_normal
 from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 
 Pixel = tuple[float, float]
-Pick = Callable[[Scene, int, int, int, int], Picked]  # (scene, width, height, x, y)
 
 MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in front of the eye are on no picture
 FAR = 1e3  # times the distance to the eye: length to which a line is drawn
@@ -156,8 +155,7 @@ def scene_size(scene: Scene) -> float:
     """
     distances = [max(dist(scene.camera.position, centre), radius) for centre, radius in extents(scene)]
     apart = [distance for distance in distances if distance > 0]
-    usual = median(apart) if apart else looked_at_distance(scene.camera)
-    return clamp(usual, LEAST_LENGTH, FARTHEST)
+    return clamp_length(median(apart) if apart else looked_at_distance(scene.camera))
 
 
 def looked_at_distance(camera: Camera) -> float:

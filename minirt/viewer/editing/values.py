@@ -11,22 +11,7 @@ from math import floor, hypot, log10
 from typing import Any, NamedTuple, TypeVar
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import (
-    Angle,
-    Choice,
-    Colour,
-    Direction,
-    Factor,
-    Field,
-    Length,
-    MeshField,
-    MeshFile,
-    Picture,
-    Point,
-    Real,
-    Triple,
-    neat,
-)
+from minirt.fields import Angle, Colour, Direction, Factor, Field, Length, MeshField, Picture, Point, Real, Triple, neat
 from minirt.shapes.shape import Oriented
 
 CHANNELS = "red", "green", "blue"
@@ -70,7 +55,7 @@ class Value(NamedTuple):
         """The field's value after a number of steps."""
         old = self.get(element)
         field = self.inner or self.field
-        is_file = isinstance(old, str | MeshFile) and not isinstance(field, Choice)
+        is_file = isinstance(field, MeshField) or any(field.pictures(old))
         new = next_file(old, steps) if is_file else field.nudge(old, steps)
         return self.replaced(element, new)
 

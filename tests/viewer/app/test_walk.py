@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import sys
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,6 @@ from minirt.scene import Scene, dump, load, parse
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Painter
 from minirt.viewer.display.screen import help_pages
 from minirt.viewer.editing.state import State
 from tests.viewer.app.test_real_window import SIZE, Viewer, still, viewing
@@ -83,8 +81,7 @@ class Twin:
         self.memory = Memory()
         mlx = Mlx(self.memory)
         self.session = Session(
-            mlx, mlx.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
-            pick=self.renderer.pick, keys="qwerty",
+            mlx, mlx.mlx_init(), self.start, path=self.path, size=SIZE, renderer=self.renderer, keys="qwerty",
         )  # fmt: skip
         EventDispatcher(self.session).connect()
 
