@@ -97,9 +97,15 @@ def work(asked: str, data: bytes, camera: Camera, band: Job) -> Made:
         raise RenderError(f"a worker has another miniRT: {version()} in place of {asked}")
     scene = unpacked(data)
     settings = band.settings
-    if settings.threads is None and (worker := dask_worker()):
-        settings = settings.replace(threads=int(worker.state.nthreads))
+    if settings.threads is None:
+        settings = settings.replace(threads=share_of_cores())
     return render_band(band._replace(scene=scene.replace(scene.camera, camera), settings=settings))
+
+
+def share_of_cores() -> int | None:
+    """Return the number of threads that a dask worker has; None elsewhere: all processors."""
+    worker = dask_worker()
+    return worker and int(worker.state.nthreads)
 
 
 def dask_worker() -> Any:

@@ -62,12 +62,12 @@ def probe(path: str | os.PathLike[str]) -> None:
 
 
 @contextmanager
-def told_errors(path: str | os.PathLike[str]) -> Iterator[None]:
+def told_errors(path: str | os.PathLike[str], what: str = "cannot write") -> Iterator[None]:
     """Raise the system's errors in the block as RenderError: a picture or a film cannot be written to a file."""
     try:
         yield
     except OSError as error:
-        raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
+        raise RenderError(f"{os.fspath(path)}: {what}: {error.strerror or error}") from None
 
 
 def create(path: str | os.PathLike[str], data: bytes) -> None:

@@ -31,14 +31,14 @@ class State(NamedTuple):
 
 
 @contextmanager
-def drawn(read: Callable[[], State], draw: Callable[[str], object], clock: Callable[[], float]) -> Iterator[None]:
+def drawn(read: Callable[[], State], draw: Callable[[str], object]) -> Iterator[None]:
     """Draw the state that `read` returns while the block runs, from another thread, by `draw(text)`.
 
     Nothing is drawn in the first second, or where the system allows no more threads; `draw("")` erases what was drawn.
     """
     ended = Event()
-    arguments = (draw_until, ended, read, draw, clock)
-    thread = Thread(target=copy_context().run, args=(without_signals, *arguments), daemon=True)
+    arguments = without_signals, draw_until, ended, read, draw
+    thread = Thread(target=copy_context().run, args=arguments, daemon=True)
     with suppress(RuntimeError):  # the system allows no more threads
         thread.start()
     try:
@@ -49,13 +49,11 @@ def drawn(read: Callable[[], State], draw: Callable[[str], object], clock: Calla
             thread.join()
 
 
-def draw_until(
-    ended: Event, read: Callable[[], State], draw: Callable[[str], object], clock: Callable[[], float]
-) -> None:
+def draw_until(ended: Event, read: Callable[[], State], draw: Callable[[str], object]) -> None:
     """Draw the bar until the work has ended, then erase it."""
-    last, seconds, pause, is_drawn = clock(), 0.0, PATIENCE, False
+    last, seconds, pause, is_drawn = perf_counter(), 0.0, PATIENCE, False
     while not ended.wait(pause):
-        last, passed = (now := clock()), now - last
+        last, passed = (now := perf_counter()), now - last
         seconds += passed if passed < STOPPED else pause
         draw(line(read(), seconds))
         pause, is_drawn = PAUSE, True
@@ -104,7 +102,7 @@ def in_notebooks(read: Callable[[], State]) -> Iterator[None]:
         return
     token = SHOWN.set(True)
     try:
-        with drawn(read, NotebookLine().draw, perf_counter):
+        with drawn(read, NotebookLine().draw):
             yield
     finally:
         SHOWN.reset(token)
@@ -129,15 +127,13 @@ class NotebookLine:
 
 
 @contextmanager
-def progress(
-    read: Callable[[], State], out: TextIO | None = None, clock: Callable[[], float] = perf_counter
-) -> Iterator[None]:
+def progress(read: Callable[[], State], out: TextIO | None = None) -> Iterator[None]:
     """Show the state that `read` returns while the block runs, on standard error if that is a terminal."""
     stream = out or sys.stderr
     if not stream.isatty():
         yield
         return
-    with drawn(read, partial(draw, stream), clock):
+    with drawn(read, partial(draw, stream)):
         yield
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
@@ -175,10 +176,8 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     require_matplotlib()
-    try:
+    with file_io.told_errors(folder, "cannot be made"):
         Path(folder).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RenderError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None
     measurement = Measurement(scene, name, QUICK if quick else FULL, threads)
     try:
         with TemporaryDirectory(prefix="minirt-report-") as files, progress(measurement.state):

@@ -125,15 +125,11 @@ def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line:
     parse_slots(slots, line, log)
     del log.errors[before + 1 :]  # later fields may be off by one
     if len(log.errors) == before:
-        why = " (one element a line)" if extra.raw in SPELLINGS else expectation(kind, extra.raw)
+        keyed = fields_by_key(kind)
+        guess = nearest_key(extra.raw, list(keyed))
+        expected = hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
+        why = " (one element a line)" if extra.raw in SPELLINGS else expected
         log.error(line, f"{kind.title} has no further field {quoted(extra.raw)}{why}", *extra.span(None))
-
-
-def expectation(kind: type[Element], word: str) -> str:
-    """Return the end of the message about an extra word: a similar attribute, or the pattern of the line."""
-    keyed = fields_by_key(kind)
-    guess = nearest_key(word, list(keyed))
-    return hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
 
 
 def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log: Log) -> list[Slot]:

@@ -48,22 +48,22 @@ def test_the_bar_tells_share_and_remaining_time(state: State, seconds: float, te
     assert line(state, seconds) == text
 
 
-def test_the_first_second_has_no_bar_and_the_end_erases_it() -> None:
-    times = iter([0.0, 1.0, 1.2])
+def test_the_first_second_has_no_bar_and_the_end_erases_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "perf_counter", iter([0.0, 1.0, 1.2, 1.2]).__next__)
     out, ended = Terminal(), Ended(2)
-    draw_until(ended, lambda: State("x", 0.5), partial(draw, out), lambda: next(times))
+    draw_until(ended, lambda: State("x", 0.5), partial(draw, out))
     assert ended.waited == [module.PATIENCE, module.PAUSE, module.PAUSE]
     first, second, last = out.getvalue().split("\r\x1b[K")[1:]
     assert (first, second, last) == (line(State("x", 0.5), 1.0), line(State("x", 0.5), 1.2), "")
     quick = Terminal()
-    draw_until(Ended(0), lambda: State("x", 0.5), partial(draw, quick), lambda: 0.0)
+    draw_until(Ended(0), lambda: State("x", 0.5), partial(draw, quick))
     assert quick.getvalue() == ""
 
 
-def test_the_time_in_which_a_program_was_stopped_does_not_count() -> None:
-    times = iter([0.0, 1.0, 3601.0, 3601.2])
+def test_the_time_in_which_a_program_was_stopped_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "perf_counter", iter([0.0, 1.0, 3601.0, 3601.2]).__next__)
     out = Terminal()
-    draw_until(Ended(3), lambda: State("x", 0.5), partial(draw, out), lambda: next(times))
+    draw_until(Ended(3), lambda: State("x", 0.5), partial(draw, out))
     shown = out.getvalue().split("\r\x1b[K")[1:]
     assert shown == [*(line(State("x", 0.5), seconds) for seconds in (1.0, 1.0 + module.PAUSE, 1.4)), ""]
 
@@ -81,7 +81,7 @@ def test_without_a_terminal_nothing_is_asked_and_nothing_written() -> None:
 def test_a_terminal_that_has_gone_is_no_error() -> None:
     gone = Terminal()
     gone.close()
-    draw_until(Ended(3), lambda: State("x"), partial(draw, gone), lambda: 0.0)
+    draw_until(Ended(3), lambda: State("x"), partial(draw, gone))
 
 
 def test_the_block_ends_the_thread_also_by_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,14 +47,14 @@ def play(
     path: str | os.PathLike[str],
     file: str = "replay",
     keys: str = "qwerty",
-    lenient: bool = False,
-    samples: int = 1,
     watch: Callable[[Session], object] = lambda _: None,
+    **options: Any,
 ) -> Session:
     """Play `lines` (see `minirt.mlx.recording`) and return the session at the end.
 
     The same lines give the same frames. `path` is the scene's file, which keys may save and reload; `file` is the name
-    of the recording in error messages. `watch` is called with the session sixty times per simulated second.
+    of the recording in error messages. `watch` is called with the session sixty times per simulated second; `options`
+    are those of `Session`.
 
     If a line is wrong, ReplayError is raised before any line is played. Errors of commands, such as saving, are in the
     session; `replay` and `record` raise the first at the end.
@@ -63,7 +63,7 @@ def play(
     add_recording(lines, file, memory)
     mlx = Mlx(memory)
     display = mlx.mlx_init()
-    session = Session(mlx, display, scene, Path(path), size, renderer, keys=keys, lenient=lenient, samples=samples)
+    session = Session(mlx, display, scene, Path(path), size, renderer, keys=keys, **options)
     EventDispatcher(session).connect()
     memory.after_tick = lambda: watch(session)
     try:
