@@ -148,9 +148,8 @@ def ordered_fields(kind: Any) -> list[Any]:
 @cache
 def parameters(kind: type[Any]) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Return the fields that need no keyword, and the defaults of all fields, MISSING where there is none."""
-    return tuple(each.name for each in fields(kind) if not each.kw_only), {
-        each.name: each.default for each in fields(kind)
-    }
+    positional = tuple(each.name for each in fields(kind) if not each.kw_only)
+    return positional, {each.name: each.default for each in fields(kind)}
 
 
 @cache

@@ -90,9 +90,8 @@ def format_name(output: str) -> str:
 
 def is_film(options: argparse.Namespace) -> bool:
     """Whether the output is one file of several pictures."""
-    return bool(
-        (options.turntable or options.replay) and options.output and FORMATS[format_name(options.output)].is_film
-    )
+    has_several = options.turntable or options.replay
+    return bool(has_several and options.output and FORMATS[format_name(options.output)].is_film)
 
 
 def needs_light(options: argparse.Namespace, output: str) -> bool:

@@ -43,9 +43,8 @@ class Job(NamedTuple):
     @property
     def what(self) -> str:
         """The name of a band in messages."""
-        return (
-            f"rows {self.region.y} to {self.region.y + self.region.height - 1}" if self.settings.region else "a picture"
-        )
+        _, first, _, height = self.region
+        return f"rows {first} to {first + height - 1}" if self.settings.region else "a picture"
 
     def bands(self, regions: Sequence[Region], bits: int | None = None) -> list[Job]:
         """Return the bands that render some regions."""

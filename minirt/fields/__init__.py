@@ -7,8 +7,6 @@ from minirt.fields.directions import Direction, cos_and_sin, neat, unit, upright
 from minirt.fields.field import Choice, Field, MeshField, MeshFile, Picture, PictureFile, Repair
 from minirt.fields.scalars import (
     FARTHEST,
-    LEAST_LENGTH,
-    SMALLEST,
     Angle,
     Count,
     Factor,
@@ -18,9 +16,7 @@ from minirt.fields.scalars import (
     Whole,
     clamp,
     clamp_length,
-    number,
     spelled,
-    whole,
 )
 from minirt.fields.triples import Colour, Lengths, Paint, Point, Three, Triple
 from minirt.records import declare

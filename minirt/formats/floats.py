@@ -42,9 +42,7 @@ def exr_header(width: int, height: int) -> bytes:
         ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
         ("screenWindowWidth", "float", struct.pack("<f", 1)),
     )
-    parts = [
-        name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(v)) + v for name, kind, v in attributes
-    ]
+    parts = [f"{name}\0{kind}\0".encode() + struct.pack("<i", len(v)) + v for name, kind, v in attributes]
     return struct.pack("<2i", MAGIC, VERSION) + b"".join(parts) + b"\0"
 
 
@@ -65,7 +63,6 @@ def exr_block(top: int, light: np.ndarray) -> bytes:
 
 # Radiance (`.hdr`): red, green and blue with a common exponent, 8 bits each, runs compressed. After Ward, Real Pixels
 # (Graphics Gems II, 1991). A colour's largest channel keeps an error of at most 1/256 of itself.
-
 
 SHORTEST, LONGEST = 8, 2**15 - 1  # pixels of a scanline that can have runs
 SCANLINES = 16  # scanlines that are converted at once

@@ -20,17 +20,14 @@ if sys.platform != "win32":
     import fcntl
 
 Content = TypeVar("Content")
+Data = bytes | Callable[[BinaryIO], object]  # contents, or a function that writes them to a file, which can seek
 TEMPORARY = ".minirt-*.tmp"
 ABANDONED = 3600  # seconds without a change, after which a temporary file belongs to a killed program
 FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
 
 
-def write(
-    path: str | os.PathLike[str], data: bytes | Callable[[BinaryIO], object], permissions: int | None = None
-) -> None:
+def write(path: str | os.PathLike[str], data: Data, permissions: int | None = None) -> None:
     """Replace the contents of a file by `data` in one step; OSError when that fails, and nothing is left behind.
-
-    `data` may be a function that writes to the file, which can seek.
 
     A symbolic link stays, and its target is replaced. An existing file keeps its permissions, unless others are asked
     for, and where the system allows it its owner and extended attributes. Other hard links keep the old contents.
@@ -87,9 +84,7 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
 
 
 @contextmanager
-def temporary_file(
-    folder: Path, data: bytes | Callable[[BinaryIO], object], permissions: int | None = None
-) -> Iterator[Path]:
+def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> Iterator[Path]:
     """Write a temporary file, which the block renames; it is deleted when that fails.
 
     It never has more than the given permissions. Old ones, which killed programs left in the folder, are deleted, too.

@@ -105,7 +105,6 @@ def size_in_words(size: int) -> str:
 # Of all threads a child process has only the one that forked. Thread pools are therefore without threads, and a lock
 # that another thread held stays locked for ever. Spawned child processes import everything anew.
 
-
 renewables: WeakSet[Any] = WeakSet()  # objects whose method `after_fork` renews their locks or threads
 
 

@@ -101,7 +101,6 @@ class Attributes(Element):
 
 MAPS = tuple(field.name for field in fields_of(Attributes) if field.mapped)
 
-
 PUBLIC: dict[str, type] = {
     field.record.__name__: field.record for field in fields_of(Attributes) if isinstance(field, Compound)
 }

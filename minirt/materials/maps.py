@@ -77,7 +77,6 @@ class Bump(Material):
 #     sp 0,0,20 8 200,120,80 normal:textures/bricks-normal.png
 NormalMap = partial(Picture, feature="normals", packed=lambda file, reader: reader.normals(file))
 
-
 FARTHEST = 1e6  # in u or v
 Scale = partial(Length, unit="", initial=2.0)
 Shift = partial(Real, low=-FARTHEST, high=FARTHEST, step=0.05)

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.errors import FieldError
-from minirt.fields import FARTHEST, number, whole
-from minirt.fields.scalars import LONGEST
+from minirt.fields.scalars import FARTHEST, LONGEST, number, whole
 
 NUMBERS = {b"v": (3, 7, "x y z"), b"vt": (1, 3, "u v"), b"vn": (3, 3, "x y z")}  # fewest, most, names of those read
 CORNER_PARTS = ("point", "vt", "vn")  # the parts of a corner in messages

@@ -106,7 +106,6 @@ def summary(found: Findings) -> str:
 # Answers in sentences: the best setting, exactness, what is left out, and whether automatic sampling pays. Backticks in
 # them surround code, two stars what is bold.
 
-
 UNKNOWN = "unknown, as there are no undisturbed times to compare"
 
 

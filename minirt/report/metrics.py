@@ -53,7 +53,6 @@ BLOCK = 16  # pixels along an edge of a block: errors of neighbouring pixels are
 # The 97.5 % quantile of Student's t, by degrees of freedom from 1 on.
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
-
 Interval = tuple[float, float]  # its ends; NaN where there is too little data for one
 
 

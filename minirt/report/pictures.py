@@ -29,7 +29,6 @@ ENOUGH = 5  # undisturbed runs, for a median with a confidence interval
 TOO_SLOW = "takes too long for more than the first run"
 DISTURBED_BY_OTHERS = "other programs needed the processors"
 
-
 Step = Callable[[str], object]  # is called with the name of a step before it begins
 Works = Sequence[Callable[[], Run]]
 

@@ -106,7 +106,6 @@ SAME = 0.02  # RMSE: a picture of four samples per pixel that is further off is 
 TRACE = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds")
 HEADER = re.compile(rb"P6\s(?:#[^\n]*\n)*(\d+)\s+(\d+)\s+65535\s")
 
-
 ADAPTIVE = f"{PROGRAM} adaptive"
 GRID = "+AM1 +A0.0 -J +R{}"  # options for a grid of n x n samples in each pixel
 # Rows and options: grids, and supersampling where colours differ by more than a threshold, with 81 samples at most.

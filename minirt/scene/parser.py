@@ -137,7 +137,6 @@ def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
 
 # Example scenes, which are installed with the library: `minirt.example("demo")`.
 
-
 PACKAGE = Path(__file__).parents[1]
 FOLDERS = (PACKAGE / "scenes", PACKAGE.parent / "scenes")  # of a wheel, and beside the sources
 FILE = re.compile(r"(?<=[\s:])(?:textures|meshes)/[^\s,#]+")  # that a line of an example names, or its comment

@@ -202,9 +202,8 @@ class Scene(Immutable):
 def check_scene(scene: object, function: str) -> None:
     """TypeError, which says how to load a scene, where a function got the name of its file."""
     if isinstance(scene, (str, os.PathLike)):
-        raise TypeError(
-            f"minirt.{function} takes a scene, got the name of a file: use minirt.load({os.fspath(scene)!r})"
-        )
+        name = os.fspath(scene)
+        raise TypeError(f"minirt.{function} takes a scene, got the name of a file: use minirt.load({name!r})")
 
 
 def dumps(scene: Scene) -> str:

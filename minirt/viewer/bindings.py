@@ -30,7 +30,6 @@ SELECT, MOVE, CHANGE, EDIT, FILE, WINDOW = "Select", "Move", "Change", "Edit", "
 FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a note below each list of keys
 SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
 
-
 MOUSE: dict[str, Button | str] = {
     **{f"{each.name.lower()} click": each for each in (Button.LEFT, Button.RIGHT)},
     **{f"{each} drag": f"{each} drag" for each in ("left", "middle", "right")},
@@ -97,7 +96,6 @@ def on_press(group: str, action: str, help: str, *keys: str, **options: Any) -> 
 
 # A movement that goes on while its key is held; and a change by one step for each press, or by a tenth with Shift.
 while_held, in_steps = partial(on_press, held=True, fine=True), partial(on_press, fine=True)
-
 
 BINDINGS = (
     on_press(SELECT, "select next", "select the next element", "Tab"),

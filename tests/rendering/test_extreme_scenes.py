@@ -14,7 +14,8 @@ import pytest
 
 from minirt.element import fields_of
 from minirt.errors import ElementError
-from minirt.fields import FARTHEST, SMALLEST, Direction, Length, Lengths
+from minirt.fields import FARTHEST, Direction, Length, Lengths
+from minirt.fields.scalars import SMALLEST
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.packing.materials import encloses
 from minirt.rendering.queries.pick import pick, surface_normal

@@ -15,7 +15,6 @@ from minirt.element import Record, fields_of
 from minirt.errors import ElementError
 from minirt.fields import (
     FARTHEST,
-    SMALLEST,
     Choice,
     Colour,
     Direction,
@@ -30,6 +29,7 @@ from minirt.fields import (
     Real,
     Whole,
 )
+from minirt.fields.scalars import SMALLEST
 from minirt.materials import Compound
 from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS

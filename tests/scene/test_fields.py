@@ -14,22 +14,8 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from minirt.element import fields_of
-from minirt.fields import (
-    Colour,
-    Direction,
-    Field,
-    FieldError,
-    Length,
-    Point,
-    Real,
-    Whole,
-    neat,
-    number,
-    spelled,
-    unit,
-    whole,
-)
-from minirt.fields.scalars import LONGEST, Factor, Flag
+from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Whole, neat, spelled, unit
+from minirt.fields.scalars import LONGEST, Factor, Flag, number, whole
 from minirt.fields.triples import Lengths
 from minirt.scene import Camera, Light
 from minirt.shapes.sphere import Sphere

@@ -16,7 +16,8 @@ from gmpy2 import sqrt
 import minirt
 from minirt.element import fields_of
 from minirt.errors import ElementError
-from minirt.fields import FARTHEST, SMALLEST, Length, Lengths
+from minirt.fields import FARTHEST, Length, Lengths
+from minirt.fields.scalars import SMALLEST
 from minirt.scene import Camera, Scene
 from minirt.shapes import Kind, Shape
 from minirt.shapes.cone import Cone

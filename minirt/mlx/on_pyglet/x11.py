@@ -88,7 +88,6 @@ def _property(window: Any, owner: int, name: int, kind: int) -> list[int]:
 # MiniLibX takes the code of a key from the first column of the keyboard map: Shift+1 is 1, and 4 of the keypad is Left.
 # A keyboard without Latin letters has none of the letters of shortcuts: they are where American keyboards have them.
 
-
 KEY_PRESS, KEY_RELEASE = 2, 3  # X11's numbers
 
 
@@ -127,7 +126,6 @@ def handle_key(window: Any, report: Callable[[KeyEvent | None], None], original:
 # A letter that the active layout prints nowhere is on the key that has it in another layout of the user, or where
 # American keyboards have it. A key that prints a Latin letter keeps it: on a French keyboard nothing changes.
 
-
 ROWS = {24: "qwertyuiop", 38: "asdfghjkl", 52: "zxcvbnm"}  # by the key code of the first key
 POSITIONS = {first + n: ord(letter) for first, row in ROWS.items() for n, letter in enumerate(row)}
 LETTERS = range(ord("a"), ord("z") + 1)  # a Latin letter is the same number in X11
@@ -156,7 +154,6 @@ def _symbol(window: Any, key: int, group: int) -> int:
 # Drag and drop (XDND protocol): pyglet 2.1 fails with a TypeError, which would end the program, when an object with at
 # most three data types is dragged into a window: these types are in the message itself, which pyglet reads wrongly.
 
-
 FILES = "text/uri-list"
 
 
@@ -180,7 +177,6 @@ def handle_drag_enter(window: Any, original: Any, event: Any) -> None:
 
 # The X server was killed, or has closed the connection of this program. Xlib ends a process whose connection breaks,
 # without Python's knowledge. Its error handler is the last chance to save.
-
 
 LOST = 1  # exit status
 HANDLER = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)

@@ -217,11 +217,9 @@ def certify(shapes: tuple[Shape, ...], owners: Integers, parts: Integers, rays: 
         fields = exact_fields(kind, [shapes[i] for i in members])
         rows = fields.first_row[np.searchsorted(members, owners[hits])] + parts[hits]
         for start in range(0, len(hits), CHUNK):
-            some = hits[start : start + CHUNK]
+            some, some_rows = hits[start : start + CHUNK], rows[start : start + CHUNK]
             with np.errstate(all="ignore"):
-                certificate = certify_kind(
-                    kind, fields, rows[start : start + CHUNK], Rays(*(part[some] for part in rays))
-                )
+                certificate = certify_kind(kind, fields, some_rows, Rays(*(part[some] for part in rays)))
             for whole, part in zip(found, certificate, strict=True):
                 whole[some] = part
     return found

@@ -70,7 +70,6 @@ def draw_background(request: Request) -> None:
 
 # A notice about a picture in which nothing is in view, with a camera that would show the scene.
 
-
 COLUMNS, ROWS = 32, 18  # rays that look for shapes
 MOST_PRIMITIVES = 20_000  # that are looked for: in a second
 TESTS = 4_000_000  # of rays against primitives, which choose a camera

@@ -131,7 +131,6 @@ def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray) -> tuple[np.n
 
 # Find coincident surfaces: pairs so close together that rounding decides which of them is seen (z-fighting).
 
-
 ACROSS, DOWN = 64, 36  # test rays over the whole picture
 FEW = 16, 9  # of a notice, which takes a sixteenth of the time
 LEAST = 4  # test rays that must show two close surfaces: where surfaces cross, a ray may do so by chance

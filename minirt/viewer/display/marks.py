@@ -30,7 +30,6 @@ MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
 KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
 LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
 
-
 PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are exclusive
 

@@ -138,10 +138,8 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
 
 def hints(state: State, every: bool) -> str:
     """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
-    active = state.active
-    groups = [
-        f"{state.element.title}: + - {active.name} {value_text(state, active)}" if active else state.element.title
-    ]
+    active, title = state.active, state.element.title
+    groups = [f"{title}: + - {active.name} {value_text(state, active)}" if active else title]
     if isinstance(state.element, Camera):
         groups.append("wheel: nearer")
     if every or state.frame is not Frame.VIEW:

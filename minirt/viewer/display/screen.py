@@ -24,7 +24,6 @@ from minirt.viewer.editing.state import State
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
 
-
 Column = tuple[str, str]  # lines of keys, titles among them, and of their help
 
 

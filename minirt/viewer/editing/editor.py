@@ -20,7 +20,8 @@ from operator import add, mul, sub, truediv
 from typing import Any
 
 from minirt.errors import ElementError, FieldError
-from minirt.fields import Colour, Count, Field, MeshFile, Point, number
+from minirt.fields import Colour, Count, Field, MeshFile, Point
+from minirt.fields.scalars import number
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
 from minirt.viewer.editing import motion, structure

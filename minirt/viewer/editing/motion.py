@@ -7,7 +7,7 @@ from math import atan, atan2, copysign, cos, degrees, dist, fsum, hypot, pi, rad
 from typing import Any, TypeVar
 
 from minirt.element import Element
-from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Point, Triple, clamp, spelled, unit, upright
+from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, clamp_length, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene.elements import TONES, Camera, linear_combination
 from minirt.shapes.shape import Oriented
@@ -204,7 +204,7 @@ def focus(state: State, point: Triple | None, now: float) -> State:
     if point is None:
         return state.with_message("nothing there to focus on")
     camera = state.scene.camera
-    distance = round_length(max(dot(camera.direction, subtract(point, camera.position)), LEAST_LENGTH))
+    distance = round_length(clamp_length(dot(camera.direction, subtract(point, camera.position))))
     lens = camera.lens or round_length(LENS * distance)
     state = state.edit_camera(camera.replace(focus=distance, lens=lens), "focus", now)
     return state.with_message(f"focus: {spelled(distance)}, lens: {spelled(lens)}")

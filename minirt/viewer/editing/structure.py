@@ -53,9 +53,8 @@ def choices(state: State, group: str) -> Iterator[State]:
         additions = [partial(with_element, state, kind) for kind in addable_kinds(state.scene)]
     else:
         keyed = (field for field in fields_of(type(state.element)) if field.keyed)
-        additions = [
-            partial(with_attribute, state, each) for each in keyed if getattr(state.element, each.name) is None
-        ]
+        absent = (field for field in keyed if getattr(state.element, field.name) is None)
+        additions = [partial(with_attribute, state, field) for field in absent]
     for add in additions:
         with suppress(LookupError, ElementError):
             yield add()
@@ -82,9 +81,8 @@ def remove_attribute(state: State, _amount: float, now: float) -> State:
     """Remove the attribute of the active value from the selected element."""
     active = state.active
     if active is None or not active.field.keyed:
-        return state.with_message(
-            f"{active.name if active else state.element.title} is no attribute that can be removed"
-        )
+        name = active.name if active else state.element.title
+        return state.with_message(f"{name} is no attribute that can be removed")
     changed = state.element.replace(**{active.field.name: active.field.default})
     if changed == state.element:
         return state.with_message(f"{active.name} is as it is without the attribute")

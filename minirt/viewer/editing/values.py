@@ -82,9 +82,7 @@ def values(element: Element) -> tuple[Value, ...]:
     ]
     unsplit.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
     fields = ((value, value.inner or value.field) for value in unsplit)
-    colours = [
-        value for value, field in fields if isinstance(field, Colour) and not isinstance(value.get(element), str)
-    ]
+    colours = [each for each, field in fields if isinstance(field, Colour) and not isinstance(each.get(element), str)]
     return (*unsplit, *(value._replace(channel=channel) for value in colours for channel in range(3)))
 
 

@@ -6,7 +6,8 @@ from math import cos, hypot, radians, sin
 
 import pytest
 
-from minirt.fields import FARTHEST, LEAST_LENGTH, unit
+from minirt.fields import FARTHEST, unit
+from minirt.fields.scalars import LEAST_LENGTH
 from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane

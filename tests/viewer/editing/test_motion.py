@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.element import Element
-from minirt.fields import FARTHEST, LEAST_LENGTH
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH
 from minirt.materials import Checker
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera, Scene, describe, dump, load, parse
