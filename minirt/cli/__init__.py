@@ -149,10 +149,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
             is_auto and (is_film or not output),
             "--samples auto makes one picture: it needs -o, and no --replay or --turntable",
         ),
-        (
-            options.cluster and (not output or replay or options.time),
-            "--cluster needs -o, and no --replay or --time",
-        ),
+        (options.cluster and (not output or replay or options.time), "--cluster needs -o, and no --replay or --time"),
         (
             side > MAX_SIDE and not options.cluster,
             f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster",

@@ -1,1 +1,1 @@
-"""Reports of error against run time: `generate` measures a scene and writes its page, `bench` times its frames."""
+"""Reports of error against run time: `measure` measures a scene and writes its page, `bench` times its frames."""

@@ -16,12 +16,11 @@ from minirt.errors import check_whole
 from minirt.records import Immutable
 from minirt.scene import writer
 from minirt.scene.elements import Ambient, Background, Camera, FurtherLight, Lamp, ParallelLight, Resolution, SpotLight
-from minirt.scene.pages import Item, Page, replace_item, split_into_pages
+from minirt.scene.pages import Answer, Item, Page, replace_item, split_into_pages
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
-Answer = TypeVar("Answer")
 Kind = TypeVar("Kind")
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 

@@ -12,17 +12,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import (
-    Mask,
-    Number,
-    Vec,
-    fabs,
-    inverse_root,
-    rarely,
-    splat,
-    sqrt,
-    where,
-)
+from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, rarely, splat, sqrt, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse

@@ -14,20 +14,7 @@ from math import sqrt as root
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import (
-    Mask,
-    Number,
-    Vec,
-    copysign,
-    fabs,
-    inverse_root,
-    maximum,
-    rarely,
-    splat,
-    sqrt,
-    unit,
-    where,
-)
+from minirt.lanes import Mask, Number, Vec, copysign, fabs, inverse_root, maximum, rarely, splat, sqrt, unit, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis

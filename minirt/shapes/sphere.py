@@ -15,15 +15,7 @@ from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
-from minirt.shapes.compensated import (
-    minus,
-    offset,
-    position_error,
-    scalar_product,
-    square_of,
-    value,
-    zero_within,
-)
+from minirt.shapes.compensated import minus, offset, position_error, scalar_product, square_of, value, zero_within
 from minirt.shapes.frames import TWO_PI, angle_in_turns
 from minirt.shapes.shape import Ball, Bounds, Frame, Position, Turnable
 

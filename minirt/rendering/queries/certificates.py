@@ -242,8 +242,4 @@ def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) ->
     normal = Vec(*rays.normals.T)
     distance, exact, turned = foot(kind, shape, point, normal, rounding)
     slope = exact.x * d.x.high + exact.y * d.y.high + exact.z * d.z.high
-    return Certificate(
-        distance / (U * magnitude),
-        magnitude / (distances * np.abs(slope)),
-        turned,
-    )
+    return Certificate(distance / (U * magnitude), magnitude / (distances * np.abs(slope)), turned)

@@ -40,9 +40,7 @@ def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
     return render_interpreted(scene, -(-width // divisor), -(-height // divisor))[0]
 
 
-def render_interpreted(
-    scene: Scene, width: int, height: int, crop: Crop | None = None
-) -> tuple[np.ndarray, np.ndarray]:
+def render_interpreted(scene: Scene, width: int, height: int, crop: Crop | None = None) -> tuple[np.ndarray, ...]:
     """Return the picture of a scene in that size, or a rectangle of that size of a larger picture, and its light,
     (h, w, 3)."""
     with np.errstate(all="ignore"):

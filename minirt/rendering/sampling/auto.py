@@ -39,7 +39,6 @@ SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
 # Draws the packets of a plan, or all without one, at positions (k, pixels of a packet, 2), or 6 with places in lens and
 # lights, and writes the squared errors of those that are probed. Raises `CancelledError`.
 Draw = Callable[[np.ndarray, np.ndarray, np.ndarray], object]
-Classify = Callable[[], np.ndarray]  # contrast classes of packets (rows, columns)
 
 
 class CancelledError(Exception):
@@ -51,7 +50,7 @@ class AutoSampler:
     """A picture in the making."""
 
     draw: Draw
-    classify: Classify
+    classify: Callable[[], np.ndarray]  # contrast classes of packets (rows, columns)
     packets: Packets
     numbers: int  # of the picture: three for each pixel
     packet_pixels: int

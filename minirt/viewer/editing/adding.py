@@ -6,7 +6,7 @@ Shapes stand on surfaces, drop onto what lies beneath, and snap to a grid.
 from __future__ import annotations
 
 from math import cos, dist, hypot, isfinite, pi, sin
-from typing import Any, TypeVar
+from typing import Any
 
 from minirt.element import Element, Record, fields_of
 from minirt.fields import Direction, Field, Length, Lengths, MeshField, Picture, Point, Real, Triple, clamp_length
@@ -20,7 +20,7 @@ from minirt.shapes import Shape
 from minirt.viewer.editing.motion import clamp_point, shifted
 from minirt.viewer.editing.projection import UP, Aim, aim_ahead, dot, extent, field_names, position_of, subtract
 from minirt.viewer.editing.state import State, can_edit
-from minirt.viewer.editing.values import leading_decimal, round_length, round_point
+from minirt.viewer.editing.values import RecordType, leading_decimal, round_length, round_point
 from minirt.viewer.files import usable_files
 
 LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes still come to rest
@@ -31,7 +31,6 @@ DOWN = (0.0, -1.0, 0.0)
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
-RecordType = TypeVar("RecordType", bound=Record)
 
 
 def stand(shape: Shape, point: Triple, normal: Triple) -> Shape:
