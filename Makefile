@@ -27,11 +27,21 @@ $(NAME): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "miniRT needs Python 3.11 or newer: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling editables  # what builds the project
-	$(call INSTALL,'.[report]')
+	$(call INSTALL,.)
 	$(VENV)/bin/python -m compileall -q minirt  # also where PYTHONDONTWRITEBYTECODE would have each start compile it
+	$(MAKE) --no-print-directory -j2 further-packages first-kernels
 	touch $@
 
-# Without them a program compiles what its scene needs, in seconds: so `make run` does not wait for them.
+.DELETE_ON_ERROR:
+
+further-packages:
+	$(call INSTALL,'.[report]')
+
+# They draw the first picture of any scene at once. Where a change of the sources makes them useless, a program compiles
+# what its scene needs, in seconds: so `make run` does not wait for them.
+first-kernels:
+	-$(VENV)/bin/python -m minirt.rendering.ahead_of_time first
+
 $(KERNELS): $(NAME) $(shell find minirt -name '*.py')
 	$(VENV)/bin/python -m minirt.rendering.ahead_of_time
 	touch $@
@@ -138,4 +148,4 @@ docs: $(DEV)  ## build pages on the public names in out/docs, with pdoc
 re: fclean  ## install everything anew
 	$(MAKE) all
 
-.PHONY: all help bonus run test quick pythons processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re
+.PHONY: all help further-packages first-kernels bonus run test quick pythons processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -29,6 +30,7 @@ from minirt.rendering.kernels import (
     packing_calls,
 )
 from minirt.rendering.notes import NO_GENERIC_KERNEL
+from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.scene_packing import Packing
@@ -278,6 +280,14 @@ def test_every_generic_kernel_is_compiled_once(compiled: list[str], tmp_path: Pa
         assert CodeCache(tmp_path).read(identity) == ObjectCode("entry", 0, identity.encode())
     assert ahead_of_time.build(tmp_path, PROCESSOR) == 0
     assert len(compiled) == number
+
+
+def test_the_first_groups_can_draw_any_scene(compiled: list[str], tmp_path: Path) -> None:
+    ahead_of_time.build(tmp_path, PROCESSOR, ahead_of_time.FIRST)
+    needed = kernels.Kernels("double", DEPTH).for_all_scenes
+    assert sorted(json.dumps(json.loads(each)[:2]) for each in compiled) == sorted(
+        json.dumps(json.loads(each)[:2]) for each in needed
+    )
 
 
 def test_damaged_kernels_are_compiled_again_and_old_ones_deleted(compiled: list[str], tmp_path: Path) -> None:
