@@ -29,7 +29,7 @@ MAY: dict[str, set[str]] = {
     "formats": {"errors", "helpers"},
     "scene": LOW - {"lanes"} | {"meshes", "helpers", "formats"},
     "kernel": {"errors", "lanes", "shapes", "helpers"},
-    "rendering": LOW | {"helpers", "formats", "kernel", "scene"},
+    "rendering": LOW | {"helpers", "formats", "kernel", "meshes", "scene"},
     "cluster": LOW - {"lanes", "shapes", "materials", "records", "fields"}
     | {"__init__", "helpers", "formats", "kernel", "meshes", "rendering", "scene"},
     "movie": {"errors", "helpers", "rendering", "formats"},

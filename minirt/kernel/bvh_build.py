@@ -9,10 +9,11 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
-from minirt.kernel.bvh_nodes import LEVELS, MARGIN, NODE, WIDTH
 from minirt.lanes import maximum
 
 BINS = 16  # bins along an axis
+LEVELS = 32  # levels of the binary tree, at most, down to leaves
+MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together
 INDEX, GROUP = 6, 7  # columns of `boxes`, behind the bounds
 
 
@@ -26,10 +27,11 @@ class BinaryTree(NamedTuple):
     costs: Any  # (BINS,) SAH cost of the boxes above each bin
     centres: Any  # (6,) bounds of the centres, times two, of a node's boxes
     stack: Any  # (m, 2) nodes still to divide, and their levels
+    width: int  # children of a wide node, and boxes in a leaf, at most
 
 
 def divide(tree: BinaryTree) -> int:
-    """Divide all boxes until each leaf has one group and at most `WIDTH` boxes, and return the number of nodes."""
+    """Divide all boxes until each leaf has one group and at most `tree.width` boxes, and return the number of nodes."""
     links = tree.links
     links[0, 0], links[0, 1] = 0, tree.boxes.shape[0]
     tree.stack[0, 0], tree.stack[0, 1] = 0, 0
@@ -40,7 +42,7 @@ def divide(tree: BinaryTree) -> int:
         start, stop = links[node, 0], links[node, 1]
         fit_bounds(tree, node)
         links[node, 2] = 0
-        if stop - start > WIDTH or has_mixed_groups(tree.boxes, start, stop):
+        if stop - start > tree.width or has_mixed_groups(tree.boxes, start, stop):
             middle = partition(tree, start, stop, level)
             links[node, 2] = used
             links[used, 0], links[used, 1] = start, middle
@@ -78,10 +80,10 @@ def fit_bounds(tree: BinaryTree, node: int) -> None:
 def partition(tree: BinaryTree, start: int, stop: int, level: int) -> int:
     """Partition the boxes of a range at the best split, and return the first box of the second part."""
     boxes = tree.boxes
-    if stop - start <= WIDTH:
+    if stop - start <= tree.width:
         return partition_by_group(boxes, start, stop)
     axis, last = best_split(tree, start, stop)
-    if axis < 0 or stop - start > WIDTH << (LEVELS - 1 - level):  # all centres coincide, or too deep: halves
+    if axis < 0 or stop - start > tree.width << (LEVELS - 1 - level):  # all centres coincide, or too deep: halves
         return (start + stop) // 2
     low, scale = bin_scale(tree.centres, axis)
     while start < stop:
@@ -116,7 +118,7 @@ def best_split(tree: BinaryTree, start: int, stop: int) -> tuple[int, int]:
         low, scale = bin_scale(tree.centres, axis)
         if scale < inf:
             fill_bins(tree, start, stop, axis, low, scale)
-            cost, bin_below = best_bin(tree.bins, tree.costs)
+            cost, bin_below = best_bin(tree)
             if cost < least:
                 least, best_axis, last = cost, axis, bin_below
     return best_axis, last
@@ -145,17 +147,18 @@ def fill_bins(tree: BinaryTree, start: int, stop: int, axis: int, low: float, sc
         bins[b, 6] += 1.0
 
 
-def best_bin(bins: Any, costs: Any) -> tuple[float, int]:
+def best_bin(tree: BinaryTree) -> tuple[float, int]:
     """Find the least cost of a split between two bins, and the bin below that split."""
+    bins, costs = tree.bins, tree.costs
     clear_bin(bins, BINS)
     for b in range(BINS - 1, 0, -1):
         merge_bin(bins, b)
-        costs[b - 1] = sah_cost(bins)
+        costs[b - 1] = sah_cost(bins, tree.width)
     clear_bin(bins, BINS)
     least, last = inf, 0
     for b in range(BINS - 1):
         merge_bin(bins, b)
-        cost = sah_cost(bins) + costs[b]
+        cost = sah_cost(bins, tree.width) + costs[b]
         if cost < least:
             least, last = cost, b
     return least, last
@@ -175,9 +178,9 @@ def merge_bin(bins: Any, b: int) -> None:
     bins[BINS, 6] += bins[b, 6]
 
 
-def sah_cost(bins: Any) -> float:
+def sah_cost(bins: Any, width: int) -> float:
     """Return the SAH cost of the boxes in the last row: half of their surface area times the leaves that they fill."""
-    leaves = (int(bins[BINS, 6]) + WIDTH - 1) // WIDTH
+    leaves = (int(bins[BINS, 6]) + width - 1) // width
     return half_area(bins, BINS) * leaves if leaves > 0 else inf
 
 
@@ -194,24 +197,24 @@ def half_area(bounds: Any, i: int) -> float:
 def collapse(tree: BinaryTree, nodes: Any, leaves: Any, children: Any) -> tuple[int, int]:
     """Write the wide nodes, and to `leaves` the binary node of each leaf; returns the numbers of nodes and leaves.
 
-    The reference to leaf i is -1 - i. `children` (WIDTH,) is working memory.
+    The reference to leaf i is -1 - i. `children` (tree.width,) is working memory.
     """
-    node_count, leaf_count, waiting = 1, 0, 1
+    node_count, leaf_count, waiting, width = 1, 0, 1, tree.width
     tree.stack[0, 0], tree.stack[0, 1] = 0, 0
     while waiting > 0:
         waiting -= 1
         binary, node = tree.stack[waiting, 0], tree.stack[waiting, 1]
         count = collect_children(tree, binary, children)
-        for place in range(WIDTH):
-            at, child = node * NODE + place, children[place]
+        for place in range(width):
+            at, child = node * 7 * width + place, children[place]
             if place >= count:
-                write_child(nodes, at, tree.bounds, -1, 0.0)
+                write_child(nodes, at, width, tree.bounds, -1, 0.0)
             elif tree.links[child, 2] == 0:
-                write_child(nodes, at, tree.bounds, child, -1.0 - leaf_count)
+                write_child(nodes, at, width, tree.bounds, child, -1.0 - leaf_count)
                 leaves[leaf_count] = child
                 leaf_count += 1
             else:
-                write_child(nodes, at, tree.bounds, child, float(node_count * NODE))
+                write_child(nodes, at, width, tree.bounds, child, float(node_count * 7 * width))
                 tree.stack[waiting, 0], tree.stack[waiting, 1] = child, node_count
                 waiting += 1
                 node_count += 1
@@ -228,7 +231,7 @@ def collect_children(tree: BinaryTree, node: int, children: Any) -> int:
     if links[node, 2] == 0:
         return min(1, links[node, 1] - links[node, 0])
     count = 1
-    while count < WIDTH:
+    while count < tree.width:
         largest, best = -1.0, -1
         for i in range(count):
             size = half_area(tree.bounds, children[i])
@@ -242,12 +245,12 @@ def collect_children(tree: BinaryTree, node: int, children: Any) -> int:
     return count
 
 
-def write_child(nodes: Any, at: int, bounds: Any, i: int, reference: float) -> None:
+def write_child(nodes: Any, at: int, width: int, bounds: Any, i: int, reference: float) -> None:
     """Write a child of a wide node: box i, grown by `MARGIN`, and a reference; for i = -1 a box that no ray hits."""
     size, box = 0.0, max(i, 0)
     for k in range(6):
         size = max(size, abs(bounds[box, k]))
     for k in range(3):
-        nodes[at + k * WIDTH] = -bounds[box, k] - MARGIN * size if i >= 0 else inf
-        nodes[at + (3 + k) * WIDTH] = bounds[box, 3 + k] + MARGIN * size if i >= 0 else -inf
-    nodes[at + 6 * WIDTH] = reference
+        nodes[at + k * width] = -bounds[box, k] - MARGIN * size if i >= 0 else inf
+        nodes[at + (3 + k) * width] = bounds[box, 3 + k] + MARGIN * size if i >= 0 else -inf
+    nodes[at + 6 * width] = reference

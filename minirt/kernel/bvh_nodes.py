@@ -12,15 +12,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from minirt.kernel.bvh_build import LEVELS, MARGIN
 from minirt.kernel.trace import COINCIDENT
 from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, max_norm, maximum, minimum, save_vec, width
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
-MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together
 TINY = 2.0**-500  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
 NODE = 7 * WIDTH  # numbers in a node: the low x, y, z and high x, y, z of its children, and references to them
 REFERENCES = 6 * WIDTH  # offset of the references in a node
-LEVELS = 32  # levels of the tree, at most, down to `WIDTH` shapes or fewer
 GROUPS = 32  # groups that references to leaves can tell apart: more than there are kinds
 REFERENCE_BITS = 0xFFFFFFFF  # the bits of a float64 that hold a reference
 
@@ -128,11 +127,6 @@ def tag(distance: Number, references: Number) -> Number:
 def reference_of(tagged: float) -> int:
     """Return the reference in the low bits of a tagged distance."""
     return int(np.float64(tagged).view(np.int64).astype(np.int32))
-
-
-def bits(mask: Mask) -> int:
-    """Convert a mask to an integer with one bit for each lane, the lowest for the first lane."""
-    return sum(1 << int(ray) for ray in np.flatnonzero(mask))
 
 
 def least_lane(x: Number) -> float:

@@ -23,7 +23,7 @@ class Group(NamedTuple):
     """All shapes of one kind, with the index ranges of those that each screen tile and light-buffer cell can see.
 
     Shapes of this kind in tile c: `tile_shapes[tile_starts[c]:tile_starts[c + 1]]` of the scene. Shapes of this kind in
-    cell c of light i: `light_shapes[light_starts[i, c]:light_starts[i, c + 1]]`.
+    cell c of light i: `light_shapes[light_starts[i, c]:light_starts[i, c + 1]]`. A mesh is there by its first triangle.
     A kind that the scene lacks has no rows.
     """
 
@@ -31,6 +31,7 @@ class Group(NamedTuple):
     tile_starts: Any  # (tiles + 1,)
     light_starts: Any  # (m, cells + 1)
     number: int  # of the group in `SceneArrays.slots`; -1 without rows
+    trees: Any = None  # of meshes: `minirt.kernel.beams.MeshTrees`
 
 
 class SceneArrays(NamedTuple):
@@ -163,8 +164,3 @@ def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
 def occludes(shape: Any, origin: Vec, direction: Vec) -> Any:
     """Intersect shadow rays, which start clear of all surfaces, with a packed shape."""
     return formula(shape, origin, direction, None)
-
-
-def is_batched(rows: Rows) -> bool:
-    """Whether the shapes of these rows are culled in batches, as the triangles of meshes are."""
-    return kind_of(rows.dtype.names).element.batched

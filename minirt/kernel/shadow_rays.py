@@ -11,8 +11,9 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, is_batched, may_meet, occludes, range_in_cell, read
-from minirt.kernel.trace import BATCH, for_each_kind, in_cone
+from minirt.kernel.beams import fold_over_mesh
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read
+from minirt.kernel.trace import for_each_kind, in_cone
 from minirt.lanes import (
     Mask,
     Number,
@@ -22,11 +23,10 @@ from minirt.lanes import (
     fabs,
     first,
     floor,
-    greatest,
     lane,
-    lowest,
     minimum,
     rarely,
+    splat,
     where,
     width,
 )
@@ -110,51 +110,54 @@ Arguments = tuple[SceneArrays, ShadowRays, int, Mask, bool]  # and the rays' cel
 
 def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mask:
     """Remove the shadow rays that a shape of one kind occludes from `visible`; only rays `in_cell` are tested."""
-    return (unoccluded_batched if is_batched(group.rows) else unoccluded_one_by_one)(group, visible, arguments)
-
-
-def unoccluded_one_by_one(group: Group, visible: Mask, arguments: Arguments) -> Mask:
-    """Remove occluded shadow rays from `visible`, testing the shapes of one kind one after the other."""
     scene, rays, cell, in_cell, glass = arguments
     start, end = range_in_cell(group, rays.light, cell)
     for i in range(start, end):
         index = scene.light_shapes[i]
-        cone = scene.light_cones[rays.light, index]
+        cone, row = scene.light_cones[rays.light, index], scene.slots[index, 1]
         if not any(visible & in_cell & (rays.distance > cone[4])):
             break
-        everywhere = cone[3] <= -1.0
-        if counts(scene, index, glass) and (everywhere or rarely(in_cell & in_cone(cone, -rays.towards))):
-            shape = read(group.rows, scene.slots[index, 1])
-            if everywhere or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & in_cell)):
-                hit, t = occludes(shape, rays.origin, rays.direction)
-                visible = visible & ~(in_cell & hit & (t < rays.distance))
+        if counts(scene, index, glass) and (cone[3] <= -1.0 or rarely(in_cell & in_cone(cone, -rays.towards))):
+            if group.trees is None:
+                visible = unoccluded_by_shape(group, row, index, in_cell, visible, arguments)
+            else:
+                beams = rays_from_light(scene, rays)
+                step = unoccluded_by_shape
+                visible = fold_over_mesh(step, reach_of, group, row, *beams, visible & in_cell, visible, arguments)
     return visible
 
 
-def unoccluded_batched(group: Group, visible: Mask, arguments: Arguments) -> Mask:
-    """Remove occluded shadow rays from `visible`, testing the bounding cones of a whole batch of shapes first."""
-    scene, rays, cell, in_cell, glass = arguments
-    start, end = range_in_cell(group, rays.light, cell)
-    while start < end:
-        farthest = greatest(where(visible & in_cell, rays.distance, -inf))
-        candidates = 0
-        for i in range(start, min(start + BATCH, end)):
-            cone = scene.light_cones[rays.light, scene.light_shapes[i]]
-            if not farthest > cone[4]:
-                end = i
-                break
-            if counts(scene, scene.light_shapes[i], glass):
-                candidates |= int(any(in_cell & in_cone(cone, -rays.towards))) << (i - start)
-        while candidates != 0:
-            index = scene.light_shapes[start + lowest(candidates)]
-            candidates &= candidates - 1
-            shape = read(group.rows, scene.slots[index, 1])
-            everywhere = scene.light_cones[rays.light, index, 3] <= -1.0
-            if everywhere or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & in_cell)):
-                hit, t = occludes(shape, rays.origin, rays.direction)
-                visible = visible & ~(in_cell & hit & (t < rays.distance))
-        start += BATCH
+def unoccluded_by_shape(group: Group, row: int, index: int, active: Mask, visible: Mask, arguments: Arguments) -> Mask:
+    """Remove the shadow rays that one shape, or a triangle of a mesh, occludes from `visible`; only `active` ones may
+    meet it."""
+    scene, rays, _, _, _ = arguments
+    shape = read(group.rows, row)
+    if is_parallel(scene, rays.light) or any(
+        may_meet(shape, rays.position, rays.origin, rays.direction, visible & active)
+    ):
+        hit, t = occludes(shape, rays.origin, rays.direction)
+        visible = visible & ~(active & hit & (t < rays.distance))
     return visible
+
+
+def rays_from_light(scene: SceneArrays, rays: ShadowRays) -> tuple[Vec, Vec]:
+    """Return the points of a light source that shadow rays lead to, and the ways from there to where the rays start;
+    for parallel light, where they start and their directions."""
+    if is_parallel(scene, rays.light):
+        return rays.origin, rays.direction
+    position = splat(rays.position, rays.distance)
+    return position, rays.origin - position
+
+
+def reach_of(visible: Mask, arguments: Arguments) -> Number:
+    """Return the part of the `rays_from_light` in which shapes occlude the rays that are still visible."""
+    scene, rays, _, _, _ = arguments
+    return where(visible, splat(inf if is_parallel(scene, rays.light) else 1.0, rays.distance), -inf)
+
+
+def is_parallel(scene: SceneArrays, light: int) -> bool:
+    """Whether a light source is parallel light."""
+    return has_rows(scene.spots) and scene.spots[light, 6] > 0.5
 
 
 def counts(scene: SceneArrays, index: int, glass: bool) -> bool:

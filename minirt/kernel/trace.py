@@ -10,7 +10,8 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, is_batched, may_meet, range_in_tile, read, surface
+from minirt.kernel.beams import fold_over_mesh
+from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read, surface
 from minirt.lanes import (
     Mask,
     Number,
@@ -18,8 +19,6 @@ from minirt.lanes import (
     any,
     dot,
     fabs,
-    greatest,
-    lowest,
     max_norm,
     maximum,
     rarely,
@@ -30,9 +29,6 @@ from minirt.lanes import (
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
 COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to their distance, may be one place
-# Bounding cones of meshes are tested in batches, so that no branch waits for a single test: saves a tenth of the time
-# of a mesh, but with few shapes costs more than it saves.
-BATCH = 16
 Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
 
 
@@ -88,53 +84,36 @@ Arguments = tuple[SceneArrays, int, Vec, Vec]  # and the tile, the eye and the d
 
 def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
     """Continue `closest_hit` over the shapes of one kind; `state` has the closest hits of the kinds before."""
-    return (closest_batched if is_batched(group.rows) else closest_one_by_one)(group, state, arguments)
-
-
-def closest_one_by_one(group: Group, state: Hit, arguments: Arguments) -> Hit:
-    """Continue `closest_hit` over the shapes of one kind, one shape after the other."""
     scene, tile, origin, direction = arguments
     start, end = range_in_tile(group, tile)
     for i in range(start, end):
         index = scene.tile_shapes[i]
-        cone = scene.cones[index]
-        if not any(state[0] > cone[4]):
+        cone, row = scene.cones[index], scene.slots[index, 1]
+        nearer = state[0] > cone[4]
+        if not any(nearer):
             break
-        everywhere = cone[3] <= -1.0
-        if everywhere or rarely(in_cone(cone, direction)):
-            shape = read(group.rows, scene.slots[index, 1])
-            if everywhere or any(may_meet(shape, origin, None, direction, state[0] > cone[4])):
-                hit, t = intersect(shape, origin, direction)
-                state = closer_hit(shape, index, scene.colours_and_extents[index, 3], hit, t, origin, direction, state)
+        if cone[3] <= -1.0 or rarely(in_cone(cone, direction)):
+            if group.trees is None:
+                state = closest_of_shape(group, row, index, nearer, state, arguments)
+            else:
+                rays = splat(origin, direction.x), direction, nearer
+                state = fold_over_mesh(closest_of_shape, search_limit, group, row, *rays, state, arguments)
     return state
 
 
-def closest_batched(group: Group, state: Hit, arguments: Arguments) -> Hit:
-    """Continue `closest_hit` over the shapes of one kind, testing the bounding cones of a whole batch first."""
-    scene, tile, origin, direction = arguments
-    start, end = range_in_tile(group, tile)
-    while start < end:
-        farthest = greatest(state[0])
-        candidates = 0  # a bit for each shape of the batch
-        for i in range(start, min(start + BATCH, end)):
-            cone = scene.cones[scene.tile_shapes[i]]
-            if not farthest > cone[4]:
-                end = i
-                break
-            candidates |= int(any(in_cone(cone, direction))) << (i - start)
-        while candidates != 0:
-            index = scene.tile_shapes[start + lowest(candidates)]
-            candidates &= candidates - 1
-            cone = scene.cones[index]
-            active = state[0] > cone[4]
-            if not any(active):
-                return state
-            shape = read(group.rows, scene.slots[index, 1])
-            if cone[3] <= -1.0 or any(may_meet(shape, origin, None, direction, active)):
-                hit, t = intersect(shape, origin, direction)
-                state = closer_hit(shape, index, scene.colours_and_extents[index, 3], hit, t, origin, direction, state)
-        start += BATCH
+def closest_of_shape(group: Group, row: int, index: int, active: Mask, state: Hit, arguments: Arguments) -> Hit:
+    """Continue `closest_hit` by one shape, or by a triangle of a mesh, which only `active` rays may meet."""
+    scene, _, origin, direction = arguments
+    shape = read(group.rows, row)
+    if any(may_meet(shape, origin, None, direction, active)):
+        hit, t = intersect(shape, origin, direction)
+        state = closer_hit(shape, index, scene.colours_and_extents[index, 3], hit, t, origin, direction, state)
     return state
+
+
+def search_limit(state: Hit, arguments: Arguments) -> Number:
+    """Return how far to search for hits nearer than the closest ones, or coincident with them."""
+    return state[0] * (1.0 + 2.0 * COINCIDENT)
 
 
 def closer_hit(

@@ -226,6 +226,11 @@ def first(mask: Mask) -> int:
     return int(np.argmax(mask))
 
 
+def bits(mask: Mask) -> int:
+    """Return a mask as an integer with one bit for each ray, the lowest for the first ray."""
+    return sum(1 << int(ray) for ray in np.flatnonzero(mask))
+
+
 def lowest(number: int) -> int:
     """Return the index of the lowest bit that is set in a positive integer."""
     return (number & -number).bit_length() - 1

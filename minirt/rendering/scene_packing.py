@@ -15,7 +15,7 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
-from minirt.rendering.packing.bvh import build_bvh, without_boxes
+from minirt.rendering.packing.bvh import build_bvh, pack_trees, without_boxes
 from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import distance_in_the_middle
@@ -134,7 +134,8 @@ class Packing:
         else:
             self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, extents)
             eye, seen = self.view.look(scene.camera, self.run)
-        needs_bvh = "reflective" in used or (usual_cells > 1 and not SPREAD.isdisjoint(used))
+        needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
+        trees = cached("trees", pack_trees, shapes, self.kernel)
         paint: Any = scene.background and scene.background.paint
         environment = None
         if "environment" in used:
@@ -151,7 +152,7 @@ class Packing:
             cones=eye.cones,
             light_buffer_cells=cells,
             **light_buffers,
-            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
+            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count(), trees)),
             spots=lights.spot_parameters(sources) if "spots" in used else None,
             soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,

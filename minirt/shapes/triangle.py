@@ -44,7 +44,6 @@ ROUNDINGS = 1.5  # by which a ray that hits a triangle may pass beside it
 CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
 APART = 1024  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
-BLOCK = 16384  # triangles whose normals are computed at a time, in the cache of a core: twice as fast as all at once
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
 
@@ -223,15 +222,17 @@ def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active
     triangle, as seen from the apex, cannot hit it.
     """
     a, b, c = triangle.a - apex, triangle.b - apex, triangle.c - apex
-    of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
     size = maximum(maximum(max_norm(a), max_norm(b)), max_norm(c))
     far = splat(size, direction.x)
     if start is not None:
         far = far + max_norm(apex - start)
         active = active & (depth_behind_plane(triangle, dot(triangle.normal, a), start) >= 0.0)
-    margin = APART * unit_roundoff(direction.x) * size * far
-    least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
-    return active & ((least >= -margin) | (most <= margin))
+    if any(active):
+        of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
+        margin = APART * unit_roundoff(direction.x) * size * far
+        least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
+        active = active & ((least >= -margin) | (most <= margin))
+    return active
 
 
 def depth_behind_plane(triangle: Any, height: Number, start: Vec) -> Number:
@@ -261,11 +262,9 @@ def plane_normals(corners: np.ndarray, approximate: np.ndarray) -> np.ndarray:
 
     Where the corners lie on a line, once placed in the scene, the approximate normal is kept.
     """
-    normals = np.empty((len(corners), 3))
-    for start in range(0, len(corners), BLOCK):
-        columns = corners[start : start + BLOCK].T.copy()
-        normal = plane_normal(Vec(*columns[:3]), Vec(*columns[3:6]), Vec(*columns[6:]))
-        normals[start : start + BLOCK] = np.stack([normal.x, normal.y, normal.z], axis=1)
+    columns = corners.T.copy()
+    normal = plane_normal(Vec(*columns[:3]), Vec(*columns[3:6]), Vec(*columns[6:]))
+    normals = np.stack([normal.x, normal.y, normal.z], axis=1)
     flat = ~normals.any(axis=1)
     normals[flat] = approximate[flat]
     normals[np.einsum("ij,ij->i", normals, approximate) < 0] *= -1

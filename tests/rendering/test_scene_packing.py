@@ -49,7 +49,8 @@ def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> None:
         elif name != "groups":
             assert np.array_equal(getattr(arrays, name), value), name
     for group, expected in zip(arrays.groups, fresh.groups, strict=True):
-        assert all(np.array_equal(part, right) for part, right in zip(group, expected, strict=True))
+        pairs = zip((*group[:4], *(group.trees or ())), (*expected[:4], *(expected.trees or ())), strict=True)
+        assert all(np.array_equal(part, right) for part, right in pairs)
 
 
 def test_the_arrays_have_the_numbers_of_the_scene() -> None:
@@ -100,7 +101,7 @@ def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_o
     for kind in crowded:
         random = np.random.default_rng(seed)
         shapes = [example(kind, random, 10.0 ** (i % 9 - 4), i % 2) for i in range(99)]
-        crowd = shape_arrays.primitives_of(shapes)
+        (crowd,) = shape_arrays.primitives_of(shapes)
         assert np.array_equal(crowd.rows, shape_arrays.packed_rows([shape.pack() for shape in shapes])), seed
         assert np.array_equal(crowd.boxes, shape_arrays.bounding_boxes(shapes)), seed
         assert np.array_equal(crowd.balls, shape_arrays.bounding_balls(shapes)), seed

@@ -60,13 +60,12 @@ def test_a_mesh_is_its_triangles() -> None:
 
 def test_balls_and_boxes_are_around_the_triangles() -> None:
     made = named("pot", (4, 5, 6), 2.0)
-    parts = primitives_of([made, made])
+    rows, boxes, balls = map(np.concatenate, zip(*primitives_of([made, made]), strict=True))
     corners = made.rows()[:, :9].reshape(-1, 3, 3)
-    assert len(parts.rows) == 2 * made.parts
-    assert np.array_equal(parts.balls[: made.parts, :, :3], corners)
-    assert not parts.balls[..., 3].any()
-    assert np.array_equal(parts.boxes[made.parts :, 0], corners.min(axis=1))
-    assert np.array_equal(parts.boxes[made.parts :, 1], corners.max(axis=1))
+    assert np.array_equal(rows, np.tile(made.rows(), (2, 1)))
+    assert balls.tolist() == 2 * [[[*centre, radius] for centre, radius in made.balls()]]
+    assert np.array_equal(boxes[made.parts :, 0], corners.min(axis=1))
+    assert np.array_equal(boxes[made.parts :, 1], corners.max(axis=1))
     low, high = np.array(made.bounds())
     assert np.array_equal(low, corners.min(axis=(0, 1)))
     assert np.array_equal(high, corners.max(axis=(0, 1)))

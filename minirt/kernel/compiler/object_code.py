@@ -23,13 +23,12 @@ from numba.core.typing import signature
 from numba.extending import intrinsic, overload
 
 from minirt import kernel, lanes, shapes
-from minirt.kernel import scene_arrays, shading, trace
+from minirt.kernel import scene_arrays, shading
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import item_of, item_type
 from minirt.kernel.compiler.pipeline import FLAGS, INLINED, InlinedCompiler, inline, inline_functions_of
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
 from minirt.kernel.machine_code.cache import ObjectCode
-from minirt.kernel.shadow_rays import unoccluded_batched, unoccluded_by_kind, unoccluded_one_by_one
 from minirt.lanes.compiled.memory import ADDRESS, Reference
 from minirt.lanes.compiled.types import REGISTERED
 
@@ -39,14 +38,11 @@ SCALARS = {"int": types.int64, "float": types.float64}
 def by_kind(function: Any, choose: Callable[[Any], Any]) -> None:
     """Compile calls of a function as those of the one that is chosen for the kind of the first argument.
 
-    The type of a packed shape, or of a group of shapes, tells its kind: so a kernel has code for the kinds of its scene
-    alone.
+    The type of a packed shape tells its kind: so a kernel has code for the kinds of its scene alone.
     """
 
-    def chosen(first: Any, *_: Any) -> Any:
-        if isinstance(first, Reference):
-            return choose(scene_arrays.kind_of(first.content[0].dtype.fields))
-        return choose(scene_arrays.kind_of_packed(first.instance_class))
+    def chosen(shape: Any, *_: Any) -> Any:
+        return choose(scene_arrays.kind_of_packed(shape.instance_class))
 
     REGISTERED.add(function)
     overload(function, jit_options=INLINED, strict=False)(chosen)
@@ -55,8 +51,6 @@ def by_kind(function: Any, choose: Callable[[Any], Any]) -> None:
 for _name in ("surface", "shading", "smooth_point", "may_meet", "mapping"):
     by_kind(getattr(scene_arrays, _name), attrgetter(_name))
 by_kind(scene_arrays.formula, lambda kind: kind.intersect)
-by_kind(trace.closest_of_kind, lambda kind: (trace.closest_one_by_one, trace.closest_batched)[kind.element.batched])
-by_kind(unoccluded_by_kind, lambda kind: (unoccluded_one_by_one, unoccluded_batched)[kind.element.batched])
 
 for _package in (lanes, shapes, kernel, shading):
     inline_functions_of(_package)

@@ -9,11 +9,10 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
-from minirt.kernel import bvh_nodes, bvh_traversal, scene_arrays
+from minirt.kernel import beams, bvh_nodes, bvh_traversal, scene_arrays
 from minirt.kernel.compiler.by_reference import length
 from minirt.kernel.pixels import OPAQUE, PACKET_HEIGHT, fetch_add, store_block
 from minirt.kernel.shading import whitted
-from minirt.lanes.compiled import memory
 from minirt.lanes.compiled.memory import address, array_of, first_of
 from minirt.lanes.compiled.types import Lanes, VecType, common, constant, register, splat, vec_of
 
@@ -87,6 +86,13 @@ def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> 
     return memory
 
 
+@register(beams.beam_memory, lambda: types.CPointer(types.float32))
+def _beam_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    memory = cgutils.alloca_once(builder, ir.FloatType(), size=beams.MEMORY)
+    memory.align = CACHE_LINE
+    return memory
+
+
 @register(whitted.ray_stack, lambda: MEMORY)
 def _ray_stack(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.STACK_SIZE)
@@ -109,11 +115,6 @@ def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 @register(bvh_nodes.reference_of, lambda tagged: types.int64 if tagged == types.float64 else None)
 def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.sext(builder.trunc(builder.bitcast(args[0], INTEGER), ir.IntType(32)), INTEGER)
-
-
-@register(bvh_nodes.bits, lambda mask: types.int64)
-def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.zext(memory.bits(builder, args[0]), INTEGER)
 
 
 @register(bvh_nodes.least_lane, lambda x: types.float64)

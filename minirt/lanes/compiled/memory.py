@@ -125,6 +125,11 @@ def bits(builder: ir.IRBuilder, mask: Any) -> Any:
     return builder.bitcast(mask, ir.IntType(mask.type.count))
 
 
+@register(lanes.bits, lambda mask: types.int64 if isinstance(mask, Mask) else None)
+def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.zext(bits(builder, args[0]), ir.IntType(64))
+
+
 @register(lanes.any, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None)
 def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     if sig.args[0] == types.boolean:

@@ -1,16 +1,21 @@
-"""Builds the BVH of a scene: bounding boxes, SAH (Wald 2007), wide nodes, and blocks of shapes as its leaves."""
+"""Builds the BVH of a scene: bounding boxes, SAH (Wald 2007), wide nodes, and blocks of shapes as its leaves; and the
+trees of meshes, each once for its file."""
 
 from __future__ import annotations
 
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from minirt.kernel import beams
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, NODE, REFERENCES, WIDTH, Group, Tree
 from minirt.kernel.scene_arrays import kind_of, row_type
+from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
+from minirt.shapes.mesh import Mesh
 
 CACHE_LINE = 64  # bytes
 NO_LEAF = -GROUPS  # a reference for the lanes to spare of a node, which rays of NaN hit, too: to a leaf of no group
@@ -63,20 +68,22 @@ def without_boxes(tree: Tree) -> Tree:
     return tree._replace(nodes=nodes)
 
 
-def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Build a binary tree over boxes, sorting them, and collapse it into wide nodes.
+def wide_nodes(boxes: np.ndarray, kernel: Any, width: int = WIDTH) -> tuple[np.ndarray, np.ndarray]:
+    """Build a binary tree over boxes, sorting them, and collapse it into nodes of some width; see
+    `minirt.kernel.bvh_build`.
 
     Returns the nodes, and for each leaf its first box and the box behind its last.
     """
     most = max(1, 2 * len(boxes) - 1)
     links, bounds = np.empty((most, 3), np.int64), np.empty((most, 6))
     stack = np.empty((most + 1, 2), np.int64)
-    tree = BinaryTree(boxes, bounds, links, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack)
+    tree = BinaryTree(boxes, bounds, links, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack, width)
     count = kernel.divide(tree)
     tree = tree._replace(bounds=bounds[:count], links=links[:count])
-    nodes, leaves = aligned(NODE * (count // 2 + 1), np.dtype(np.float64)), np.empty(count, np.int64)
-    used, named = kernel.collapse(tree, nodes, leaves, np.empty(WIDTH, np.int64))
-    return nodes[: used * NODE], links[leaves[:named]]
+    nodes = aligned((count // 2 + 1) * 7 * width, np.dtype(np.float64))
+    leaves = np.empty(count, np.int64)
+    node_count, leaf_count = kernel.collapse(tree, nodes, leaves, np.empty(width, np.int64))
+    return nodes[: node_count * 7 * width], links[leaves[:leaf_count]]
 
 
 def as_blocks(rows: np.ndarray, indices: np.ndarray) -> np.ndarray:
@@ -92,3 +99,73 @@ def aligned(length: int, dtype: np.dtype[Any]) -> np.ndarray:
     memory = np.empty(length * dtype.itemsize + CACHE_LINE, np.uint8)
     start = -memory.ctypes.data % CACHE_LINE
     return memory[start : start + length * dtype.itemsize].view(dtype)
+
+
+# Trees of meshes.
+
+
+trees: WeakKeyDictionary[Triangles, np.ndarray] = WeakKeyDictionary()  # float32 nodes
+
+
+def pack_trees(shapes: ShapeArrays, kernel: Any) -> list[beams.MeshTrees | None]:
+    """Return for each kind of shape of a scene the trees of its meshes, or None for a kind that is no mesh."""
+    return [mesh_trees(shapes, kernel) if kind is Mesh else None for kind in shapes.group_numbers]
+
+
+def mesh_trees(shapes: ShapeArrays, kernel: Any) -> beams.MeshTrees:
+    """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet."""
+    owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
+    meshes: Any = [shapes.shapes[index] for index in owners]
+    nodes = [tree_of(mesh.triangles, kernel) for mesh in meshes]
+    roots = np.cumsum([0, *map(len, nodes[:-1])]) // beams.NODE
+    first = shapes.first_primitive[owners]
+    rows = shapes.slots[first, 1]
+    numbers = np.zeros(rows[-1] + 1, np.int64)
+    numbers[rows] = np.arange(len(rows))
+    joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
+    return beams.MeshTrees(joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers)
+
+
+def place_of(mesh: Mesh) -> np.ndarray:
+    """Return a row of `minirt.kernel.beams.MeshTrees.places`."""
+    middle, size = space_of(mesh.triangles)
+    (centre,) = mesh.placed(middle[None])
+    apart = np.abs(centre - mesh.position).max()
+    return np.array([*mesh.turned(np.eye(3)).ravel(), *centre, 1.0 / (size * mesh.scale), apart])
+
+
+def space_of(triangles: Triangles) -> tuple[np.ndarray, float]:
+    """Return what is the origin of a tree's space in the mesh's file, and what is 1 there."""
+    low, high = triangles.box
+    return (low + high) / 2, float((high - low).max() / 2)
+
+
+def tree_of(triangles: Triangles, kernel: Any) -> np.ndarray:
+    """Return the nodes of the tree of a mesh, which is built at the first call."""
+    if triangles not in trees:
+        middle, size = space_of(triangles)
+        points = ((triangles.points - middle) / size)[triangles.corners]
+        boxes = np.zeros((len(points), 8))
+        np.negative(points.min(axis=1), out=boxes[:, :3])
+        points.max(axis=1, out=boxes[:, 3:6])
+        boxes[:, INDEX] = np.arange(len(points))
+        del points  # a million triangles have 72 MB of them
+        nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE)
+        inner = nodes.reshape(-1, 7, beams.WIDE)
+        names = inner[:, 6]
+        names[...] = np.where(names < 0, len(inner) - 1 - names, names / beams.NODE)
+        trees[triangles] = np.concatenate([inner, leaf_nodes(boxes, leaves)], dtype=np.float32).ravel()
+    return trees[triangles]
+
+
+def leaf_nodes(boxes: np.ndarray, leaves: np.ndarray) -> np.ndarray:
+    """Return nodes (n, 7, WIDE) of a mesh's tree whose children are the boxes of its leaves."""
+    start, stop = leaves[:, :2, None].transpose(1, 0, 2)
+    members = start + np.arange(beams.WIDE)
+    boxes = boxes[:, : INDEX + 1].astype(np.float32)
+    nodes: np.ndarray = boxes[np.minimum(members, stop - 1)].transpose(0, 2, 1)
+    nodes[:, :3] *= -1
+    nodes[:, INDEX] = -1 - nodes[:, INDEX]
+    for plane in range(INDEX):
+        nodes[:, plane][members >= stop] = np.inf if plane < 3 else -np.inf
+    return nodes

@@ -12,13 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel import bvh_nodes
+from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_nodes import WIDTH, Tree
 from minirt.kernel.scene_arrays import Group, SceneArrays, row_type
 from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.rendering.packing.bvh import block_type
 from minirt.rendering.packing.features import FEATURES, MAPS
-from minirt.shapes import ALL_KINDS, Kind
+from minirt.shapes import ALL_KINDS, MESH, Kind
 
 ABSENT = -1  # number of the group of a kind that a scene lacks
 NO_TEXELS, NO_PICTURES = np.zeros(0, np.float32), np.zeros((0, 4), np.int64)
@@ -93,6 +94,7 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
     number: Any = np.float32 if generic.precision == "single" else np.float64
     numbers, integers = partial(np.zeros, dtype=number), partial(np.zeros, dtype=np.int64)
     rows, indices = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS], np.zeros(0, np.int32)
+    trees = MeshTrees(np.zeros(0, np.float32), integers((0, 2)), numbers((0, 14)), integers(0))
     maps = {name: FEATURES[name].rows(0, number) for name in MAPS if name in generic.features}
     features: dict[str, Any] = {name: FEATURES[name].rows(0, number) for name in ROWS if name != "background"}
     lacking: dict[str, Any] = dict.fromkeys(set(OPTIONAL) - generic.features)
@@ -108,7 +110,10 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         light_tolerances=numbers(0),
         light_shapes=indices,
         light_cones=numbers((0, 0, 5)),
-        groups=tuple(Group(each, integers(0), integers((0, 0)), ABSENT) for each in rows),
+        groups=tuple(
+            Group(each, integers(0), integers((0, 0)), ABSENT, trees if kind is MESH else None)
+            for kind, each in zip(ALL_KINDS, rows, strict=True)
+        ),
         eye_medium=numbers(3),
         patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
         smooth=integers(0),

@@ -5,7 +5,7 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from copy import copy
 from itertools import chain, repeat
 from operator import attrgetter
@@ -25,23 +25,30 @@ EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # of an infinite sh
 
 
 class Primitives(NamedTuple):
-    """The n primitives of shapes of a kind, in the order of the shapes."""
+    """The n primitives of some shapes of a kind, in the order of the shapes."""
 
     rows: np.ndarray  # (n, r) the numbers of their packed form
     boxes: np.ndarray  # (n, 2, 3) least and greatest corner; of an infinite shape, its defining points
-    balls: np.ndarray  # (n, b, 4) centre and radius: each primitive lies in the hull of b balls; planes have none
+    balls: np.ndarray  # (k, b, 4) centre and radius: a shape lies in the hull of b balls; planes have none
 
 
-def primitives_of(shapes: list[Shape]) -> Primitives:
-    """Pack the primitives of some shapes of one kind."""
+def primitives_of(shapes: list[Shape]) -> Iterator[Primitives]:
+    """Pack the primitives of shapes of one kind: those of meshes block by block, the balls of one with its first."""
     if isinstance(shapes[0], Mesh):
-        rows = [shape.rows() for shape in shapes if isinstance(shape, Mesh)]
-        return Primitives(*map(np.concatenate, zip(*map(triangle_primitives, rows), strict=True)))
-    if shapes[0].columnar:
+        for shape in (each for each in shapes if isinstance(each, Mesh)):
+            balls = bounding_balls([shape])
+            for rows in shape.row_blocks():
+                a, b, c = rows[:, :9].reshape(-1, 3, 3).transpose(1, 0, 2)
+                boxes = np.stack([np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)], axis=1)
+                yield Primitives(rows, boxes, balls)
+                balls = balls[:0]
+    elif shapes[0].columnar:
         crowd = in_columns(shapes)
-        boxes, balls = np.array(crowd.bounds()), np.array([(*centre, radius) for centre, radius in crowd.balls()])
-        return Primitives(packed_rows([crowd.pack()]), np.moveaxis(boxes, -1, 0), np.moveaxis(balls, -1, 0))
-    return Primitives(packed_rows([shape.pack() for shape in shapes]), bounding_boxes(shapes), bounding_balls(shapes))
+        corners, centres = np.array(crowd.bounds()), np.array([(*centre, radius) for centre, radius in crowd.balls()])
+        yield Primitives(packed_rows([crowd.pack()]), np.moveaxis(corners, -1, 0), np.moveaxis(centres, -1, 0))
+    else:
+        rows = packed_rows([shape.pack() for shape in shapes])
+        yield Primitives(rows, bounding_boxes(shapes), bounding_balls(shapes))
 
 
 def in_columns(shapes: list[Shape]) -> Any:
@@ -58,20 +65,8 @@ def column(shapes: list[Shape], name: str, width: int) -> np.ndarray:
     return np.fromiter(flat, np.float64, width * len(shapes)).reshape((len(shapes), width)[: 1 + (width > 1)])
 
 
-def triangle_primitives(rows: np.ndarray) -> Primitives:
-    """The primitives of a mesh, from its packed triangles; a row begins with the corners of the triangle."""
-    corners = rows[:, :9].reshape(-1, 3, 3)
-    balls = np.zeros((len(rows), 3, 4))
-    balls[..., :3] = corners
-    a, b, c = corners.transpose(1, 0, 2)
-    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-    return Primitives(rows, np.stack([low, high], axis=1), balls)
-
-
 def bounding_balls(shapes: list[Shape]) -> np.ndarray:
-    """The balls of `Primitives` for some shapes of one kind."""
-    if isinstance(shapes[0], Mesh):
-        return primitives_of(shapes).balls
+    """Return balls (n, b, 4), centre and radius, in the hull of which shapes of one kind lie; planes have none."""
     hulls = [() if shape.flat() else shape.balls() or EVERYWHERE for shape in shapes]
     return np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
 
@@ -100,13 +95,14 @@ FIRST = np.arange(1)  # index of the first primitive
 class ShapeArrays:
     """The n primitives of the last shapes that it was given: a mesh has one for each triangle, other shapes have one.
 
-    `owner` (n,) is the index in `shapes` of each primitive's shape, and `first_primitive` the first primitive of each
-    shape. Each kind of shape has a group, numbered by `group_numbers`. `rows`, `slots` and `colours_and_extents` are
-    those of `minirt.kernel.scene_arrays`. `boxes`, (n, 2, 3), are the least and the greatest corner of each bounding
-    box; of an infinite shape, those of its defining points. Primitive i is in the hull of
-    `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it; or it is
-    one of the `planes`, (p, 5) unit normal, its product with the points of the plane, and the rounding error of that,
-    whose primitives are `plane_indices`.
+    `owner` (n,) is the index in `shapes` of each primitive's shape, `first_primitive` the first primitive of each
+    shape, and `listed` those that lists for culling have: a mesh is there by its first triangle. Each kind of shape has
+    a group, numbered by `group_numbers`. `rows`, `slots` and `colours_and_extents` are those of
+    `minirt.kernel.scene_arrays`. `boxes`, (n, 2, 3), are the least and the greatest corner of each bounding box; of an
+    infinite shape, those of its defining points. Primitive i is in the hull of
+    `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it; a whole
+    mesh is in that of its first triangle, and the others have none. Or it is one of the `planes`, (p, 5) unit normal,
+    its product with the points of the plane, and the rounding error of that, whose primitives are `plane_indices`.
     """
 
     shapes: tuple[Shape, ...]
@@ -130,10 +126,8 @@ class ShapeArrays:
         groups = self.slots[self.first_primitive[indices], 0]
         for group in range(len(self.rows)):
             of_group = indices[groups == group]
-            primitives = np.sum(self.first_primitive[of_group + 1] - self.first_primitive[of_group])
-            step = max(1, CHUNK * len(of_group) // max(1, primitives))
-            for start in range(0, len(of_group), step):
-                self.write(group, of_group[start : start + step])
+            for start in range(0, len(of_group), CHUNK):
+                self.write(group, of_group[start : start + CHUNK])
         return True
 
     def resize(self, shapes: tuple[Shape, ...]) -> list[int]:
@@ -176,7 +170,10 @@ class ShapeArrays:
             self.slots[groups == group, 1] = np.arange(counts[group])
         self.plane_indices = np.flatnonzero(self.is_plane[groups])
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
-        self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups])])
+        self.listed = self.first_primitive[:-1]
+        balls = np.zeros(count, np.int64)
+        balls[self.listed] = ball_counts[groups[self.listed]]
+        self.first_ball = np.concatenate([[0], np.cumsum(balls)])
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((count, 2, 3))
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
@@ -187,25 +184,27 @@ class ShapeArrays:
     def write(self, group: int, shapes: np.ndarray) -> None:
         """Write some shapes of one kind, given by their indices, into the arrays."""
         members = [self.shapes[index] for index in shapes.tolist()]
-        primitives = primitives_of(members)
         sizes = self.first_primitive[shapes + 1] - self.first_primitive[shapes]
-        indices = ranges(self.first_primitive, shapes)
-        rows = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
-        rows[self.slots[indices, 1]] = primitives.rows
-        corners = corners_last(primitives.boxes)
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        extents = np.maximum(np.abs(low), np.abs(high)).max(axis=0)
+        indices, end, hulls = ranges(self.first_primitive, shapes), 0, []
+        table = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
         self.colours_and_extents[indices, :3] = np.repeat(column(members, "colour", 3), sizes, axis=0) / 255
-        self.colours_and_extents[indices, 3] = extents
-        self.boxes[indices, 0], self.boxes[indices, 1] = low.T, high.T
+        for rows, boxes, balls in primitives_of(members):
+            start, end = end, end + len(rows)
+            at = indices[start:end]
+            table[self.slots[at, 1]] = rows
+            corners = corners_last(boxes)
+            low, high = corners.min(axis=0), corners.max(axis=0)
+            self.colours_and_extents[at, 3] = np.maximum(np.abs(low), np.abs(high)).max(axis=0)
+            self.boxes[at, 0], self.boxes[at, 1] = low.T, high.T
+            hulls.append(balls)
         if self.is_plane[group]:
             points_and_normals = np.array([shape.flat() for shape in members])
             at = np.searchsorted(self.plane_indices, indices)
             self.planes[at, :3] = points_and_normals[:, 1]
             self.planes[at, 3] = (points_and_normals[:, 0] * points_and_normals[:, 1]).sum(axis=1)
-            self.planes[at, 4] = MARGIN * extents
+            self.planes[at, 4] = MARGIN * self.colours_and_extents[indices, 3]
         else:
-            balls = primitives.balls
+            balls = np.concatenate(hulls)
             x, y, z, radius = np.abs(np.moveaxis(balls, 2, 0))
             balls[..., 3] += MARGIN * (radius + np.maximum(np.maximum(x, y), z))
             self.balls[ranges(self.first_ball, indices)] = balls.reshape(-1, 4)

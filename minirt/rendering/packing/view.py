@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from minirt.kernel.beams import CENTRE, MeshTrees
 from minirt.kernel.machine_code.functions import bound
 from minirt.kernel.scene_arrays import SceneArrays, kind_of, row_axes, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN
@@ -91,6 +92,7 @@ def blurred_balls(balls: np.ndarray, camera: np.ndarray, radius: float, per_focu
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
 POINT, OTHER, COSINE = (0, 1, 2), 3, 4  # the place, in `Rounding.shifts`, of what is subtracted from a column
+PLACE = (*(OTHER,) * CENTRE, *POINT, OTHER, OTHER)  # of `MeshTrees.places`
 CONE = OTHER, OTHER, OTHER, COSINE, OTHER  # a distance needs no margin: it was rounded down to 13 bits
 
 
@@ -121,6 +123,10 @@ class Rounding:
         kind, table = kind_of(rows.dtype.names), rows.view(np.float64).reshape(len(rows), -1)
         return self.rounded(table, row_axes(kind)).view(row_type(kind, np.float32))[:, 0]
 
+    def trees(self, trees: MeshTrees | None) -> MeshTrees | None:
+        """Return the trees of meshes, likewise."""
+        return trees and trees._replace(places=self.rounded(trees.places, PLACE))
+
 
 def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> SceneArrays:
     """Return a scene in float32, the eye at the origin, also when the `rounding` moves; `extents` are those of
@@ -141,7 +147,10 @@ def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> S
             # Narrowed by rounding errors, so that fewer directions count as close to another.
             light_tolerances=np.maximum(np.sqrt(arrays.light_tolerances) - MARGIN, 0.0) ** 2,
             light_cones=light_cones.reshape(arrays.light_cones.shape),
-            groups=tuple(group._replace(rows=rounding.rows(group.rows)) for group in arrays.groups),
+            groups=tuple(
+                group._replace(rows=rounding.rows(group.rows), trees=rounding.trees(group.trees))
+                for group in arrays.groups
+            ),
         )
     )
     return single

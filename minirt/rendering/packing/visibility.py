@@ -19,7 +19,6 @@ from minirt.kernel.projection import MARGIN, Grid, signed_height
 from minirt.lanes import Vec
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.shapes.mesh import Mesh
 
 # Vectors across, down and forward of the six faces of a cube, in the order of `cell_of_cube` in
 # `minirt.kernel.shadow_rays`.
@@ -29,9 +28,8 @@ SPREAD = 0.5  # of the mean angle of a cell: the list of a cell holds for all di
 # a face, where slopes change most with the angle, an angle e changes them by less than 3 e.
 CUBE_MARGIN = 3 * SPREAD * np.pi / 4
 # The most shapes, and the cells along an edge of a light's cube with which building and using the lists was measured to
-# take least. Of the triangles of a mesh, which lie side by side, the first `FEW` count, and one in `SIDE_BY_SIDE` more.
+# take least. A mesh, which has a tree of its own, is one shape.
 SMALL = 8
-FEW, SIDE_BY_SIDE = 200, 8
 CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (1_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 MEMBER, START, RECTANGLE = 4, 8, 32  # bytes of a member and of a start of a list, and of a rectangle of cells
@@ -57,10 +55,7 @@ class BinnedShapes(NamedTuple):
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
     """Choose the cells along an edge of the cube around a light; 1 where trying all shapes is faster than a lookup."""
-    shapes = 0
-    for kind, rows in zip(shape_arrays.group_numbers, shape_arrays.rows, strict=True):
-        shapes += min(len(rows), FEW + len(rows) // SIDE_BY_SIDE) if kind is Mesh else len(rows)
-    return next(cells for most, cells in CELLS_BY_SHAPES if shapes <= most)
+    return next(cells for most, cells in CELLS_BY_SHAPES if len(shape_arrays.shapes) <= most)
 
 
 def screen_grid(half_width: float, half_height: float, place: Place) -> Grid:
@@ -201,11 +196,11 @@ def in_all_cells(
     `TooLargeError` where many cells have so many shapes that nobody would wait for the picture.
     """
     count = len(shape_arrays.slots)
-    if cells > 1 and cells * count > MOST_MEMBERS:
+    if cells > 1 and cells * len(shape_arrays.listed) > MOST_MEMBERS:
         raise system.TooLargeError(f"{count} shapes in each of {cells} tiles are too many")
     if cones is None:
         cones = np.tile([0.0, 0.0, 0.0, -2.0, 0.0], (count, 1))
-    shapes = np.delete(np.arange(count), [] if skipped is None else shape_arrays.plane_indices[skipped])
+    shapes = np.setdiff1d(shape_arrays.listed, [] if skipped is None else shape_arrays.plane_indices[skipped])
     kinds = shape_arrays.slots[shapes, 0]
     order = np.lexsort((cones[shapes, 4], kinds))
     members = shapes[order].astype(np.int32)

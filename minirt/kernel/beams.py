@@ -1,0 +1,225 @@
+"""Beams of coherent rays through the trees of meshes.
+
+The tree of a mesh is a wide bounding volume hierarchy in a space of its own, whose unit is half of the mesh's size: it
+is built once for a file, and a mesh that is moved, turned or scaled keeps it. The triangles lie in the scene.
+
+A beam encloses rays that share an apex. Along the axis on which they advance most, its bounds are the least and the
+greatest slope of the rays across it: so four products decide for all children of a node at once whether the beam
+meets their boxes (Boulos, Wald and Shirley, Geometric and Arithmetic Culling Methods for Entire Ray Packets, 2006).
+Boxes are float32. Beams are widened for the rounding of boxes, of rays and of triangles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from minirt.kernel.bvh_build import LEVELS
+from minirt.kernel.scene_arrays import Group, vector
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    bits,
+    dot,
+    fabs,
+    first,
+    greatest,
+    lane,
+    load,
+    lowest,
+    max_norm,
+    save,
+    unit_roundoff,
+    where,
+    width,
+)
+
+WIDE = width(np.empty(0, np.float32))  # children of a node
+NODE = 7 * WIDE  # numbers of a node: the low x, y, z and high x, y, z of its children, and references to them
+HIGH, REFERENCES = 3 * WIDE, 6 * WIDE  # offsets in a node
+ROUNDING = 2.0**-20  # of the space of a tree: rounding of boxes, and of their test
+ROUNDINGS = 64  # unit roundoffs of the coordinates: rounding of rays and of triangles
+LOOSE = 4.0  # a beam that is widened by so much encloses the whole tree
+SPREAD = 0.25  # most difference of two slopes in a beam
+HUGE = 1e30  # more than any number of a box
+WIDENING = 4.0  # of a beam whose rays do not leave the apex itself, by so many times their distance from it
+TINY = 2.0**-100  # a ray that is shorter meets nothing
+
+CENTRE, FACTOR, APART = 9, 12, 13  # columns of `MeshTrees.places`
+
+# Memory of a traversal: references to nodes that wait, the depths at which the beam enters them, and those of a node.
+DEPTHS = LEVELS * WIDE
+CHILDREN = 2 * DEPTHS
+MEMORY = CHILDREN + WIDE
+
+
+class MeshTrees(NamedTuple):
+    """The trees of the k meshes of a scene.
+
+    The reference to a node is its number in its tree; the reference to triangle i is -1 - i. (float32 can count the
+    triangles of the largest file, see `minirt.meshes.obj`.)
+    """
+
+    nodes: Any  # float32, flat, `NODE` numbers for each node of all trees
+    starts: Any  # (k, 2) the number of the first node of each tree, and the index in the scene of its first triangle
+    # (k, 14) from the scene to the space of a tree: a rotation by rows, the point that is subtracted before it, the
+    # factor behind it; and how far from that point is the position of the mesh
+    places: Any
+    numbers: Any  # (rows,) the number of the mesh whose first triangle is in a row
+
+
+Bounds = tuple[int, int, int, float, float, float, float]
+
+
+class Beam(NamedTuple):
+    """Bounds of some rays in the space of a tree; offsets are those of planes in a node.
+
+    A box meets the beam unless one of its tests fails, each with a plane of the box and one along the axis.
+    """
+
+    sign: float  # of the rays' direction along the axis
+    near: int  # offsets of the planes by which rays enter and leave boxes along the axis
+    far: int
+    apex: float  # along the axis, in the direction of the rays
+    slack: float
+    across: Bounds  # see `between_slopes`
+    down: Bounds
+    within: Mask  # the rays
+    rate: Number  # the depth by which a ray advances along its way
+
+
+def beam_memory() -> Any:
+    """Allocate the memory of a traversal; compiled, it lies on the stack of the thread."""
+    return np.zeros(MEMORY, np.float32)
+
+
+Visit = Callable[..., Any]
+Reach = Callable[[Any, Any], Number]
+
+
+def fold_over_mesh(
+    visit: Visit, reach: Reach, group: Group, row: int, apexes: Vec, way: Vec, active: Mask, state: Any, data: Any
+) -> Any:
+    """Fold `state = visit(group, row, index, within, state, data)` over the triangles of a mesh that rays may meet.
+
+    The first triangle of the mesh is in this row. The `active` rays leave their `apexes`, which are alike or close
+    together, along `way`, of any length. Those `within` a beam around some of them visit a triangle together, the
+    nearest triangles first. They need none beyond `reach(state, data)` times their `way`.
+    """
+    length = fabs(way.x) + fabs(way.y) + fabs(way.z)
+    remaining = active & (length > TINY) & (4.0 * length < inf)
+    while any(remaining):
+        beam = beam_of(group.trees.places[group.trees.numbers[row]], apexes, way, remaining)
+        state = walk(visit, reach, group, row, beam, state, data)
+        remaining = remaining & ~beam.within
+    return state
+
+
+def beam_of(place: Any, apexes: Vec, way: Vec, remaining: Mask) -> Beam:
+    """Return a beam around the first of the `remaining` rays and those close to it; `place` is a row of `places`."""
+    factor = place[FACTOR]
+    ray = first(remaining)
+    one, apex = vec_of(way, ray), vec_of(apexes, ray)
+    x, y, z = abs(dot(vector(place, 0), one)), abs(dot(vector(place, 3), one)), abs(dot(vector(place, 6), one))
+    axis = (0 if x >= z else 2) if x >= y else (1 if y >= z else 2)
+    second, third = (axis + 1) % 3, (axis + 2) % 3
+    along = dot(vector(place, 3 * axis), way)
+    sign = 1.0 if lane(along, ray) > 0.0 else -1.0
+    ahead = sign * along
+    per_depth = 1.0 / ahead
+    u, v = dot(vector(place, 3 * second), way) * per_depth, dot(vector(place, 3 * third), way) * per_depth
+    within = remaining & (ahead > 0.0)
+    within = within & (fabs(u - lane(u, ray)) <= SPREAD) & (fabs(v - lane(v, ray)) <= SPREAD)
+    apart = greatest(where(within, max_norm(apexes - apex), 0.0))
+    at = (apex - vector(place, CENTRE)) * factor
+    in_u, in_v = dot(vector(place, 3 * second), at), dot(vector(place, 3 * third), at)
+    depth = sign * dot(vector(place, 3 * axis), at)
+    farthest = max_norm(apex) + max_norm(vector(place, CENTRE)) + place[APART] + apart
+    slack = ROUNDING + (ROUNDINGS * unit_roundoff(way.x) * farthest + WIDENING * apart) * factor
+    if not slack < LOOSE:
+        in_u, in_v, depth, slack = 0.0, 0.0, 0.0, HUGE
+    near, far = (axis * WIDE, HIGH + axis * WIDE) if sign > 0.0 else (HIGH + axis * WIDE, axis * WIDE)
+    across = slope_bounds(u, within, second, in_u, depth, slack, near, far, sign)
+    down = slope_bounds(v, within, third, in_v, depth, slack, near, far, sign)
+    return Beam(sign, near, far, depth, slack, across, down, within, ahead * factor)
+
+
+def vec_of(v: Vec, ray: int) -> Vec:
+    """Return the vector of one ray."""
+    return Vec(lane(v.x, ray), lane(v.y, ray), lane(v.z, ray))
+
+
+def slope_bounds(
+    slopes: Number, within: Mask, axis: int, at: float, depth: float, slack: float, near: int, far: int, sign: float
+) -> Bounds:
+    """Return what `between_slopes` takes, for some rays whose apex has the coordinates `at` and `depth`."""
+    least, most = -greatest(where(within, -slopes, -inf)), greatest(where(within, slopes, -inf))
+    low, high = at - least * depth - slack, at - most * depth + slack
+    first_plane, last_plane = near if least > 0.0 else far, far if most > 0.0 else near
+    return axis * WIDE, first_plane, last_plane, sign * least, sign * most, low, high
+
+
+def boxes_in_beam(nodes: Any, node: int, beam: Beam, limit: float) -> tuple[Mask, Number]:
+    """Return which children of a node a beam may meet up to a depth, and the depths at which it enters their boxes.
+
+    Depths are counted from the origin of the tree's space."""
+    near, far = beam.sign * load(nodes, node + beam.near), beam.sign * load(nodes, node + beam.far)
+    inside = (near <= limit) & (far >= beam.apex - beam.slack)
+    inside = inside & between_slopes(nodes, node, beam.across) & between_slopes(nodes, node, beam.down)
+    return inside, near
+
+
+def between_slopes(nodes: Any, node: int, bounds: Bounds) -> Mask:
+    """Return which boxes of a node lie at least partly between two planes through an apex."""
+    axis, first_plane, last_plane, least, most, low, high = bounds
+    above = load(nodes, node + HIGH + axis) - least * load(nodes, node + first_plane) >= low
+    below = load(nodes, node + axis) - most * load(nodes, node + last_plane) <= high
+    return above & below
+
+
+def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, state: Any, data: Any) -> Any:
+    """Continue `fold_over_mesh` over the triangles whose boxes a beam meets, the nearest nodes first."""
+    nodes, start = group.trees.nodes, group.trees.starts[group.trees.numbers[row]]
+    memory = beam_memory()
+    memory[0], memory[DEPTHS] = 0.0, -inf
+    waiting = 1
+    limit = depth_of_reach(beam, reach(state, data))
+    while waiting > 0:
+        waiting -= 1
+        if memory[DEPTHS + waiting] > limit:
+            continue
+        node = (start[0] + int(memory[waiting])) * NODE
+        inside, near = boxes_in_beam(nodes, node, beam, limit)
+        children = bits(inside)
+        if nodes[node + REFERENCES] < 0.0:
+            while children != 0:
+                triangle = int(-1.0 - nodes[node + REFERENCES + lowest(children)])
+                children = children & (children - 1)
+                state = visit(group, row + triangle, start[1] + triangle, beam.within, state, data)
+            limit = depth_of_reach(beam, reach(state, data))
+        else:
+            save(near, memory, CHILDREN)
+            while children != 0:
+                child = lowest(children)
+                children = children & (children - 1)
+                push(memory, waiting, nodes[node + REFERENCES + child], memory[CHILDREN + child])
+                waiting += 1
+    return state
+
+
+def depth_of_reach(beam: Beam, reach: Number) -> float:
+    """Return the depth up to which any ray of a beam has to go; each has to go `reach` times its way."""
+    return beam.apex + beam.slack + greatest(where(beam.within, reach * beam.rate, -inf))
+
+
+def push(memory: Any, waiting: int, reference: float, depth: float) -> None:
+    """Insert a node among those that wait, the nearest of which is the last."""
+    while waiting > 0 and memory[DEPTHS + waiting - 1] < depth:
+        memory[waiting], memory[DEPTHS + waiting] = memory[waiting - 1], memory[DEPTHS + waiting - 1]
+        waiting -= 1
+    memory[waiting], memory[DEPTHS + waiting] = reference, depth
