@@ -31,14 +31,13 @@ def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = N
     `first` is a name to try before. No other program's file is ever replaced, even one that is written just now.
     """
     numbered = (path.with_name(f"{path.stem}-{n}{suffix}") for n in count(1))
-    for each in chain([first] if first else [], numbered):
-        try:
-            file_io.create(each, data)
-            return each
-        except FileExistsError:
-            continue
-        except OSError as error:
-            raise FileError(first or path.with_suffix(suffix), f"cannot be written: {reason(error)}") from None
+    try:
+        for each in chain([first] if first else [], numbered):
+            with suppress(FileExistsError):
+                file_io.create(each, data)
+                return each
+    except OSError as error:
+        raise FileError(first or path.with_suffix(suffix), f"cannot be written: {reason(error)}") from None
     raise AssertionError("there are endlessly many numbers")
 
 
