@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from minirt.cli.arguments import DEMO, Arguments
 from minirt.cli.output import say, tell
-from minirt.errors import RenderError
+from minirt.errors import RenderError, SceneError
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
@@ -29,7 +30,7 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     from minirt.scene.parser import example
 
     path = options.scene[0]
-    with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
+    with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")), lenience_noted(options):
         if options.example:
             reading = Reading(example(options.example), ())
         elif path == "-":  # whose pictures and meshes are looked for in the current folder
@@ -40,6 +41,22 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
         tell(f"notice: {notice}", stream)
     scene = reading.scene
     return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene
+
+
+@contextmanager
+def lenience_noted(options: argparse.Namespace) -> Iterator[None]:
+    """Add a note to the error of a file that --lenient reads."""
+    try:
+        yield
+    except SceneError as error:
+        if not options.lenient and options.scene[0] != "-":
+            from minirt.scene import load
+
+            with suppress(SceneError):
+                missing = load(options.scene[0], lenient=True).scene.missing
+                but = f" but for the shapes of {len(missing)} lines" if missing else ""
+                error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
+        raise
 
 
 def standard_input() -> bytes:

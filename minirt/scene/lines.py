@@ -6,6 +6,8 @@ Blanks (spaces and tabs, nothing else) separate words. A `#` begins a comment wh
 from __future__ import annotations
 
 import re
+from collections import Counter
+from dataclasses import replace
 from itertools import chain, compress, count, islice
 from operator import not_
 from pathlib import Path
@@ -16,6 +18,7 @@ from minirt.errors import Problem
 BOM = "\ufeff"  # byte order mark
 MAX_ERRORS = 1000  # in one file; a file with more is not a scene
 MAX_NOTICES = 1000
+MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
 WORD = re.compile(r"[ \t]*+([^ \t]++)")
 JOINED = re.compile(r"([^ \t]++(?:(?:[ \t]++(?=,)|(?<=,)[ \t]++)[^ \t]++)*+)")  # with blanks around commas
@@ -94,6 +97,7 @@ class Log:
         self.lenient = lenient
         self.errors: list[Problem] = []
         self.notices: list[Problem] = []
+        self.changes: dict[str, list[tuple[Line, str]]] = {}  # by a lenient reader, of each sort: lines and words
 
     def error(self, line: Line, message: str, column: int, length: int = 1) -> None:
         """Add an error; a file with errors is refused."""
@@ -117,3 +121,27 @@ class Log:
         add = self.notice if is_tolerated else self.error
         add(line, f"{message} ({'miniRT' if certain else '--lenient'} {remedy})", column, length)
         return is_tolerated
+
+    def change(self, line: Line, sort: str, words: str) -> None:
+        """Note what a lenient reader did to the words of a line, or to the whole line, whose first word they are."""
+        self.changes.setdefault(sort, []).append((line, words))
+
+    def tell_changes(self) -> None:
+        """Add a notice for each sort of change, at its first place, with the words that it is about.
+
+        Of notices with the same message the first stays, with the number of places.
+        """
+        first: dict[str, Problem] = {}
+        for each in self.notices:
+            first.setdefault(each.message, each)
+        places = Counter(each.message for each in self.notices)
+        self.notices = [replace(each, message=told(message, places[message])) for message, each in first.items()]
+        for sort, changes in self.changes.items():
+            (line, word), words = changes[0], list(dict.fromkeys(words for _, words in changes))
+            named = ", ".join(words[:MOST_NAMED]) + ", ..." * (len(words) > MOST_NAMED)
+            self.notice(line, told(f"{sort}: {named}", len(changes)), max(1, line.text.find(word) + 1), len(word))
+
+
+def told(message: str, places: int) -> str:
+    """Return a message about so many places."""
+    return f"{message} ({places} places)" if places > 1 else message

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers.system import gc_paused
-from minirt.scene import fast, files
+from minirt.scene import dialects, fast, files
 from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient, FurtherLight, Light
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
-from minirt.scene.scene import Scene
+from minirt.scene.scene import MISSING, Scene
 
 BLOCK = 4096  # lines that the fast path reads at once
 
@@ -52,6 +53,8 @@ def parse(
     log = Log(name, lenient, folder)
     with gc_paused(freeze=False):  # a reader makes no cycles, and the search for them takes a quarter of its time
         items = read_lines(files.decode(text, name).split("\n"), log)
+    if lenient:
+        log.tell_changes()
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
     place = Path(file) if file else None
@@ -72,19 +75,47 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     """Read all lines of a file: elements, comments and blank lines."""
     items: list[Item] = []
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
+    colours = dialects.colours_of_materials(sources) if log.lenient else {}
     for start in range(0, len(sources), BLOCK):
         block = fast.read(sources[start : start + BLOCK], len(sources))
         seen.update((kind.code, start + 1) for kind in set(map(type, block)) if issubclass(kind, Element))
         for at in [at for at, item in enumerate(block) if item is None]:
             line = line_from(start + at + 1, sources[start + at])
-            block[at] = read_line(line, seen, log)
+            block[at] = read_leniently(line, seen, log, colours) if log.lenient else read_line(line, seen, log)
             if block[at] is None and len(log.errors) >= MAX_ERRORS:
                 log.error(line, "too many errors: the rest of the file is not read", 1)
                 return items
         items += [item for item in block if item is not None]
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
+    if log.lenient:
+        dialects.check_shapes_left(items, log)
     return items
+
+
+def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[str, str]) -> Item | None:
+    """Read any line, in a dialect of another program where it cannot be read as it stands; None after an error.
+
+    A line without a meaning here becomes a comment. `colours` are those of named materials.
+    """
+    known, before, notices = dict(seen), len(log.errors), len(log.notices)
+    item = read_line(line, seen, log)
+    translation = None if item else dialects.translated(line, dialects.Camera.code in known, colours, log.folder)
+    if translation is None:
+        return item
+    errors = log.errors[before:]
+    del log.errors[before:], log.notices[notices:]
+    seen.clear()
+    seen.update(known)
+    if translation.text:
+        item = read_line(line_from(line.number, translation.text), seen, log)
+        if item is None:
+            log.errors[before:] = errors
+            return None
+    for sort, words in translation.changes:
+        log.change(line, sort, words)
+    is_missing = dialects.MISSING in dict(translation.changes)
+    return item or f"{MISSING if is_missing else '# '}{line.text}"
 
 
 def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:

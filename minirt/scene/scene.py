@@ -41,6 +41,9 @@ def first(kind: type[Kind], doc: str) -> cached_property[Kind | None]:
     return cached(lambda scene: next(iter(scene.of(kind)), None), doc)
 
 
+MISSING = "# missing: "  # begins the comment that a lenient reader makes of a shape that it cannot read
+
+
 class Scene(Immutable):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
@@ -80,6 +83,10 @@ class Scene(Immutable):
     camera: cached_property[Camera] = cached(lambda scene: scene.of(Camera)[0], "The camera.")
     ambient = first(Ambient, "The ambient light, if the file has one.")
     background = first(Background, "The background of rays that hit nothing; None is black.")
+    missing: cached_property[tuple[str, ...]] = cached(
+        lambda scene: tuple(each.removeprefix(MISSING) for each in scene.of(str) if each.startswith(MISSING)),
+        "The lines of shapes that a lenient reader could not read; they are comments.",
+    )
     resolution = first(Resolution, "The size of the picture, if the file has one.")
 
     def beside(self, name: str) -> Path:

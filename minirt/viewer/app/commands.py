@@ -13,7 +13,7 @@ from minirt.errors import SceneError
 from minirt.scene import describe, dump, load, parse
 from minirt.scene.files import SUFFIX, check_name
 from minirt.viewer import files
-from minirt.viewer.app.session import Session
+from minirt.viewer.app.session import Session, title_of
 from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
@@ -130,7 +130,7 @@ def open_another(session: Session, path: Path) -> None:
         kept = f"; the changes that were not saved are in {files.save_recovery(session.state.scene, session.path)}"
     session.file.close()
     session.watch_file(path)
-    session.mlx.mlx_set_window_title(session.window, f"miniRT - {path.name}")
+    session.mlx.mlx_set_window_title(session.window, title_of(path, scene))
     session.show_file(initial_state(scene).with_message(f"opened: {path}{kept}"), scene)
 
 

@@ -32,6 +32,11 @@ FINE_STEP = 0.1  # of a step, while Shift is held
 WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
 
 
+def title_of(path: Path, scene: Scene) -> str:
+    """Return the title of the window; it tells how many shapes of the file a lenient reader could not read."""
+    return f"miniRT - {path.name}" + f" ({len(scene.missing)} missing)" * bool(scene.missing)
+
+
 class Session:
     """One scene in one window, whichever back end draws the window."""
 
@@ -76,7 +81,7 @@ class Session:
         self.full_screen = False
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
-        self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
+        self.window = mlx.mlx_new_window(display, *size, title_of(path, scene), resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), self.window, samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
         self._described: Scene | None = None  # the scene that the words in the window describe

@@ -1,0 +1,334 @@
+"""Dialects of other programs: a lenient reader translates a line that it cannot read into one that it can.
+
+Words fill the fields of the element in turn, as far as they can be meant for them; what other words mean stands in a
+table, and those without a meaning are left out. What was done is told once for each sort of change, with its places.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from minirt.element import Element, fields_by_key, positional_fields
+from minirt.errors import FieldError, FileError, quoted
+from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
+from minirt.fields.scalars import Scalar
+from minirt.scene.elements import LAMPS, Ambient, Camera, Resolution
+from minirt.scene.lines import Line, Log
+from minirt.scene.registry import SHAPES, SPELLINGS
+
+# Sorts of changes, as notices tell them.
+LEFT_OUT = "words without a meaning here are left out"
+SETTINGS = "settings of other programs are left out"
+MISSING = "shapes are missing"
+LIGHTS = "lights that cannot be read are left out"
+CAMERAS = "cameras behind the first are left out"
+CLAMPED = "numbers out of range become the nearest that can be"
+SCALED = "directions are scaled to length 1"
+JOINED = "three numbers with blanks between them are read as one field"
+NAMED = "names of colours and materials become their R,G,B"
+WHITE = "what has no colour is white"
+CUBES = "cubes become boxes"
+EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
+REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
+CHECKERS = "checkers become checker:"
+PICTURES = "pictures behind the colour become texture:, bump: or normal:"
+ABSENT = "pictures that cannot be read are left out"
+HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
+
+# What lines of other programs begin with: elements by another name, and what is no element.
+CODES = {"c": "C", "cam": "C", "camera": "C", "obj": "ob", "cu": "bo", "cube": "bo", "ci": "di"}
+CUBE = {"cu", "cube"}
+SETTING = re.compile(
+    r"@?(?:ma?t|mtl|tex|txt?|xpm|bmp|img|sky|set|render|res|max|aa|alias|win|title|name|depth|sampl|thread|pat)\w*[:=]?"
+    r"|[A-Z]|[a-z]_\w*|[-{}/=*+]+.*|@.*",
+    re.IGNORECASE,
+)
+N, C = r"([-+]?[0-9]*\.?[0-9]+)", r"([0-9.]+,[0-9.]+,[0-9.]+)"
+FILE = r"[\"']?([^\"':=; ]+\.(?:xpm|png|jpe?g|ppm|bmp|tga))[\"']?"
+CHECKER = r"-?-?(?:ch|chk|cb|cd|checker\w*|chess\w*|pattern|pat|damier)"
+HEX = re.compile(r"(?<=[ \t])#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
+NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
+# Blanks may stand around the commas of three numbers, and within quotes.
+WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
+TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
+
+
+class Row(NamedTuple):
+    """What one or two words behind the fields mean."""
+
+    pattern: str  # of the words, with one blank between two
+    means: Callable[..., str]  # attributes, from the groups of the pattern; '' for none
+    sort: str
+
+
+def highlight(share: float, exponent: float) -> str:
+    """Return the attribute of a highlight; none where it cannot be one."""
+    return f"specular:{clamp(share, 0, 1):g},{exponent:g}" if exponent >= 1 else ""
+
+
+def reflected(share: str) -> str:
+    """Return the attribute of a mirror; none for no share."""
+    value = float(share)
+    return f"mirror:{value / 100 if value > 1 else value:g}" if 0 < value <= 100 else ""  # in percent above 1
+
+
+def two_numbers(first: str, second: str) -> str:
+    """Return attributes for two numbers: a share and an exponent, or an exponent and a share of mirrored light."""
+    a, b = float(first), float(second)
+    if a <= 1 < b:
+        return highlight(a, b)
+    return f"{highlight(0.5, a)} {reflected(second)}".strip() if b <= 1 < a else ""
+
+
+def one_number(text: str) -> str:
+    """Return the attribute for one number: an exponent above 1, a share of mirrored light up to it."""
+    value = float(text)
+    return "" if value == 1 else highlight(0.5, value) if value > 1 else reflected(text)  # 1 may be any switch
+
+
+ROWS = (
+    Row(rf"{CHECKER}[:= ]{C}[:;]{C}(?:[:;]{N})?", lambda _one, two, size: f"checker:{size or 1},{two}", CHECKERS),
+    Row(rf"{CHECKER}[:= ]{C}", lambda colour: f"checker:1,{colour}", CHECKERS),
+    Row(rf"{CHECKER}[:= ]{N}", lambda size: f"checker:{size}", CHECKERS),
+    Row(CHECKER, lambda: "checker", CHECKERS),
+    Row(rf"-?-?(?:b|bu|bum|bump\w*|bm|rb|height\w*)[:= ]{FILE}", lambda file: f"bump:{file}", PICTURES),
+    Row(rf"-?-?(?:n|nm|nor\w*)[:= ]{FILE}", lambda file: f"normal:{file}", PICTURES),
+    Row(rf"(?:-?-?\w+[:= ])?{FILE}", lambda file: f"{picture_key(file)}:{file}", PICTURES),
+    Row(rf"-?-?(?:sh|shin\w*|ns|exp\w*|phong)[:= ]{N}", lambda text: highlight(0.5, float(text)), HIGHLIGHTS),
+    Row(rf"-?-?(?:sp|spc|spec\w*)[:= ]{N}", lambda text: highlight(float(text), 32), HIGHLIGHTS),
+    Row(rf"-?-?(?:re|rf|refl\w*|mir\w*)[:= ]{N}", reflected, HIGHLIGHTS),
+    Row(rf"{N} {N}", two_numbers, EXPONENT),
+    Row(r"([-+]?0*[1-9][0-9]*(?:\.[0-9]*)?)", one_number, EXPONENT),
+    Row(N, one_number, REFLECTIVITY),
+)
+GUESSES = EXPONENT, REFLECTIVITY
+MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
+
+
+def picture_key(file: str) -> str:
+    """Return the attribute that a picture is meant for, by its name."""
+    name = Path(file).stem.lower()
+    return "normal" if "norm" in name else "bump" if "bump" in name or "height" in name else "texture"
+
+
+class Translation(NamedTuple):
+    """A line of the format, "" for none, and the sorts of changes that led to it, with the words that each is about."""
+
+    text: str
+    changes: tuple[tuple[str, str], ...]
+
+
+def colours_of_materials(sources: list[str]) -> dict[str, str]:
+    """Return the R,G,B of named materials, from the lines of a file that begin as settings: `mat red 255,0,0 ...`."""
+    found = {}
+    for source in sources:
+        code, name, *values = [*source.split()[:12], "", ""]
+        colour = next(filter(TRIPLE.fullmatch, values), "")
+        if colour and SETTING.fullmatch(code) and code not in SPELLINGS:
+            found[name] = colour.rstrip(",")
+    return found
+
+
+def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder: Path | None) -> Translation | None:
+    """Translate a line: to '' where it is no element, or one that is not known; None where it has no words.
+
+    `colours` are those of named materials, and pictures are looked for in `folder`.
+    """
+    body, _, comment = HEX.sub(lambda colour: css_colour(colour[0]), line.text).partition("#")
+    words = ["".join(word.split()) for word in WORD.findall(body)]
+    if not words:
+        return None
+    code, *values = words
+    kind = SPELLINGS.get(CODES.get(code.lower(), code)) or SPELLINGS.get(code.lower()) or SPELLINGS.get(code.upper())
+    if kind is Camera and has_camera:
+        return Translation("", ((CAMERAS, code),))
+    if kind is None:
+        is_shape = any(map(TRIPLE.fullmatch, values)) and not SETTING.fullmatch(code)
+        return Translation("", ((MISSING if is_shape else SETTINGS, code),))
+    changes = [(CUBES, code)] if code in CUBE else []
+    try:
+        spelled = fields_of_words(kind, cube(values) if code in CUBE else values, colours, changes)
+    except FieldError:
+        return Translation("", ((SETTINGS, code),)) if kind is Resolution else None
+    if spelled is None:
+        unread = MISSING if kind in SHAPES else LIGHTS if kind in LAMPS else SETTINGS
+        return Translation("", ((unread, code),)) if values and kind not in (Ambient, Camera) else None
+    fields, others = spelled
+    attributes = meanings(kind, others, folder, changes)
+    return Translation(" ".join([kind.code, *fields, *attributes]) + f" #{comment}" * bool(comment), tuple(changes))
+
+
+def cube(words: list[str]) -> list[str]:
+    """Return the words of a box for those of a cube: its centre, perhaps an axis, its edge and its colour."""
+    has_axis = len(words) > 1 and bool(TRIPLE.fullmatch(words[1]))
+    centre, axis, rest = words[:1], words[1:2] if has_axis else ["0,1,0"], words[1 + has_axis :]
+    edge = rest[:1] * (1 if "," in "".join(rest[:1]) else 3)
+    return [*centre, *axis, ",".join(edge), *rest[1:]]
+
+
+def fields_of_words(
+    kind: type[Element], words: list[str], colours: Mapping[str, str], changes: list[tuple[str, str]]
+) -> tuple[list[str], list[str]] | None:
+    """Spell the fields of an element by the first words, and return the others, too.
+
+    None where a field is missing, or three numbers stand in the place of one; FieldError for a malformed word.
+    """
+    fields = []
+    for field in positional_fields(kind):
+        words = colour_first(words, colours) if isinstance(field, Colour) else words
+        spelled = next(spellings(field, words, colours), None)
+        if spelled is None and isinstance(field, Colour) and field.required:
+            spelled = Spelling("255,255,255", 0, WHITE)
+        if spelled is None:
+            if field.required and words and not is_other(field, words[0]):
+                raise FieldError(f"cannot be {quoted(words[0])}")
+            if field.required:
+                return None
+            break
+        if spelled.sort:
+            changes.append((spelled.sort, " ".join(words[: spelled.words] or [kind.code])))
+        fields.append(spelled.text)
+        words = words[spelled.words :]
+    return fields, words
+
+
+def is_other(field: Field, word: str) -> bool:
+    """Whether a word stands for a field of another sort: a number for three of them, or three for one."""
+    return re.fullmatch(NUMBER if isinstance(field, Three) else TRIPLE, word) is not None
+
+
+def colour_first(words: list[str], colours: Mapping[str, str]) -> list[str]:
+    """Return the words with that of a colour before numbers and names that stand between the other fields and it."""
+    if not words or words[0] in colours or css_colour(words[0]):
+        return words
+    index = next((index for index, word in enumerate(words) if TRIPLE.fullmatch(word)), 0)
+    return [words[index], *words[:index], *words[index + 1 :]]
+
+
+class Spelling(NamedTuple):
+    """The spelling of a field, the number of words that it stands for, and the sort of change, '' for none."""
+
+    text: str
+    words: int
+    sort: str = ""
+
+
+def spellings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iterator[Spelling]:
+    """Yield what the first words may mean as the value of a field."""
+    for text, count, sort in readings(field, words, colours):
+        with suppress(FieldError):
+            mended = field.mend(text)
+            value = mended[0] if mended else field.parse(text)
+            with suppress(FieldError):
+                field.check(value)
+                yield Spelling(field.format(value) if mended else text, count, sort)
+            fitted, how = fit(field, value)
+            yield Spelling(field.format(field.check(fitted)), count, how)
+
+
+def readings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iterator[Spelling]:
+    """Yield texts that may spell the value of a field, not yet parsed."""
+    if not words:
+        return
+    word = words[0].strip("()[]{};,") if isinstance(field, Three) else words[0].removesuffix(",")
+    yield Spelling(word, 1)
+    if isinstance(field, Three) and "," not in "".join(words[:3]):
+        yield Spelling(",".join(words[:3]), 3, JOINED)
+    if isinstance(field, Colour):
+        name = colours.get(word) or css_colour(word)
+        if name:
+            yield Spelling(name, 1, NAMED)
+    if isinstance(field, Scalar) and word.count(",") == 1:
+        yield Spelling(word.replace(",", "."), 1, CLAMPED)
+
+
+def css_colour(name: str) -> str:
+    """Return R,G,B of a colour of CSS, '' for none."""
+    from PIL import ImageColor
+
+    with suppress(ValueError):
+        return ",".join(map(str, ImageColor.getrgb(name)[:3]))
+    return ""
+
+
+def fit(field: Field, value: Any) -> tuple[Any, str]:
+    """Return the value of a field next to one that is out of range, and what was done; FieldError where none is."""
+    if isinstance(field, Direction):
+        return unit(value), SCALED
+    if isinstance(field, Colour):
+        return tuple(clamp(part, 0, 255) for part in value), CLAMPED
+    if isinstance(field, Real) and not isinstance(field, Length):
+        return clamp(value, field.low, field.high), CLAMPED
+    raise FieldError("has no value next to it")
+
+
+def meanings(kind: type[Element], words: list[str], folder: Path | None, changes: list[tuple[str, str]]) -> list[str]:
+    """Return the attributes that words behind the fields mean."""
+    keyed = fields_by_key(kind)
+    are_guessed = sum(re.fullmatch(N, word) is not None for word in words) <= MOST_NUMBERS
+    found: dict[str, str] = {}
+
+    def own(word: str) -> bool:
+        key, _, value = word.partition(":")
+        return key in keyed and not hindrance(keyed[key], value or keyed[key].bare, folder)
+
+    while words:
+        used, attributes, sort = (1, words[0], "") if own(words[0]) else meaning(words, are_guessed)
+        for attribute in attributes.split():
+            key, _, value = attribute.partition(":")
+            field = keyed.get(key)
+            if field is None or key in found or (problem := hindrance(field, value or field.bare, folder)):
+                sort = problem if field and key not in found else LEFT_OUT
+            else:
+                found[key] = attribute
+        if sort:
+            changes.append((sort, " ".join(words[:used])))
+        words = words[used:]
+    return list(found.values())
+
+
+def meaning(words: list[str], are_guessed: bool) -> tuple[int, str, str]:
+    """Return how many of the first words mean something together, the attributes, and the sort of change.
+
+    Numbers alone have one only where they `are_guessed`.
+    """
+    for used in (2, 1):
+        text = " ".join(words[:used])
+        for row in ROWS if len(words) >= used else ():
+            match = re.fullmatch(row.pattern, text, re.IGNORECASE)
+            if match and (are_guessed or row.sort not in GUESSES):
+                attributes = row.means(*match.groups())
+                return used, attributes, row.sort if attributes else LEFT_OUT
+    return 1, "", LEFT_OUT
+
+
+def hindrance(field: Field, text: str, folder: Path | None) -> str:
+    """Return why a text is no value of a field, as a sort of change; '' where it is one."""
+    try:
+        value = field.check(field.parse(text))
+    except FieldError:
+        return LEFT_OUT
+    return "" if folder is None or are_readable(field.pictures(value), folder) else ABSENT
+
+
+def are_readable(files: Iterable[PictureFile], folder: Path) -> bool:
+    """Whether all pictures that a value names can be read."""
+    from minirt.materials import pictures
+
+    try:
+        for file in files:
+            pictures.reader(file)(folder / file.name)
+    except FileError:
+        return False
+    return True
+
+
+def check_shapes_left(items: list[Any], log: Log) -> None:
+    """Report that a file has no shape that can be read, but others."""
+    if MISSING in log.changes and not any(isinstance(item, SHAPES) for item in items):
+        line, code = log.changes[MISSING][0]
+        log.error(line, f"none of the shapes can be read, of which {quoted(code)} is the first", 1, len(code))

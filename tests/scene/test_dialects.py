@@ -1,0 +1,119 @@
+"""Lines of other programs' dialects, which a lenient reader translates, and says so once for each sort of change."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from minirt.errors import SceneError
+from minirt.scene import dialects, dump, load, loads, parse
+from tests.paths import ROOT
+from tests.scene.examples import AMBIENT, CAMERA, PLANE, SPHERE, scene_with
+
+BALL = "sp 0,0,20 12.6 10,0,255"
+FLOOR = "pl 0,-1,0 0,1,0 200,200,200"
+
+# A line, the line of the format that it means, and the sorts of changes.
+CASES = [
+    (f"{BALL} 0", BALL, [dialects.LEFT_OUT]),
+    (f"{BALL} 1 1", BALL, [dialects.LEFT_OUT]),
+    (f"{BALL} 100", f"{BALL} specular:0.5,100", [dialects.EXPONENT]),
+    (f"{BALL} 100 0.25", f"{BALL} specular:0.5,100 mirror:0.25", [dialects.EXPONENT]),
+    (f"{BALL} 0.25 100", f"{BALL} specular:0.25,100", [dialects.EXPONENT]),
+    (f"{BALL} 0.25", f"{BALL} mirror:0.25", [dialects.REFLECTIVITY]),
+    (f"{BALL} 1 2 3 4", BALL, [dialects.LEFT_OUT]),
+    (f"{BALL} sh 400 re 0.3", f"{BALL} specular:0.5,400 mirror:0.3", [dialects.HIGHLIGHTS]),
+    (f"{BALL} specular=0.3", f"{BALL} specular:0.3,32", [dialects.HIGHLIGHTS]),
+    (f"{BALL} checkerboard", f"{BALL} checker", [dialects.CHECKERS]),
+    (f"{FLOOR} ch 9,8,7", f"{FLOOR} checker:1,9,8,7", [dialects.CHECKERS]),
+    (f"{FLOOR} cd:1,2,3:4,5,6:0.5", f"{FLOOR} checker:0.5,4,5,6", [dialects.CHECKERS]),
+    (f"{BALL} there.xpm there_bump.png", f"{BALL} texture:there.xpm bump:there_bump.png", [dialects.PICTURES]),
+    (f'{BALL} -t "there.xpm"', f"{BALL} texture:there.xpm", [dialects.PICTURES]),
+    (f"{BALL} tx:absent.xpm", BALL, [dialects.ABSENT]),
+    (f"{BALL} mat:metal:0.2 BNS:0;1", BALL, [dialects.LEFT_OUT]),
+    (f"{BALL} mirror:0.2 twist:9", f"{BALL} mirror:0.2", [dialects.LEFT_OUT]),
+    ("sp 0,0,20 12.6 red", "sp 0,0,20 12.6 255,0,0", [dialects.NAMED]),
+    ("sp 0,0,20 12.6 #0A00ff # blue", BALL, []),
+    ("sp 0,0,20 12.6 shiny", "sp 0,0,20 12.6 9,8,7", [dialects.NAMED]),
+    ("sp 0,0,20 12.6", "sp 0,0,20 12.6 255,255,255", [dialects.WHITE]),
+    ("sp 0,0,20 12.6 rb matte 10,0,255", BALL, [dialects.LEFT_OUT]),
+    ("sp 0,0,20 12,6 10,0,255", BALL, [dialects.CLAMPED]),
+    ("sp 0 0 20 12.6 10 0 255", BALL, [dialects.JOINED]),
+    ("sp (0,0,20), 12.6 10,0,300", BALL, [dialects.CLAMPED]),
+    ("pl 0,-1,0 0,20,0 200,200,200", FLOOR, [dialects.SCALED]),
+    ("l 0,9,0 3.5 255,255,255 7", "l 0,9,0 1 255,255,255", [dialects.CLAMPED, dialects.LEFT_OUT]),
+    ("cu 0,1,0 2 9,8,7", "bo 0,1,0 0,1,0 2,2,2 9,8,7", [dialects.CUBES]),
+    ("cu 0,1,0 1,0,0 2,3,4 9,8,7", "bo 0,1,0 1,0,0 2,3,4 9,8,7", [dialects.CUBES]),
+    ("ci 0,1,0 0,1,0 2 9,8,7", "di 0,1,0 0,1,0 2 9,8,7", []),
+    ("SP 0,0,20 12.6 10,0,255", BALL, []),
+    ("c 0,0,0 0,0,1 70", "", [dialects.CAMERAS]),
+    ("max_depth 8", "", [dialects.SETTINGS]),
+    ("R 4 0", "", [dialects.SETTINGS]),
+    ("sl 0,9,0 1.0 0,1,0 80 9,8,7", "", [dialects.LIGHTS]),
+    ("qd 0,0,0 1,0,0 0,1,0 9,8,7", "", [dialects.MISSING]),
+    ("co 0,1,0 0,1,0 2 9,8,7", "", [dialects.MISSING]),
+]
+
+
+@pytest.fixture(autouse=True)
+def pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("there.png", "there_bump.png"):
+        Image.new("RGB", (2, 2)).save(name)
+    Path("there.xpm").write_text('/* XPM */\nstatic char *a[] = {"1 1 1 1", "a c #000000", "a"};')
+
+
+@pytest.mark.parametrize(("line", "meant", "sorts"), CASES)
+def test_a_line_is_read_as_the_one_that_it_means(line: str, meant: str, sorts: list[str]) -> None:
+    text = f"mat shiny 9,8,7 0.5\n{scene_with(PLANE, line, line)}"
+    with pytest.raises(SceneError):
+        parse(text, "test.rt")
+    scene, notices = parse(text, "test.rt", lenient=True)
+    expected = loads(scene_with(PLANE, *[meant] * 2))
+    assert [str(each) for each in scene.elements] == [str(each) for each in expected.elements]
+    told = {each.message.split(":")[0] for each in notices} - {dialects.SETTINGS}
+    assert told == {each.split(":")[0] for each in sorts} - {dialects.SETTINGS}
+    assert len(notices) == len(told) + 1, "a notice for each sort"
+    # What is saved is strict, and every line that is not read stays as a comment.
+    assert loads(dump(scene)).elements == scene.elements
+    assert bool(meant) or f"# {line}" in dump(scene) or f"# missing: {line}" in dump(scene)
+    assert scene.missing == ((line,) * 2 if dialects.MISSING in sorts else ())
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "scenes").glob("*.rt")), ids=lambda path: path.stem)
+def test_what_strict_reads_lenient_reads_to_the_same_scene(path: Path) -> None:
+    strict, lenient = load(path), load(path, lenient=True)
+    assert strict.scene == lenient.scene
+    assert {each.message for each in strict.notices} == {
+        re.sub(r" \(\d+ places\)$", "", each.message) for each in lenient.notices
+    }
+
+
+@pytest.mark.parametrize("lines", ["qd 0,0,0 1,0,0 9,8,7", "sp 0,0,0\nco 1,2,3"])
+def test_a_scene_of_which_no_shape_can_be_read_is_refused(lines: str) -> None:
+    with pytest.raises(SceneError, match="none of the shapes can be read"):
+        loads(f"{AMBIENT}\n{CAMERA}\n{lines}\n", lenient=True)
+
+
+@pytest.mark.parametrize("lines", [f"{CAMERA}\n{SPHERE}\nA much", "A 0.2 1,2,3\nC 0,0,0 70\nsp 0,0,0 1 1,2,3"])
+def test_errors_in_ambient_light_and_camera_stay_errors(lines: str) -> None:
+    with pytest.raises(SceneError):
+        loads(lines, lenient=True)
+
+
+def test_the_camera_of_the_older_subject_is_the_first_one() -> None:
+    text = f"{AMBIENT}\nc 0,0,-9 0,0,1 60\nc 0,0,9 0,0,-1 60\nl 0,9,0 0.5 255,255,255\n{SPHERE}\n"
+    scene, notices = parse(text, lenient=True)
+    assert scene.camera.position == (0, 0, -9)
+    assert [each.message for each in notices] == [f"{dialects.CAMERAS}: c"]
+
+
+def test_pictures_are_found_beside_the_file(tmp_path: Path) -> None:
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    Image.new("RGB", (2, 2)).save(folder / "skin.png")
+    (folder / "test.rt").write_text(scene_with(f"{BALL} skin.png"))
+    assert load(folder / "test.rt", lenient=True).scene.spheres[0].texture == "skin.png"
