@@ -98,7 +98,8 @@ def registered() -> dict[str, type]:
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Scene:
     """Read a scene file. SceneError, with all of its problems, if the file is not a valid scene.
 
-    `lenient` accepts older spellings: several `L`, blanks around commas, colours with decimals and the like.
+    `lenient` accepts older spellings (several `L`, blanks around commas, colours with decimals) and translates lines of
+    other programs; `scene.missing` has the lines of shapes that it could not read.
     `left_handed` mirrors pictures of the scene, as renderers with left-handed coordinates do.
     """
     from minirt.scene import load as read

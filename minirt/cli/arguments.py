@@ -141,7 +141,7 @@ window:
 
 inspect:
 --check  read the scene and report its errors; render nothing
---lenient  accept older scenes: several L, blanks around commas, ...
+--lenient  read scenes of older and of other programs, and say how
 --bench  measure the frame time: of an eye at rest, and of a moving one
 --json  with --bench: print JSON
 --report=DIR  measure error against run time; write tables, pictures and a diagram into DIR

@@ -45,7 +45,8 @@ def parse(
 
     Textures and meshes are looked for in `folder`, by default that of the file.
 
-    `lenient` accepts, with notices, the habits of older scenes: several `L`, blanks around commas and the like.
+    `lenient` accepts, with notices, the habits of older scenes (several `L`, blanks around commas and the like), and
+    translates lines of other programs (`minirt.scene.dialects`).
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):
