@@ -128,9 +128,10 @@ class Renderer:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and the unclamped
         light into `linear`, float64 (h, w, 3), if given: the whole picture, or the rectangle at `crop` of a larger one.
 
-        False where `cancel` ended it early. `is_wanted` is asked once, as soon as `cancel` has an effect: whoever first
-        stops wanting the picture and then cancels is heard at any time. With `edges_only` the pixels hold a picture of
-        the scene, which is rendered again only where neighbours differ; elsewhere the light stays as it is, too.
+        False where `cancel` ended it early, or `is_wanted` says no. It is asked as soon as `cancel` has an effect, and
+        after the last ray: whoever first stops wanting the picture and then cancels is heard at any time. With
+        `edges_only` the pixels hold a picture of the scene, which is rendered again only where neighbours differ;
+        elsewhere the light stays as it is, too.
         """
         with self.busy:
             return self._draw(Request(scene, pixels, linear, crop), samples, is_wanted, edges_only)
@@ -145,8 +146,8 @@ class Renderer:
         if not is_done:
             is_done = self.runner.render_samples(self.packing, request, samples, is_wanted, edges_only)
         if is_done:
-            self.tone_mapper.apply(request)
-        return is_done
+            self.tone_mapper.apply(request, is_wanted)
+        return is_done and is_wanted()
 
     def _begin(self, request: Request, edges_only: bool = False) -> tuple[Request, bool]:
         """Return the request with an array for its light, and whether it is done, as it shows the background alone.

@@ -84,7 +84,7 @@ def blue_noise() -> np.ndarray:
 
 NO_LINEAR = np.zeros((0, 0, 3))
 DITHERING = sqrt(2)  # ratio of the RMSE of dithering to that of rounding, where all fractions of a level are as likely
-STRIP = 64  # lines at once: their data fits a processor's cache
+STRIP = 16  # lines at once: their data fits a processor's cache
 CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
 
 
@@ -96,15 +96,19 @@ def map_tones(
     crop: Crop | None = None,
     part: int = 0,
     parts: int = 1,
+    is_wanted: Callable[[], bool] = lambda: True,
 ) -> None:
     """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
 
     Pixels whose light is NaN stay as they are. The pattern that dithers begins with the whole picture, of which `crop`
-    may be a part. Of several `parts`, which may be mapped side by side, this maps one.
+    may be a part. Of several `parts`, which may be mapped side by side, this maps one. It ends early where `is_wanted`,
+    which is asked every few milliseconds, says no.
     """
     curve = tone_named(tone)
     left, above = (crop.left, crop.top) if crop else (0, 0)
     for top in range(part * STRIP, len(light), parts * STRIP):
+        if not is_wanted():
+            return
         strip = np.ascontiguousarray(light[top : top + STRIP])
         if dither:
             exact = np.interp(strip, curve.light, np.arange(LEVELS))
@@ -139,7 +143,9 @@ def rounding_error(pixels: np.ndarray, tone: str, dither: bool) -> float:
         variances = (widths[1:] + widths[:-1]) / 12
     else:
         variances = np.diff(np.minimum(curve.halfway, 1.0), prepend=0.0, append=1.0) ** 2 / 12
-    counts = np.bincount(pixels[..., :3].ravel(), minlength=LEVELS)
+    counts = np.zeros(LEVELS, np.int64)
+    for top in range(0, len(pixels), STRIP):  # as counting keeps the interpreter from all other threads
+        counts += np.bincount(pixels[top : top + STRIP, ..., :3].ravel(), minlength=LEVELS)
     return sqrt(float(counts @ variances) / max(counts.sum(), 1))
 
 
@@ -172,12 +178,12 @@ class ToneMapper:
             self.scratch[...] = nan
         return self.scratch
 
-    def apply(self, request: Request) -> None:
-        """Write the levels of a picture, if the kernel has not."""
+    def apply(self, request: Request, is_wanted: Callable[[], bool] = lambda: True) -> None:
+        """Write the levels of a picture, if the kernel has not; as `map_tones` only while it is wanted."""
         scene, pixels, light, crop = request
         if self.needed(scene):
-            arguments = light, pixels, scene.camera.tone, self.dither, crop
-            self.run([partial(map_tones, *arguments, part, self.threads) for part in range(self.threads)])
+            map_part = partial(map_tones, light, pixels, scene.camera.tone, self.dither, crop, is_wanted=is_wanted)
+            self.run([partial(map_part, part=part, parts=self.threads) for part in range(self.threads)])
 
     def rounding(self, request: Request) -> float:
         """Return the RMSE of rounding or dithering a picture, in light clamped to [0, 1]."""

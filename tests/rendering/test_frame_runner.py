@@ -186,6 +186,11 @@ def test_a_picture_that_is_not_wanted_is_not_begun() -> None:
     assert np.array_equal(pixels, before)
 
 
+def test_a_picture_that_is_not_wanted_after_the_last_ray_is_not_done() -> None:
+    answers = iter([True, False])
+    assert not TWO.render(ALL, picture(ALL, 20, 15)[0], is_wanted=lambda: next(answers))
+
+
 def test_a_cancel_before_the_first_packet_is_heard() -> None:
     renderer = Renderer(2)
     renderer.prepare(ALL)

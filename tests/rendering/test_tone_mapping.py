@@ -126,6 +126,16 @@ def test_strips_and_parts_make_no_difference(tone: str, dither: bool) -> None:
     assert np.array_equal(alone, whole)
 
 
+def test_a_picture_that_is_not_wanted_any_more_is_not_mapped() -> None:
+    answers = iter([True, False])
+    whole, pixels = mapped(PICTURE, "srgb", False), np.zeros((*PICTURE.shape[:2], 4), np.uint8)
+    map_tones(PICTURE, pixels, "srgb", is_wanted=lambda: next(answers))
+    drawn = (pixels == whole).all(axis=(1, 2))
+    assert drawn[0]
+    assert not pixels[~drawn].any()
+    assert not drawn.all()
+
+
 def test_pixels_without_light_stay_as_they_are() -> None:
     light = PICTURE.copy()
     light[3:50:2, 5] = np.nan

@@ -6,6 +6,8 @@ again.
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -23,6 +25,7 @@ Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 IsWanted: TypeAlias = Callable[[], bool]  # whether a picture is still wanted
 
 PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview appears: loading one takes less
+NICENESS = 10  # of rendering: keys and the window are served first
 PASS_GROWTH = 4  # ratio of samples from one refinement pass to the next
 
 
@@ -171,6 +174,8 @@ class BackgroundPainter(Painter):
 
     def _work(self) -> None:
         """Render requests until the painter is closed: the body of the thread."""
+        if sys.platform == "linux":  # for this thread and those that it starts; elsewhere for the whole process
+            os.nice(NICENESS)
         while True:
             with self._changed:  # wait for a request, and take the latest
                 self._changed.wait_for(lambda: self._waiting or self._closed)

@@ -52,7 +52,9 @@ class Refinement:
             if outcome.error:
                 errors.append(outcome.error)
                 continue
-            if not outcome.preview:
+            # A still picture that comes after the next movement has begun would set the resolution of that movement.
+            late = outcome.pixels is not None and not outcome.job.urgent and outcome.job is not self._requested
+            if not outcome.preview and not late:
                 self.resolution.record(outcome)
             if outcome.pixels is not None:
                 self.latest = outcome

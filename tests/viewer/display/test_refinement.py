@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+import numpy as np
 import pytest
 
 from minirt.mlx import Key
@@ -109,6 +110,24 @@ def test_a_picture_cancelled_without_a_newer_request_is_requested_again():
     harness.painter.notify()
     harness.memory.play()
     assert len(harness.painter.requests) == 2
+
+
+def test_a_still_picture_that_is_late_does_not_slow_down_the_next_movement():
+    """Seen on a slow scene: a press came while the still picture's levels were written, and the press after it had to
+    wait for a picture of full resolution."""
+    harness = SessionHarness()
+    still = harness.painter.requests[0]
+    harness.finish(FRAME_TIME * 30)
+    harness.play("down d")
+    coarse = harness.painter.divisors[-1]
+    assert coarse > 1
+    harness.painter.outcomes.append(Outcome(still, np.zeros(still.shape, np.uint8), seconds=FRAME_TIME * 30))
+    harness.painter.notify()
+    harness.memory.play()
+    harness.finish(FRAME_TIME * 30 / coarse**2)
+    harness.play("up d", "down d")
+    assert harness.painter.requests[-1].urgent
+    assert harness.painter.divisors[-1] == coarse
 
 
 # Adaptive resolution: the divisor follows the measured times, without flicker.
