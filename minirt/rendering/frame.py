@@ -34,8 +34,7 @@ def sample_positions(samples: int) -> np.ndarray:
     """
     index = np.arange(samples)
     lattice = np.stack([(index + 0.5) / samples, (index * GOLDEN_RATIO + 0.5) % 1.0], axis=1)
-    centred: np.ndarray = lattice - lattice.mean(axis=0) + 0.5
-    return centred
+    return lattice - lattice.mean(axis=0) + 0.5
 
 
 class Frame(NamedTuple):
@@ -192,12 +191,10 @@ def positions_of(count: int, drawn: int, pairs: int, pixels: int, with_places: b
 @cache
 def random_shifts(variants: int, pixels: int) -> np.ndarray:
     """Independent shifts of both references of each pair, (2 * variants, pixels, 2), the same at each call."""
-    shifts: np.ndarray = random_numbers(2 * variants * pixels * 2).reshape(2 * variants, pixels, 2)
-    return shifts
+    return random_numbers(2 * variants * pixels * 2).reshape(2 * variants, pixels, 2)
 
 
 @cache
 def random_numbers(count: int) -> np.ndarray:
     """Random numbers in [0, 1), the same at each call: from a stream that numpy keeps stable."""
-    numbers: np.ndarray = (np.random.PCG64(2).random_raw(count) >> np.uint64(11)) * 2.0**-53
-    return numbers
+    return (np.random.PCG64(2).random_raw(count) >> np.uint64(11)) * 2.0**-53

@@ -63,8 +63,7 @@ def light_of(levels: np.ndarray, name: str) -> np.ndarray:
 
 def decode_srgb(levels: np.ndarray) -> np.ndarray:
     """Return the light of levels in [0, 1] of sRGB."""
-    light: np.ndarray = np.where(levels <= TOE, levels / SLOPE, ((levels + OFFSET) / (1 + OFFSET)) ** GAMMA)
-    return light
+    return np.where(levels <= TOE, levels / SLOPE, ((levels + OFFSET) / (1 + OFFSET)) ** GAMMA)
 
 
 NOISE = 64  # pixels along an edge of the square of blue noise

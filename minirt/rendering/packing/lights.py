@@ -134,5 +134,4 @@ def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radi
         harmless = (heights * slopes > 0) & (np.abs(slopes) > MARGIN + tangent_of(light))
     owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
     glass = [shape_arrays.shapes[owner].glass for owner in owners]
-    skipped: np.ndarray = harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
-    return skipped
+    return harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
