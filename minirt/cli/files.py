@@ -45,16 +45,19 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
 
 @contextmanager
 def lenience_noted(options: argparse.Namespace) -> Iterator[None]:
-    """Add a note to the error of a file that --lenient reads."""
+    """Add notes to the errors of a file: what lines may mean, and whether --lenient reads it."""
     try:
         yield
     except SceneError as error:
         if not options.lenient and options.scene[0] != "-":
             from minirt.scene import load
+            from minirt.scene.dialects import suggestions
 
+            for suggestion in suggestions(error.problems):
+                error.add_note(suggestion)
             with suppress(SceneError):
                 missing = load(options.scene[0], lenient=True).scene.missing
-                but = f" but for the shapes of {len(missing)} lines" if missing else ""
+                but = f" without {len(missing)} of its shapes" if missing else ""
                 error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
         raise
 

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, positional_fields
-from minirt.errors import FieldError, FileError, quoted
+from minirt.errors import FieldError, FileError, Problem, printable, quoted
 from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
 from minirt.fields.scalars import Scalar
 from minirt.scene.elements import LAMPS, Ambient, Camera, Resolution
-from minirt.scene.lines import Line, Log
+from minirt.scene.lines import Line, Log, line_from
 from minirt.scene.registry import SHAPES, SPELLINGS
 
 # Sorts of changes, as notices tell them.
@@ -106,6 +106,7 @@ ROWS = (
     Row(N, one_number, REFLECTIVITY),
 )
 GUESSES = EXPONENT, REFLECTIVITY
+MOST_SUGGESTED = 3  # lines
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
 
 
@@ -332,3 +333,11 @@ def check_shapes_left(items: list[Any], log: Log) -> None:
     if MISSING in log.changes and not any(isinstance(item, SHAPES) for item in items):
         line, code = log.changes[MISSING][0]
         log.error(line, f"none of the shapes can be read, of which {quoted(code)} is the first", 1, len(code))
+
+
+def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
+    """Yield what the first of the lines that a strict reader refuses may mean."""
+    for number, text in list(dict.fromkeys((each.line, each.text) for each in problems))[:MOST_SUGGESTED]:
+        meant = translated(line_from(number, text), has_camera=False, colours={}, folder=None)
+        if meant and meant.text:
+            yield f"line {number}: did you mean '{printable(meant.text)}'?"
