@@ -87,24 +87,21 @@ def frame(
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
     is_planned = rarely(plan.shape[0] > 0)
+    has_parts = scene.square < TILE
     end = plan.shape[0] if is_planned else height
     while True:
         top = fetch_add(next_row, TILE)
         if top >= end:
             return
         for left in range(0, 1 if is_planned else across, TILE):
-            tile = tile_at(left, 0 if is_planned else top, across)
+            tile = tile_at(scene, left, 0 if is_planned else top, across)
             empty = not has_environment(scene) and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
             # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, each in
             # any tile, take all of their samples one after the other.
             for outer in range(min(TILE, end - top) if is_planned else rays.shape[0]):
-                inners, item = packets, -1
-                if is_planned:
-                    item = top + outer
-                    inners = planned_rays(plan, item)
-                    tile = tile_at(plan[item, 0] * packet_width, plan[item, 1] * PACKET_HEIGHT, across)
-                    empty = not has_environment(scene) and is_empty(scene, tile)
+                item = top + outer if is_planned else -1
+                inners = planned_rays(plan, item) if is_planned else packets
                 for inner in range(inners):
                     y, x = top + inner // columns * PACKET_HEIGHT, left + inner % columns * packet_width
                     estimate, row, sample, samples, place = 0, outer, outer, rays.shape[0], 3 * inner * width(rays)
@@ -116,6 +113,9 @@ def frame(
                         continue
                     if rarely(next_row[0] >= CANCELLED):
                         return
+                    if rarely(has_parts or (is_planned and inner == 0)):
+                        tile = tile_at(scene, x, y, across)
+                        empty = not has_environment(scene) and is_empty(scene, tile)
                     if empty:
                         store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
                         continue
@@ -127,9 +127,9 @@ def frame(
                         store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, item)
 
 
-def tile_at(x: int, y: int, across: int) -> int:
-    """Return the number of the tile with a pixel, in a picture of so many pixels across."""
-    return y // TILE * tile_count(across) + x // TILE
+def tile_at(scene: SceneArrays, x: int, y: int, across: int) -> int:
+    """Return the number of the tile with a pixel, in a picture of so many pixels across, or of the square in it."""
+    return y // scene.square * tile_count(across, scene.square) + x // scene.square
 
 
 def planned_rays(plan: Any, item: int) -> int:
@@ -149,6 +149,6 @@ def planned(plan: Any, item: int, turn: int) -> tuple[int, int, int, int]:
     return 1 + estimate, reference + turn, turn - estimate * each, each
 
 
-def tile_count(pixels: int) -> int:
-    """Return the number of tiles that cover a picture of so many pixels along one edge."""
-    return (pixels + TILE - 1) // TILE
+def tile_count(pixels: int, square: int = TILE) -> int:
+    """Return the number of tiles, or of smaller squares, that cover a picture of so many pixels along one edge."""
+    return (pixels + square - 1) // square

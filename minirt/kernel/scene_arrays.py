@@ -50,6 +50,7 @@ class SceneArrays(NamedTuple):
     slots: Any  # (n, 2) index of each shape's group, and of its row in that group
     tile_shapes: Any  # shapes of all tiles, those of a tile and kind sorted by distance; behind them room for more
     cones: Any  # (n, 5) bounding cones as seen from the eye
+    square: int  # pixels along an edge of the squares of the screen that have lists: a tile, or less in a crowd
     light_buffer_cells: int  # cells along an edge of a light buffer's cube; 1 if light buffers are not used
     light_tolerances: Any  # (m,) how far around their cells the lists of light buffers hold, squared
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance

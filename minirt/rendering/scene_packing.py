@@ -12,6 +12,7 @@ from minirt.helpers.system import TooLargeError
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code import functions
+from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
@@ -129,11 +130,11 @@ class Packing:
         traits = materials.traits_of(packed, len(shapes.slots))
         extents = np.zeros((len(shapes.slots) * (self.precision == "single"), 4), np.float32)
         if TILES in self.without:
-            eye = visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))
+            square, eye = TILE, visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))
             seen = int(np.bitwise_or.reduce(traits))
         else:
             self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, extents)
-            eye, seen = self.view.look(scene.camera, self.run)
+            square, (eye, seen) = self.view.square, self.view.look(scene.camera, self.run)
         needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
         trees = cached("trees", pack_trees, shapes, self.kernel)
         paint: Any = scene.background and scene.background.paint
@@ -150,6 +151,7 @@ class Packing:
             slots=shapes.slots,
             tile_shapes=eye.members,
             cones=eye.cones,
+            square=square,
             light_buffer_cells=cells,
             **light_buffers,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count(), trees)),
@@ -227,9 +229,9 @@ def all_but_pose(scene: Scene) -> tuple[Any, ...]:
 
 def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
-    starts, cones = np.zeros((len(shapes.rows), 0, 1), np.int64), np.zeros((0, len(shapes.slots), 5))
+    starts, cones = np.zeros((len(shapes.rows), 0, 1), np.int32), np.zeros((0, len(shapes.slots), 5))
     if binned:
-        offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])])
+        offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])], dtype=np.int32)
         starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
         cones = np.stack([each.cones for each in binned])
     return starts, {

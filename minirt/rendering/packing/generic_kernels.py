@@ -14,6 +14,7 @@ import numpy as np
 from minirt.kernel import bvh_nodes
 from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_nodes import WIDTH, Tree
+from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays, row_type
 from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
@@ -106,12 +107,13 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         slots=integers((0, 2)),
         tile_shapes=indices,
         cones=numbers((0, 5)),
+        square=TILE,
         light_buffer_cells=1,
         light_tolerances=numbers(0),
         light_shapes=indices,
         light_cones=numbers((0, 0, 5)),
         groups=tuple(
-            Group(each, integers(0), integers((0, 0)), ABSENT, trees if kind is MESH else None)
+            Group(each, indices, indices.reshape(0, 0), ABSENT, trees if kind is MESH else None)
             for kind, each in zip(ALL_KINDS, rows, strict=True)
         ),
         eye_medium=numbers(3),

@@ -14,8 +14,10 @@ import numpy as np
 
 from minirt.kernel.beams import CENTRE, MeshTrees
 from minirt.kernel.machine_code.functions import bound
+from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.kernel.scene_arrays import SceneArrays, kind_of, row_axes, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN
+from minirt.lanes import width
 from minirt.rendering.packing.camera import (
     Place,
     camera_frame,
@@ -25,7 +27,7 @@ from minirt.rendering.packing.camera import (
     slopes_at_edges,
 )
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run, screen_grid
+from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run, screen_grid, square_edge
 from minirt.scene import Camera
 
 SPARE = 0.25  # of the lists of a camera that moves
@@ -52,7 +54,8 @@ class View:
         if radius:
             shapes = copy(shapes)
             shapes.balls = blurred_balls(shapes.balls, camera_numbers(camera, *self.size), radius, per_focus)
-        grid = screen_grid(*slopes_at_edges(camera, *self.size), place)
+        self.square = square_edge(shapes, width(extents if len(extents) else shapes.balls) // PACKET_HEIGHT)
+        grid = screen_grid(*slopes_at_edges(camera, *self.size), place, self.square)
         self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, traits=traits, extents=extents)
 
     def look(self, camera: Camera, run: Run | None) -> tuple[BinnedShapes, int]:

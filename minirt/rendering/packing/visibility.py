@@ -23,18 +23,20 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 # Vectors across, down and forward of the six faces of a cube, in the order of `cell_of_cube` in
 # `minirt.kernel.shadow_rays`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-SPREAD = 0.5  # of the mean angle of a cell: the list of a cell holds for all directions so close to one in it
-# Cells by which the intervals of a cube grow so that a list holds for directions up to `SPREAD` away: at the corner of
-# a face, where slopes change most with the angle, an angle e changes them by less than 3 e.
-CUBE_MARGIN = 3 * SPREAD * np.pi / 4
+# Of the mean angle of a cell: its list holds for all directions so close to one in it. Neighbouring rays often share a
+# cell, but seldom in a crowd, where the lists are best kept short.
+SPREAD, SPREAD_IN_CROWD = 0.5, 0.1
+CROWD = 256  # cells along an edge of a cube, or more
 # The most shapes, and the cells along an edge of a light's cube with which building and using the lists was measured to
 # take least. A mesh, which has a tree of its own, is one shape.
 SMALL = 8
 CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (1_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
+# The most shapes, and pixels along an edge of the squares of the screen with which drawing was measured to take least.
+SQUARES_BY_SHAPES = ((50_000, TILE), (500_000, TILE // 2), (np.inf, TILE // 4))
 
-MEMBER, START, RECTANGLE = 4, 8, 32  # bytes of a member and of a start of a list, and of a rectangle of cells
+MEMBER, START, RECTANGLE = 4, 4, 32  # bytes of a member and of a start of a list, and of a rectangle of cells
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
-QUICKLY_BUILT = 2**29  # bytes of lists that are built within seconds
+QUICKLY_BUILT = 2**28  # bytes of lists that are built within seconds
 MOST_MEMBERS = 2**24  # of all cells that have every shape
 PARALLEL = 4096  # shapes from which on several threads project them
 
@@ -47,7 +49,7 @@ Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all thre
 class BinnedShapes(NamedTuple):
     """The shapes that may be hit in each cell: `members[starts[kind, cell]:starts[kind, cell + 1]]`, nearest first."""
 
-    starts: np.ndarray  # (kinds, cells + 1)
+    starts: np.ndarray  # int32 (kinds, cells + 1)
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
     tolerance: float = 0.0  # of the lists of a light: see `minirt.kernel.shadow_rays`
@@ -58,24 +60,40 @@ def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
     return next(cells for most, cells in CELLS_BY_SHAPES if len(shape_arrays.shapes) <= most)
 
 
-def screen_grid(half_width: float, half_height: float, place: Place) -> Grid:
-    """The tiles of a rectangle of so many pixels of a picture as a grid, each extended by a pixel on all sides.
+def screen_grid(half_width: float, half_height: float, place: Place, square: int = TILE) -> Grid:
+    """The tiles, or smaller squares, of a rectangle of a picture as a grid, each extended by a pixel on all sides.
 
     `half_width` and `half_height` are the slopes at the edges of the picture. The frame is that of a camera to come.
     """
     *size, crop = place
-    across, down = map(tile_count, size)
-    x, y = crop.width / (2 * TILE), crop.height / (2 * TILE)
-    first = crop.left // TILE, crop.top // TILE
+    across, down = (tile_count(pixels, square) for pixels in size)
+    x, y = crop.width / (2 * square), crop.height / (2 * square)
+    first = crop.left // square, crop.top // square
     scales = x / half_width, x, y / half_height, y
-    return Grid(np.zeros((1, 3, 3)), across, down, *scales, 1 / TILE, across * down, *first)
+    return Grid(np.zeros((1, 3, 3)), across, down, *scales, 1 / square, across * down, *first)
+
+
+def square_edge(shape_arrays: ShapeArrays, packet_width: int) -> int:
+    """Choose the pixels along an edge of the squares of the screen that have lists: a tile or, in a crowd, a part of
+    it that is not smaller than a packet."""
+    count = len(shape_arrays.listed)
+    return max(packet_width, next(edge for most, edge in SQUARES_BY_SHAPES if count <= most))
+
+
+def spread_of(cells: int) -> float:
+    """The share of the mean angle of a cell, so many of which lie along an edge of a cube, by which lists spread."""
+    return SPREAD if cells < CROWD else SPREAD_IN_CROWD
 
 
 @cache
 def cube_grid(cells: int) -> Grid:
-    """The six faces of the cube around a light as a grid, so many cells along an edge."""
-    half = cells / 2
-    return Grid(FACES, cells, cells, half, half, half, half, CUBE_MARGIN, 6 * cells * cells)
+    """The six faces of the cube around a light as a grid, so many cells along an edge.
+
+    Intervals grow so that a list holds for directions up to its spread away: at the corner of a face, where slopes
+    change most with the angle, an angle e changes them by less than 3 e.
+    """
+    half, margin = cells / 2, 3 * spread_of(cells) * np.pi / 4
+    return Grid(FACES, cells, cells, half, half, half, half, margin, 6 * cells * cells)
 
 
 def seen_by_light(
@@ -97,7 +115,7 @@ def seen_by_light(
     bins.see_from(light, run)
     if cells == 1:
         return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
-    spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)  # distance up to which lists hold around a cell
+    spread = 2 * np.sin(spread_of(cells) * np.pi / 4 / cells)  # distance up to which lists hold around a cell
     return BinnedShapes(bins.starts, bins.members, bins.seen.cones, float(spread * spread))
 
 
@@ -106,7 +124,7 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
     every = in_all_cells(shape_arrays, 1, skipped)
     if cells == 1:
         return every
-    starts = np.zeros((len(shape_arrays.rows), 6 * cells * cells + 1), np.int64)
+    starts = np.zeros((len(shape_arrays.rows), 6 * cells * cells + 1), np.int32)
     return every._replace(starts=starts, members=every.members[:0])
 
 
@@ -154,7 +172,7 @@ class Bins:
             extents=extents,
         )
         self.counter, self.entries = np.zeros(1, np.int64), np.empty((2, room), np.int64)
-        self.starts, self.members = np.zeros((kinds, grid.cells + 1), np.int64), np.zeros(0, np.int32)
+        self.starts, self.members = np.zeros((kinds, grid.cells + 1), np.int32), np.zeros(0, np.int32)
         self.project = bound(kernel.project_shapes, self.counter, self.seen)
         self.fill = self.bound_fill()
 
@@ -208,7 +226,7 @@ def in_all_cells(
     # All lists of one kind come first, then all lists of the next kind.
     lists = [np.tile(members[first:last], cells) for first, last in ends]
     starts = cells * ends[:, :1] + np.diff(ends) * np.arange(cells + 1)
-    return BinnedShapes(starts, np.concatenate([members[:0], *lists]), cones)
+    return BinnedShapes(starts.astype(np.int32), np.concatenate([members[:0], *lists]), cones)
 
 
 def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from random import SystemRandom
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +22,7 @@ from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing import visibility
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.renderer import Renderer
+from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Light, Scene, parse
 from minirt.shapes.cylinder import Cylinder
@@ -59,7 +61,8 @@ def camera_hits(arrays: Any) -> RayHits:
     """All hits of the rays of a picture."""
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
     origin, direction = Vec(*arrays.camera[:3]), unit(ray_direction(arrays.camera, x, y))
-    tile = (y // TILE * tile_count(WIDTH) + x // TILE).astype(int)
+    edge = arrays.square
+    tile = (y // edge * tile_count(WIDTH, edge) + x // edge).astype(int)
     found = [RayHits(*np.zeros((4, 0), int))]
     for index, (hit, t) in enumerate(hits_of_all_shapes(arrays, origin, direction)):
         cone = np.broadcast_to(in_cone(arrays.cones[index], direction), x.shape)
@@ -101,12 +104,24 @@ SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) fo
 KERNELS = pytest.mark.parametrize("kernel", [binning, functions], ids=["interpreted", "compiled"])
 
 
+@pytest.fixture(params=[False, True], ids=["few", "crowd"])
+def crowd(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The lists as usual, and those that crowds have, of smaller squares and with a smaller spread, for all scenes."""
+    visibility.cube_grid.cache_clear()
+    if request.param:
+        monkeypatch.setattr(visibility, "SQUARES_BY_SHAPES", ((np.inf, TILE // 4),))
+        monkeypatch.setattr(visibility, "CROWD", 1)
+    yield
+    visibility.cube_grid.cache_clear()
+
+
 @KERNELS
 @pytest.mark.parametrize(("make", "seed"), SCENES)
+@pytest.mark.usefixtures("crowd")
 def test_a_tile_lists_all_shapes_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
     arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     seen, in_tile = camera_hits(arrays), members(arrays, "tile_starts", arrays.tile_shapes)
-    assert len(in_tile) == tile_count(WIDTH) * tile_count(HEIGHT)
+    assert len(in_tile) == tile_count(WIDTH, arrays.square) * tile_count(HEIGHT, arrays.square)
     assert in_tile[seen.tile, seen.shape].all()
     assert seen.in_cone.all()
     assert (seen.distance >= arrays.cones[seen.shape, 4]).all()
@@ -131,6 +146,7 @@ def unit_direction(random: np.random.Generator) -> Any:
 
 @KERNELS
 @pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
+@pytest.mark.usefixtures("crowd")
 def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
     arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     random = np.random.default_rng(seed)
@@ -155,6 +171,22 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any,
             assert (t[hit] >= arrays.light_cones[light, shape, 4]).all()
             assert (in_cone(arrays.light_cones[light, shape], Vec(*directions)) | ~hit).all()
             assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_the_lists_of_a_crowd_change_no_bit_of_a_picture(precision: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    seed = SystemRandom().randrange(2**32)
+    scene = random_scene(seed).add(Sphere((0, 0, 0), 1, (9, 9, 9)), Cylinder((1, 0, 0), (0, 1, 0), 1, 1, (9, 9, 9)))
+    drawn = []
+    for edge in (TILE, TILE // 4):
+        monkeypatch.setattr(visibility, "SQUARES_BY_SHAPES", ((np.inf, edge),))
+        renderer, pixels, light = Renderer(2, precision), np.zeros((HEIGHT, WIDTH, 4), np.uint8), []
+        for samples, edges_only in ((1, False), (3, False), (2, True)):  # the last one by a plan of packets
+            light.append(np.zeros((HEIGHT, WIDTH, 3)))
+            renderer.render(scene, pixels, samples, light[-1], edges_only=edges_only)
+        drawn.append(np.stack(light))
+        assert (renderer.packing.last[2].square < TILE) == (edge < TILE)
+    assert np.array_equal(*drawn), seed
 
 
 @pytest.mark.parametrize(("make", "seed"), SCENES)
