@@ -12,19 +12,20 @@ import numpy as np
 
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.arguments import words_of
-from minirt.kernel.pixels import PACKET_HEIGHT
+from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.lanes import width
-from minirt.rendering.frame import Frame, frame_arguments, plan_of, sum_buffer, thread_memory
+from minirt.rendering.frame import Frame, frame_arguments, plan_of, plan_of_variants, sum_buffer, thread_memory
 from minirt.rendering.kernels import Choice, Kernels
 from minirt.rendering.outcome import Outcome
-from minirt.rendering.packing.camera import Request, has_apertures, packet_rays, with_apertures
+from minirt.rendering.packing.camera import Crop, Request, has_apertures, packet_rays, with_apertures
 from minirt.rendering.sampling.auto import AutoSampler, CancelledError
 from minirt.rendering.sampling.packets import EDGE, Packets, contrast_classes
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.threads import Job, ThreadPool
 
 BRIEF = 0.05  # seconds for which Ctrl+C may wait
+FEW_ROWS = 8  # of tiles for each thread: with fewer, threads take packets in place of rows, to end at the same time
 
 
 class FrameRunner:
@@ -60,16 +61,20 @@ class FrameRunner:
         return self.next_row
 
     def run(self, frame: Frame) -> None:
-        """Render a frame on all threads, which share its rows; an error of any is raised.
+        """Render a frame on all threads, which share its rows or its packets; an error of any is raised.
 
         The caller's thread is one of them where the frame is expected to be brief; else it only waits, so that Ctrl+C
         reaches it.
         """
         choice = self.choose(frame)
+        work = inf if len(frame.plan) else len(frame.rays) * frame.pixels.size
+        height, across = frame.pixels.shape
+        if work == frame.pixels.size and height < TILE * FEW_ROWS * self.threads:
+            whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
+            frame = frame._replace(plan=whole)
         memories = [(thread_memory(frame.scene), sum_buffer(frame.scene)) for _ in range(self.threads)]
         start, shared = perf_counter(), words_of(frame[:-3])
         jobs: list[Job] = [partial(choice.entry.run, shared + words_of(each) + self.words) for each in memories]
-        work = inf if len(frame.plan) else len(frame.rays) * frame.pixels.size
         self.pool.run(jobs, self.cancel, helps=self.pace * work < BRIEF)
         seconds = perf_counter() - start
         if work < inf and frame.next_row[0] < CANCELLED:

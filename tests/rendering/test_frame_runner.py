@@ -186,6 +186,14 @@ def test_a_picture_that_is_not_wanted_is_not_begun() -> None:
     assert np.array_equal(pixels, before)
 
 
+def test_packets_and_rows_that_threads_take_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    packets, rows = np.empty((2, 51, 93, 4), np.uint8)
+    TWO.render(ALL, packets)
+    monkeypatch.setattr(frame_runner, "FEW_ROWS", 0)
+    TWO.render(ALL, rows)
+    assert np.array_equal(packets, rows)
+
+
 def test_a_picture_that_is_not_wanted_after_the_last_ray_is_not_done() -> None:
     answers = iter([True, False])
     assert not TWO.render(ALL, picture(ALL, 20, 15)[0], is_wanted=lambda: next(answers))
