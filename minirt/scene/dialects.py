@@ -17,7 +17,7 @@ from minirt.errors import FieldError, FileError, Problem, printable, quoted
 from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
 from minirt.fields.scalars import Scalar
 from minirt.scene.elements import LAMPS, Ambient, Camera, Resolution
-from minirt.scene.lines import Line, Log, line_from
+from minirt.scene.lines import Line, Log, first_unprintable, line_from
 from minirt.scene.registry import SHAPES, SPELLINGS
 
 # Sorts of changes, as notices tell them.
@@ -135,13 +135,13 @@ def colours_of_materials(sources: list[str]) -> dict[str, str]:
 
 
 def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder: Path | None) -> Translation | None:
-    """Translate a line: to '' where it is no element, or one that is not known; None where it has no words.
+    """Translate a line: to '' where it is no element, or one that is not known; None where it stays an error.
 
     `colours` are those of named materials, and pictures are looked for in `folder`.
     """
     body, _, comment = HEX.sub(lambda colour: css_colour(colour[0]), line.text).partition("#")
     words = ["".join(word.split()) for word in WORD.findall(body)]
-    if not words:
+    if not words or first_unprintable(line) >= 0:
         return None
     code, *values = words
     kind = SPELLINGS.get(CODES.get(code.lower(), code)) or SPELLINGS.get(code.lower()) or SPELLINGS.get(code.upper())

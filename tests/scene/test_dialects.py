@@ -98,8 +98,10 @@ def test_a_scene_of_which_no_shape_can_be_read_is_refused(lines: str) -> None:
         loads(f"{AMBIENT}\n{CAMERA}\n{lines}\n", lenient=True)
 
 
-@pytest.mark.parametrize("lines", [f"{CAMERA}\n{SPHERE}\nA much", "A 0.2 1,2,3\nC 0,0,0 70\nsp 0,0,0 1 1,2,3"])
-def test_errors_in_ambient_light_and_camera_stay_errors(lines: str) -> None:
+@pytest.mark.parametrize(
+    "lines", [f"{CAMERA}\n{SPHERE}\nA much", "A 0.2 1,2,3\nC 0,0,0 70\nsp 0,0,0 1 1,2,3", f"{CAMERA}\n{SPHERE} \x1b[2J"]
+)
+def test_errors_in_ambient_light_and_camera_and_hidden_characters_stay_errors(lines: str) -> None:
     with pytest.raises(SceneError):
         loads(lines, lenient=True)
 
