@@ -14,7 +14,7 @@ import numpy as np
 
 from minirt.kernel.bvh_build import LEVELS, MARGIN
 from minirt.kernel.trace import COINCIDENT
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, max_norm, maximum, minimum, save_vec, width
+from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, load_vec, max_norm, maximum, minimum, save_vec, width
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
 TINY = 2.0**-500  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
@@ -29,7 +29,11 @@ NEXT = 18 * WIDTH  # the tagged distance of the node or leaf that each ray visit
 TOP = 19 * WIDTH  # for each ray the offset of the top row of its stack, an integer
 STACK = 20 * WIDTH  # for each level of the tree and each ray a row: the tagged distances of children still to visit
 STACK_LEVEL = WIDTH * WIDTH  # numbers of one level of the stacks of all rays
-MEMORY = STACK + (LEVELS + WIDTH) * STACK_LEVEL
+# For the root and each level of the tree, of what the packet as a whole has still to visit: tagged distances, and which
+# rays meet it.
+PACKET = STACK + (LEVELS + WIDTH) * STACK_LEVEL
+PACKET_LEVEL = 2 * WIDTH
+MEMORY = PACKET + (1 + LEVELS + WIDTH) * PACKET_LEVEL
 
 
 class Group(NamedTuple):
@@ -38,6 +42,7 @@ class Group(NamedTuple):
     rows: Any  # a row for each shape
     blocks: Any  # a block has `WIDTH` lanes for each number of a packed shape; lanes to spare repeat the last shape
     labels: Any  # (blocks, WIDTH, 2) index in the scene and extent of the shape in each lane of a block
+    boxes: Any  # flat, for each block the low x, y, z and high x, y, z of its shapes; infinite in lanes to spare
     unbounded: Any  # (k,) indices in the scene of shapes without a bounding box; None for a kind that is not infinite
     number: int  # of the group in `Tree.slots`; -1 without rows
 
@@ -91,21 +96,36 @@ def near_planes(inverse: Vec) -> tuple[int, int, int]:
 def intersect_boxes(
     nodes: Any, node: int, memory: Any, ray: int, planes: tuple[int, int, int], limit: float
 ) -> tuple[Mask, Number]:
-    """Slab test (Kay and Kajiya 1986): the boxes of a node that a ray hits up to `limit`, and its entry distances."""
+    """Return the boxes of a node that a ray hits up to `limit`, and its entry distances."""
     x, y, z = planes
     enter, leave, inverse = vec_at(memory, ENTER, ray), vec_at(memory, LEAVE, ray), vec_at(memory, INVERSE, ray)
-    in_x = load(nodes, node + x) * inverse.x - enter.x
-    in_y = load(nodes, node + y) * inverse.y - enter.y
-    in_z = load(nodes, node + z) * inverse.z - enter.z
-    out_x = load(nodes, node + 3 * WIDTH - x) * inverse.x - leave.x
-    out_y = load(nodes, node + 5 * WIDTH - y) * inverse.y - leave.y
-    out_z = load(nodes, node + 7 * WIDTH - z) * inverse.z - leave.z
-    near = maximum(maximum(in_x, in_y), maximum(in_z, 0.0))
-    far = minimum(minimum(out_x, out_y), minimum(out_z, limit))
-    return near <= far, near
+    near = Vec(load(nodes, node + x), load(nodes, node + y), load(nodes, node + z))
+    far = Vec(load(nodes, node + 3 * WIDTH - x), load(nodes, node + 5 * WIDTH - y), load(nodes, node + 7 * WIDTH - z))
+    return slab_test(near, far, enter, leave, inverse, limit)
 
 
-def search_limit(distance: float) -> float:
+def rays_in_box(boxes: Any, at: int, memory: Any, planes: tuple[int, int, int], limit: Number) -> tuple[Mask, Number]:
+    """Return the rays of a packet that hit one box up to `limit`, and their entry distances.
+
+    All of them enter it by the same `planes`. Its bounds are `WIDTH` numbers apart, the first one at index `at`.
+    """
+    x, y, z = planes
+    near = Vec(boxes[at + x], boxes[at + y], boxes[at + z])
+    far = Vec(boxes[at + 3 * WIDTH - x], boxes[at + 5 * WIDTH - y], boxes[at + 7 * WIDTH - z])
+    enter, leave, inverse = load_vec(memory, ENTER), load_vec(memory, LEAVE), load_vec(memory, INVERSE)
+    return slab_test(near, far, enter, leave, inverse, limit)
+
+
+def slab_test(near: Vec, far: Vec, enter: Vec, leave: Vec, inverse: Vec, limit: Number) -> tuple[Mask, Number]:
+    """Slab test (Kay and Kajiya 1986): whether rays hit boxes up to `limit`, and the distances at which they enter."""
+    in_x, in_y, in_z = near.x * inverse.x - enter.x, near.y * inverse.y - enter.y, near.z * inverse.z - enter.z
+    out_x, out_y, out_z = far.x * inverse.x - leave.x, far.y * inverse.y - leave.y, far.z * inverse.z - leave.z
+    begin = maximum(maximum(in_x, in_y), maximum(in_z, 0.0))
+    end = minimum(minimum(out_x, out_y), minimum(out_z, limit))
+    return begin <= end, begin
+
+
+def search_limit(distance: Number) -> Number:
     """Return how far to search for hits nearer than `distance` or coincident with a hit there."""
     return distance * (1.0 + 2.0 * COINCIDENT)
 

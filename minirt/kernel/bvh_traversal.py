@@ -1,9 +1,14 @@
-"""Closest-hit and shadow queries for incoherent rays, by BVH traversal; the counterpart of `minirt.kernel.trace`.
+"""Closest-hit and shadow queries for rays of any origins, by BVH traversal; the counterpart of `minirt.kernel.trace`.
 
-All rays of a packet advance together, one step of each in turn. A step waits for memory and for pipelines, and a
-mispredicted branch costs all work that the processor began behind it. Steps of different rays do not wait for each
-other. So the rays of a packet are interleaved, and a step has no branch: in its place is a mask with one bit for each
-ray, and the nearest child is found among all lanes at once, not by sorting.
+Most packets of reflected rays and of shadow rays stay together: the rays of such a packet, one in each lane, traverse
+the tree as one, and meet one shape at a time. Where only a few of them hit a box, each of these goes on by itself, and
+meets all children of a node, or all shapes of a leaf, at a time. Marbles take 0.56 of the time that they take when all
+rays go by themselves.
+
+Single rays advance together, one step of each in turn. A step waits for memory and for pipelines, and a mispredicted
+branch costs all work that the processor began behind it. Steps of different rays do not wait for each other. So the
+rays are interleaved, and a step has no branch: in its place is a mask with one bit for each ray, and the nearest child
+is found among all lanes at once, not by sorting.
 """
 
 from __future__ import annotations
@@ -19,6 +24,8 @@ from minirt.kernel.bvh_nodes import (
     INVERSE,
     NEXT,
     ORIGIN,
+    PACKET,
+    PACKET_LEVEL,
     REFERENCES,
     STACK,
     STACK_LEVEL,
@@ -32,6 +39,7 @@ from minirt.kernel.bvh_nodes import (
     near_planes,
     packet_memory,
     put_integer,
+    rays_in_box,
     reference_of,
     search_limit,
     store_rays,
@@ -47,11 +55,15 @@ from minirt.lanes import (
     Vec,
     any,
     bits,
+    dot,
+    first,
+    greatest,
     lane,
     load,
     load_vec,
     lowest,
     max_norm,
+    outlined,
     save,
     save_vec,
     splat,
@@ -60,22 +72,118 @@ from minirt.lanes import (
 )
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
+FEW = 6  # rays of a packet that go on one by one
+APART = 0.25  # square of the difference of directions from which on all rays of a packet go one by one
 
 
-def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:
+def walk(visit: Callable[..., None], step: Callable[..., None], tree: Tree, memory: Any) -> None:
+    """Intersect a packet with the shapes that its rays may hit, the nearest leaves first.
+
+    `step(shape, index, extent, rays, memory)` may lessen the distances in `HIT`; where they are -infinity rays hit
+    nothing. `visit` does the same for single rays.
+
+    All rays traverse the tree together. Where few of them hit a box, each of them goes on by itself, see `traverse`; so
+    does each ray of a packet whose directions differ much, or that enters boxes by different planes.
+    """
+    for_each_kind(visit_unbounded, tree.groups, 0, (step, tree, memory))
+    active, inverse = load(memory, HIT) > -inf, load_vec(memory, INVERSE)
+    if not any(active):
+        return
+    apart = load_vec(memory, DIRECTION) - vec_at(memory, DIRECTION, first(active))
+    differ = differ_in_sign(inverse.x, active) or differ_in_sign(inverse.y, active) or differ_in_sign(inverse.z, active)
+    differ = differ or any(active & (dot(apart, apart) > APART))
+    planes = near_planes(vec_at(memory, INVERSE, first(active)))
+    at = PACKET
+    save(splat(inf, inverse.x), memory, at)
+    memory[at], memory[at + WIDTH] = 0.0, bits(active)  # the root
+    while at >= PACKET:
+        tags = load(memory, at)
+        nearest = least_lane(tags)
+        if not nearest < search_limit(greatest(load(memory, HIT))):
+            at -= PACKET_LEVEL
+            continue
+        child = first(tags == nearest)
+        memory[at + child] = inf
+        rays, reference = int(memory[at + WIDTH + child]), reference_of(nearest)
+        if differ or are_few(rays):
+            traverse(visit, tree, memory, rays, nearest)
+        elif reference >= 0:
+            at += PACKET_LEVEL
+            push_children(tree.nodes, reference, memory, planes, at)
+        else:
+            for_each_kind(visit_leaf, tree.groups, leaf_number(reference), (step, memory, planes))
+
+
+def differ_in_sign(x: Number, rays: Mask) -> bool:
+    """Whether a number is positive for some rays and negative for others."""
+    return any(rays & (x > 0.0)) and any(rays & (x < 0.0))
+
+
+def are_few(rays: int) -> bool:
+    """Whether there are so few rays, one bit for each, that each of them goes on by itself."""
+    for _ in range(FEW):
+        rays = rays & (rays - 1)
+    return rays == 0
+
+
+def push_children(nodes: Any, node: int, memory: Any, planes: tuple[int, int, int], at: int) -> None:
+    """Write a level of the packet's stack: the children of a node whose boxes any of its rays hits."""
+    limit = search_limit(load(memory, HIT))
+    save(splat(inf, limit), memory, at)
+    for child in range(WIDTH):
+        if nodes[node + child] == inf:
+            break
+        hit, near = rays_in_box(nodes, node + child, memory, planes, limit)
+        if any(hit):
+            memory[at + child] = least_lane(where(hit, near, inf))
+            memory[at + WIDTH + child] = bits(hit)
+    near = load(memory, at)
+    save(where(near < inf, tag(near, load(nodes, node + REFERENCES)), inf), memory, at)
+
+
+def visit_unbounded(group: Group, state: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
+    """Intersect a packet with the unbounded shapes of one kind; the state is not changed."""
+    if group.unbounded is not None:
+        step, tree, memory = arguments
+        for i in range(group.unbounded.shape[0]):
+            index = group.unbounded[i]
+            shape, rays = read(group.rows, tree.slots[index, 1]), load(memory, HIT) > -inf
+            step(shape, index, tree.extents[index], rays, memory)
+    return state
+
+
+def visit_leaf(group: Group, leaf: int, arguments: tuple[Callable[..., None], Any, tuple[int, int, int]]) -> int:
+    """Intersect a packet with the shapes of a leaf, if they are of this kind; the state is not changed."""
+    step, memory, planes = arguments
+    if has_rows(group.blocks) and leaf % GROUPS == group.number:
+        block = leaf // GROUPS
+        for i in range(WIDTH):
+            at = block * REFERENCES + i
+            if group.boxes[at] == inf:
+                break
+            rays, _ = rays_in_box(group.boxes, at, memory, planes, search_limit(load(memory, HIT)))
+            if any(rays):
+                index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
+                step(read_one(group.blocks, block, i), index, extent, rays, memory)
+    return leaf
+
+
+def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int, start: float) -> None:
     """Call `visit(group, block, tree, memory, ray)` for the leaves that each of the `rays` hits, the nearest first.
 
-    `rays` has one bit for each ray. Leaves beyond the distance in the first row of `HIT`, which `visit` may lessen, are
-    skipped.
+    `rays` has one bit for each ray. They begin at the node or leaf with the tagged distance `start`. Leaves beyond the
+    distance in the first row of `HIT`, which `visit` may lessen, are skipped.
     """
     remaining = rays
     while remaining != 0:
         ray = lowest(remaining)
         remaining = remaining & (remaining - 1)
-        memory[NEXT + ray] = 0.0  # the root
+        memory[NEXT + ray] = start
         put_integer(memory, TOP + ray, STACK - STACK_LEVEL + ray * WIDTH)
-    at_node, unfinished = rays, 0
+    at_node, at_leaf = (rays, 0) if reference_of(start) >= 0 else (0, rays)
+    unfinished = 0
     while True:
+        for_each_kind(visit_leaves_of_kind, tree.groups, at_leaf, (visit, tree, memory))
         remaining = at_node
         while remaining != 0:
             ray = lowest(remaining)
@@ -92,7 +200,6 @@ def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> 
             at_node = at_node | node << ray
             at_leaf = at_leaf | leaf << ray
             unfinished = unfinished ^ last << ray
-        for_each_kind(visit_leaves_of_kind, tree.groups, at_leaf, (visit, tree, memory))
 
 
 def descend(nodes: Any, memory: Any, ray: int) -> int:
@@ -140,32 +247,27 @@ def visit_leaves_of_kind(group: Group, rays: int, arguments: tuple[Callable[...,
     return rays
 
 
+@outlined
 def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
     """Find the closest hit of each ray, as `minirt.kernel.trace.closest_hit` does; rays may have any origins.
 
-    Rays that are not `active` hit unbounded shapes only.
+    Rays that are not `active` hit nothing.
     """
     memory = packet_memory()
     store_rays(memory, origin, direction)
-    no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = for_each_kind(closest_unbounded, tree.groups, no_hit, (tree, origin, direction))
-    save_vec(Vec(best, owner, extent), memory, HIT)
-    traverse(closest_in_block, tree, memory, bits(active))
+    farthest = where(active, splat(inf, direction.x), -inf)
+    save_vec(Vec(farthest, splat(-1.0, farthest), splat(0.0, farthest)), memory, HIT)
+    walk(closest_in_block, closest_of_shape, tree, memory)
     hit = load_vec(memory, HIT)
-    return hit.x, hit.y, hit.z
+    return where(active, hit.x, inf), hit.y, hit.z
 
 
-def closest_unbounded(group: Group, state: Hit, arguments: tuple[Tree, Vec, Vec]) -> Hit:
-    """Continue `closest_hit` over the unbounded shapes of one kind."""
-    if group.unbounded is None:
-        return state
-    tree, origin, direction = arguments
-    for i in range(group.unbounded.shape[0]):
-        index = group.unbounded[i]
-        shape = read(group.rows, tree.slots[index, 1])
-        hit, t = intersect(shape, origin, direction)
-        state = closer_hit(shape, index, tree.extents[index], hit, t, origin, direction, state)
-    return state
+def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: Any) -> None:
+    """Continue `closest_hit` of some rays of a packet by one shape, and store the result in `HIT`."""
+    origin, direction, best = load_vec(memory, ORIGIN), load_vec(memory, DIRECTION), load_vec(memory, HIT)
+    hit, t = intersect(shape, origin, direction)
+    state = closer_hit(shape, index, extent, hit & rays, t, origin, direction, (best.x, best.y, best.z))
+    save_vec(Vec(state[0], state[1], state[2]), memory, HIT)
 
 
 def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
@@ -185,25 +287,21 @@ def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int
         memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = state
 
 
+@outlined
 def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active: Mask) -> Mask:
     """Trace shadow rays: the `active` rays that hit nothing nearer than `distance`."""
     memory = packet_memory()
     store_rays(memory, origin, direction)
-    visible = for_each_kind(unoccluded_by_unbounded, tree.groups, active, (tree, origin, direction, distance))
-    save(where(visible, distance, -inf), memory, HIT)
-    traverse(occlude_by_block, tree, memory, bits(visible))
+    save(where(active, distance, -inf), memory, HIT)
+    walk(occlude_by_block, occlude_by_shape, tree, memory)
     return load(memory, HIT) > -inf
 
 
-def unoccluded_by_unbounded(group: Group, visible: Mask, arguments: tuple[Tree, Vec, Vec, Number]) -> Mask:
-    """Remove the shadow rays that an unbounded shape of one kind occludes from `visible`."""
-    if group.unbounded is None:
-        return visible
-    tree, origin, direction, distance = arguments
-    for i in range(group.unbounded.shape[0]):
-        hit, t = occludes(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)
-        visible = visible & ~(hit & (t < distance))
-    return visible
+def occlude_by_shape(shape: Any, index: int, extent: float, rays: Mask, memory: Any) -> None:
+    """Set the distances in `HIT` of those of some shadow rays to -infinity that a shape occludes."""
+    hit, t = occludes(shape, load_vec(memory, ORIGIN), load_vec(memory, DIRECTION))
+    distance = load(memory, HIT)
+    save(where(rays & hit & (t < distance), -inf, distance), memory, HIT)
 
 
 def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
@@ -238,24 +336,24 @@ def trace_rays(
         start = fetch_add(next_ray, CHUNK)
         if start >= count:
             return
-        for first in range(start, min(start + CHUNK, count), WIDTH):
+        for begin in range(start, min(start + CHUNK, count), WIDTH):
             for ray in range(WIDTH):
-                memory[HIT + ray] = first + ray
+                memory[HIT + ray] = begin + ray
                 for axis in range(3):
-                    memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
-                    memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
+                    memory[ORIGIN + axis * WIDTH + ray] = origins[min(begin + ray, count - 1), axis]
+                    memory[DIRECTION + axis * WIDTH + ray] = directions[min(begin + ray, count - 1), axis]
             origin, direction = load_vec(memory, ORIGIN), unit(rescale(load_vec(memory, DIRECTION)))
             t, owner, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
             save_vec(origin + t * direction, memory, ORIGIN)
             save_vec(Vec(t, owner, t), memory, HIT)
-            for ray in range(min(WIDTH, count - first)):
+            for ray in range(min(WIDTH, count - begin)):
                 index = int(memory[HIT + WIDTH + ray])
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
                     on, normal = of_shape(surface, tree.groups, tree.slots[index], (point,), (point, point))
-                    distances[first + ray], owners[first + ray] = memory[HIT + ray], index
-                    store_vec(points, first + ray, on)
-                    store_vec(normals, first + ray, normal)
+                    distances[begin + ray], owners[begin + ray] = memory[HIT + ray], index
+                    store_vec(points, begin + ray, on)
+                    store_vec(normals, begin + ray, normal)
 
 
 def store_vec(vectors: Any, i: int, v: Vec) -> None:

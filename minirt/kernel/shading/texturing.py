@@ -240,7 +240,8 @@ def weighted_background(scene: SceneArrays, weight: Number, direction: Vec) -> V
     """Return the background's radiance times the weight of each ray; black for rays of weight 0."""
     zero = splat(0.0, weight)
     black = Vec(zero, zero, zero)
-    return where(weight > 0.0, weight * background_light(scene, weight < 0.0, black, direction), black)
+    counts = weight > 0.0
+    return where(counts, weight * background_light(scene, ~counts, black, direction), black)
 
 
 def environment_lookup(environment: Environment, direction: Vec) -> Vec:

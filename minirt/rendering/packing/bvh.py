@@ -10,7 +10,7 @@ import numpy as np
 
 from minirt.kernel import beams
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
-from minirt.kernel.bvh_nodes import GROUPS, NODE, REFERENCES, WIDTH, Group, Tree
+from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, REFERENCES, WIDTH, Group, Tree
 from minirt.kernel.scene_arrays import kind_of, row_type
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -48,8 +48,10 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
         members = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
         group_blocks = as_blocks(rows, shape_arrays.slots[members, 1])
         labels = np.stack([members, extents[members]], axis=-1)
-        unbounded = infinite[shape_arrays.slots[infinite, 0] == group]
-        groups.append(Group(rows, group_blocks, labels, unbounded if kinds_are_infinite[group] else None, group))
+        spare = start + np.arange(WIDTH) >= stop
+        leaf_boxes = boxes_of(boxes[np.minimum(start + np.arange(WIDTH), stop - 1), :6], spare)
+        unbounded = infinite[shape_arrays.slots[infinite, 0] == group] if kinds_are_infinite[group] else None
+        groups.append(Group(rows, group_blocks, labels, leaf_boxes, unbounded, group))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)
@@ -59,13 +61,29 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
     return Tree(nodes, extents, shape_arrays.slots, tuple(groups))
 
 
+def boxes_of(bounds: np.ndarray, spare: np.ndarray) -> np.ndarray:
+    """Return the boxes of the shapes of blocks, from their bounds (n, WIDTH, 6), as `write_child` writes them."""
+    grown = bounds + MARGIN * np.abs(bounds).max(axis=2, initial=0.0)[..., None]
+    grown[..., :3] *= -1.0
+    grown[spare] = np.repeat([np.inf, -np.inf], 3)
+    flat = aligned(grown.size, np.dtype(np.float64))
+    flat[...] = grown.transpose(0, 2, 1).ravel()
+    return flat
+
+
 def without_boxes(tree: Tree) -> Tree:
     """Widen all boxes of a BVH to all of space, so that each ray visits every leaf."""
-    nodes = tree.nodes.copy()
-    low, high = np.split(nodes.reshape(-1, NODE)[:, :REFERENCES], 2, axis=1)
+    groups = tuple(group._replace(boxes=widened(group.boxes, REFERENCES)) for group in tree.groups)
+    return tree._replace(nodes=widened(tree.nodes, NODE), groups=groups)
+
+
+def widened(nodes: np.ndarray, size: int) -> np.ndarray:
+    """Return nodes of so many numbers with all of space as the boxes of their children."""
+    nodes = nodes.copy()
+    low, high = np.split(nodes.reshape(-1, size)[:, :REFERENCES], 2, axis=1)
     used = low <= high  # an unused child has an empty box
     low[used], high[used] = -np.inf, np.inf
-    return tree._replace(nodes=nodes)
+    return nodes
 
 
 def wide_nodes(boxes: np.ndarray, kernel: Any, width: int = WIDTH) -> tuple[np.ndarray, np.ndarray]:

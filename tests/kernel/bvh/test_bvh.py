@@ -17,6 +17,8 @@ from minirt.kernel.bvh_nodes import (
     MARGIN,
     MEMORY,
     NODE,
+    PACKET,
+    PACKET_LEVEL,
     STACK,
     STACK_LEVEL,
     WIDTH,
@@ -57,7 +59,7 @@ def brute_force(shapes: list[Shape]) -> Tree:
     for i, (kind, rows) in enumerate(zip(kinds, arrays.rows, strict=True)):
         labels = np.zeros((0, WIDTH, 2))
         unbounded = np.flatnonzero(arrays.slots[:, 0] == i)
-        groups.append(Group(rows, aligned(0, block_type(kind)), labels, unbounded, i))
+        groups.append(Group(rows, aligned(0, block_type(kind)), labels, np.zeros(0), unbounded, i))
     root = np.repeat([np.inf, -np.inf, 0.0], [3 * WIDTH, 3 * WIDTH, WIDTH])
     return Tree(root, arrays.colours_and_extents[:, 3].copy(), arrays.slots, tuple(groups))
 
@@ -107,6 +109,13 @@ def random_rays(random: Random, shapes: list[Shape], count: int) -> tuple[Array,
     return origins, unit(np.where(np.arange(count)[:, None] % 3 == 0, axes, aims - origins))
 
 
+def coherent(random: Random, rays: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return rays whose packets go almost the same way: like the first ray of each, those of every fourth apart."""
+    origins, directions = (np.repeat(each[::WIDTH], WIDTH, axis=0)[: len(each)] for each in rays)
+    spread = np.where(np.arange(len(origins)) // WIDTH % 4 == 0, 0.3, 1e-3)[:, None]
+    return origins, unit(directions + spread * random.normal(size=directions.shape))
+
+
 GREY = (128, 128, 128)
 
 
@@ -140,6 +149,7 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
             corners = np.array([shapes[index].bounds() for index in owners])
             assert (box_low <= corners[:, 0] - MARGIN * np.abs(corners).max(axis=(1, 2))[:, None] / 2).all()
             assert (box_high >= corners[:, 1] + MARGIN * np.abs(corners).max(axis=(1, 2))[:, None] / 2).all()
+            check_boxes(scene.groups[group].boxes.reshape(-1, 2, 3, WIDTH)[block], owners, corners)
         empty = nodes[node, 0] == np.inf
         assert (nodes[node, :3, empty] == np.inf).all()
         assert (nodes[node, 3:6, empty] == -np.inf).all()
@@ -149,6 +159,16 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
     ).tolist()
     assert sorted(owned + unbounded) == list(range(len(shapes)))
     return depth
+
+
+def check_boxes(boxes: Array, owners: Array, corners: Array) -> None:
+    """Check that the boxes (2, 3, WIDTH) of a leaf enclose its shapes, and that those of lanes to spare are empty."""
+    count = len(set(owners.tolist()))
+    slack = MARGIN * np.abs(corners).max(axis=(1, 2))[:count, None] / 2
+    assert (corners[:count, 0] - slack >= boxes[0, :, :count].T).all()
+    assert (corners[:count, 1] + slack <= boxes[1, :, :count].T).all()
+    assert (boxes[0, :, count:] == np.inf).all()
+    assert (boxes[1, :, count:] == -np.inf).all()
 
 
 @pytest.mark.parametrize("count", [1, 2, WIDTH, WIDTH + 1, 100, 1000])
@@ -185,7 +205,8 @@ def test_the_traversal_stack_holds_the_deepest_tree() -> None:
             max(deepest[child] for child in children[node] if child > 0) if (children[node] > 0).any() else 0
         )
     assert leaves[:, 1].max() == 900 * WIDTH
-    assert STACK + deepest[0] * STACK_LEVEL <= MEMORY
+    assert STACK + deepest[0] * STACK_LEVEL <= PACKET
+    assert PACKET + (1 + deepest[0]) * PACKET_LEVEL <= MEMORY
 
 
 def test_a_ray_visits_few_leaves() -> None:
@@ -209,7 +230,8 @@ def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf
     visited_leaves: list[int] = []
     bvh_nodes.store_rays(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
     memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = limit
-    bvh_traversal.traverse(lambda group, block, tree, memory, ray: visited_leaves.append(block), scene, memory, 1 << 5)
+    visit = lambda group, block, tree, memory, ray: visited_leaves.append(block)  # noqa: E731
+    bvh_traversal.traverse(visit, scene, memory, 1 << 5, 0.0)
     return visited_leaves
 
 
@@ -236,7 +258,7 @@ def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
         visits[ray] += 1
         memory[bvh_nodes.HIT + ray] = distance
 
-    bvh_traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4)
+    bvh_traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4, 0.0)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first leaf that it hits
     expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in rays[0]]
     expected[2] = 0  # not active
@@ -302,6 +324,8 @@ def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.Monke
     for result in (trace(build_tree(shapes), *rays), trace(build_tree(shapes), *rays, bvh_traversal.trace_rays)):
         assert result[1].tolist() == np.repeat(range(6), 4).tolist()
         assert np.array_equal(result[0], np.full(24, 9.5))
+    tree = build_tree(shapes)
+    assert min(len(leaves_along(tree, *ray)) for ray in zip(*rays, strict=True)) > 0
     near_planes = bvh_nodes.near_planes
     tiny = lambda x: np.abs(x) if np.abs(x) * bvh_nodes.TINY == 1.0 else x  # noqa: E731  (-0 as if it were 0)
     monkeypatch.setattr(
@@ -309,7 +333,12 @@ def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.Monke
         "near_planes",
         lambda inverse: near_planes(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z))),
     )
-    assert wrong_hits(build_tree(shapes), shapes, rays) > 5
+    assert [len(leaves_along(tree, *ray)) for ray in zip(*rays, strict=True)].count(0) > 5
+    monkeypatch.undo()
+    # Rays that enter boxes by other planes than the first ray of their packet.
+    monkeypatch.setattr(bvh_traversal, "APART", 9.0)
+    monkeypatch.setattr(bvh_traversal, "differ_in_sign", lambda x, rays: False)
+    assert wrong_hits(tree, shapes, rays) > 5
 
 
 def test_rays_along_axes_visit_no_boxes_beside_them(monkeypatch: pytest.MonkeyPatch) -> None:

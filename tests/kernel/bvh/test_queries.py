@@ -13,7 +13,7 @@ from minirt.kernel.bvh_nodes import WIDTH
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
-from tests.kernel.bvh.test_bvh import brute_force, build_tree, random_rays, random_shapes, trace
+from tests.kernel.bvh.test_bvh import brute_force, build_tree, coherent, random_rays, random_shapes, trace
 from tests.kernel.machine_code.small_kernels import as_kernel
 from tests.shapes.examples import example
 
@@ -30,10 +30,13 @@ REGIMES: dict[str, dict[str, float]] = {
 
 @pytest.mark.parametrize("regime", REGIMES)
 @pytest.mark.parametrize("count", [1, 20, 400])
-def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int) -> None:
+@pytest.mark.parametrize("is_coherent", [False, True])
+def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int, is_coherent: bool) -> None:
     random = np.random.default_rng(count)
     shapes = random_shapes(random, count, **REGIMES[regime])
     rays = random_rays(random, shapes, 20_000)
+    if is_coherent:
+        rays = coherent(random, rays)
     result, expected = trace(build_tree(shapes), *rays), trace(brute_force(shapes), *rays)
     assert (expected[1] >= 0).mean() > 0.05
     assert np.array_equal(result[1], expected[1])
@@ -62,14 +65,17 @@ def shadow_queries() -> Any:
 
 @pytest.mark.parametrize("implementation", [0, 1], ids=["interpreted", "compiled"])
 @pytest.mark.parametrize("count", [5, 20, 400])
-def test_nearer_shapes_occlude(implementation: int, count: int) -> None:
+@pytest.mark.parametrize("is_coherent", [False, True])
+def test_nearer_shapes_occlude(implementation: int, count: int, is_coherent: bool) -> None:
     random = np.random.default_rng(count)
     shapes = random_shapes(random, count)
     origins, directions = random_rays(random, shapes, 20 * WIDTH)
+    if is_coherent:
+        origins, directions = coherent(random, (origins, directions))
     scene = build_tree(shapes)
     result = trace(scene, origins, directions)
     hit = result[1] >= 0
-    assert 0.05 < hit.mean() < 1
+    assert hit.mean() > 0.05
     for factor, is_visible in ((1 - 1e-9, True), (1 + 1e-9, False), (1e6, False), (-1.0, False)):
         distances = np.where(hit, result[0] * factor, 1e9 * np.sign(factor))
         visible = np.full(len(hit), 7.0)
