@@ -73,7 +73,7 @@ from minirt.lanes import (
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 FEW = 6  # rays of a packet that go on one by one
-APART = 0.25  # square of the difference of directions from which on all rays of a packet go one by one
+APART = 1.0  # square of the difference of directions from which on all rays of a packet go one by one
 
 
 def walk(visit: Callable[..., None], step: Callable[..., None], tree: Tree, memory: Any) -> None:
