@@ -13,10 +13,10 @@ import numpy as np
 from minirt import load
 from minirt.element import fields_of
 from minirt.fields import Point
+from minirt.kernel.machine_code.fingerprint import processor
 from minirt.rendering import Renderer
 from minirt.rendering.threads import usable_cores
 from minirt.report.bench import STEP, moved, runs
-from minirt.report.findings import processor
 from minirt.scene import Scene
 from tests.bench import sampling, scenes, starts
 from tests.bench.measure import Setting, System, available, table, take_turns

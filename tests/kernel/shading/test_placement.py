@@ -10,7 +10,7 @@ import pytest
 from minirt.kernel.shading.texturing import in_own_frame, placed
 from minirt.lanes import Vec
 from minirt.materials import Checker, Marble, Placement, Specular
-from minirt.rendering.packing.features import features_of
+from minirt.rendering.packing.features import shape_features
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -89,11 +89,11 @@ def test_a_turned_sphere_is_mapped_in_its_own_axes() -> None:
 
 def test_the_kernel_has_the_feature_only_where_a_picture_is_placed() -> None:
     scaled = Placement(2, 2)
-    assert "placements" in features_of(GLOBE.replace(uv=scaled))
-    assert "placements" not in features_of(GLOBE.replace(uv=Placement(1, 1)))
-    assert "placements" in features_of(GLOBE.replace(axis=(1, 0, 0)))
-    assert "placements" in features_of(GLOBE.replace(roll=-90.0))
-    assert "placements" not in features_of(GLOBE.replace(roll=360.0))
-    assert "placements" not in features_of(GLOBE.replace(checker=None, specular=Specular(0.5, 9), roll=5.0))
-    assert "placements" not in features_of(GLOBE.replace(checker=None, marble=Marble(1.0), roll=5.0))
-    assert "placements" not in features_of(FLOOR.replace(checker=Checker(1), roll=5.0))
+    assert "placements" in shape_features(GLOBE.replace(uv=scaled))
+    assert "placements" not in shape_features(GLOBE.replace(uv=Placement(1, 1)))
+    assert "placements" in shape_features(GLOBE.replace(axis=(1, 0, 0)))
+    assert "placements" in shape_features(GLOBE.replace(roll=-90.0))
+    assert "placements" not in shape_features(GLOBE.replace(roll=360.0))
+    assert "placements" not in shape_features(GLOBE.replace(checker=None, specular=Specular(0.5, 9), roll=5.0))
+    assert "placements" not in shape_features(GLOBE.replace(checker=None, marble=Marble(1.0), roll=5.0))
+    assert "placements" not in shape_features(FLOOR.replace(checker=Checker(1), roll=5.0))

@@ -265,9 +265,9 @@ SCENE = "A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nL 2,5,-6 0.7 255,255,255\npl 0,-3
 BALLS = [f"sp {x},{y},{(x * y) % 3} 1.2 255,{20 * x + 120},90" for x in range(-4, 5) for y in range(-3, 4)]
 
 
-def scene() -> Scene:
-    """Return a scene of overlapping spheres, whose light buffer has 32 cells along an edge."""
-    return parse(SCENE + "\n".join(BALLS) + "\n", "x.rt").scene
+def scene(times: int = 1) -> Scene:
+    """Return a scene of overlapping spheres, each so many times; a light buffer has 32 cells along an edge."""
+    return parse(SCENE + "\n".join(BALLS * times) + "\n", "x.rt").scene
 
 
 def light_of(scene: Scene) -> tuple[np.ndarray, int]:
@@ -291,4 +291,4 @@ def test_lists_that_no_cells_make_small_enough_are_refused(monkeypatch: pytest.M
     monkeypatch.setattr(system, "SMALL", 0)
     monkeypatch.setattr(system, "room", lambda: 64 * 48 * 7)  # enough for the picture
     with pytest.raises(RenderError, match=r"the lists of shapes in view need about 0 MiB of memory"):
-        minirt.render(scene(), 64, 48, linear=False)
+        minirt.render(scene(9), 64, 48, linear=False)
