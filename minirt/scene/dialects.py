@@ -16,9 +16,10 @@ from minirt.element import Element, fields_by_key, positional_fields
 from minirt.errors import FieldError, FileError, Problem, printable, quoted
 from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
 from minirt.fields.scalars import Scalar
+from minirt.scene.element_reader import HEX_COLOUR
 from minirt.scene.elements import LAMPS, Ambient, Camera, Resolution
 from minirt.scene.lines import Line, Log, first_unprintable, line_from
-from minirt.scene.registry import SHAPES, SPELLINGS
+from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
 
 # Sorts of changes, as notices tell them.
 LEFT_OUT = "words without a meaning here are left out"
@@ -27,11 +28,12 @@ MISSING = "shapes are missing"
 LIGHTS = "lights that cannot be read are left out"
 CAMERAS = "cameras behind the first are left out"
 CLAMPED = "numbers out of range become the nearest that can be"
+DECIMALS = "decimal commas become points"
 SCALED = "directions are scaled to length 1"
 JOINED = "three numbers with blanks between them are read as one field"
 NAMED = "names of colours and materials become their R,G,B"
 WHITE = "what has no colour is white"
-CUBES = "cubes become boxes"
+RENAMED = "elements of other names become those of this format"
 EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
 REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
 CHECKERS = "checkers become checker:"
@@ -50,7 +52,6 @@ SETTING = re.compile(
 N, C = r"([-+]?[0-9]*\.?[0-9]+)", r"([0-9.]+,[0-9.]+,[0-9.]+)"
 FILE = r"[\"']?([^\"':=; ]+\.(?:xpm|png|jpe?g|ppm|bmp|tga))[\"']?"
 CHECKER = r"-?-?(?:ch|chk|cb|cd|checker\w*|chess\w*|pattern|pat|damier)"
-HEX = re.compile(r"(?<=[ \t])#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
 NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
 # Blanks may stand around the commas of three numbers, and within quotes.
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
@@ -58,7 +59,7 @@ TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 
 
 class Row(NamedTuple):
-    """What one or two words behind the fields mean."""
+    """A meaning of one or two words behind the fields."""
 
     pattern: str  # of the words, with one blank between two
     means: Callable[..., str]  # attributes, from the groups of the pattern; '' for none
@@ -139,7 +140,9 @@ def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder:
 
     `colours` are those of named materials, and pictures are looked for in `folder`.
     """
-    body, _, comment = HEX.sub(lambda colour: css_colour(colour[0]), line.text).partition("#")
+    hex_colour = HEX_COLOUR.match(line.text, line.end)
+    rest = css_colour(hex_colour[0]) + line.text[hex_colour.end() :] if hex_colour else line.text[line.end :]
+    body, _, comment = (line.text[: line.end] + rest).partition("#")
     words = ["".join(word.split()) for word in WORD.findall(body)]
     if not words or first_unprintable(line) >= 0:
         return None
@@ -150,7 +153,9 @@ def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder:
     if kind is None:
         is_shape = any(map(TRIPLE.fullmatch, values)) and not SETTING.fullmatch(code)
         return Translation("", ((MISSING if is_shape else SETTINGS, code),))
-    changes = [(CUBES, code)] if code in CUBE else []
+    changes = [] if code in SPELLINGS else [(RENAMED, code)]
+    if hex_colour:
+        changes.append((NAMED, hex_colour[0]))
     try:
         spelled = fields_of_words(kind, cube(values) if code in CUBE else values, colours, changes)
     except FieldError:
@@ -182,7 +187,8 @@ def fields_of_words(
     for field in positional_fields(kind):
         words = colour_first(words, colours) if isinstance(field, Colour) else words
         spelled = next(spellings(field, words, colours), None)
-        if spelled is None and isinstance(field, Colour) and field.required:
+        is_absent = not (words and NUMERIC.match(words[0]) and "," in words[0])
+        if spelled is None and isinstance(field, Colour) and field.required and is_absent:
             spelled = Spelling("255,255,255", 0, WHITE)
         if spelled is None:
             if field.required and words and not is_other(field, words[0]):
@@ -240,11 +246,12 @@ def readings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iter
     if isinstance(field, Three) and "," not in "".join(words[:3]):
         yield Spelling(",".join(words[:3]), 3, JOINED)
     if isinstance(field, Colour):
-        name = colours.get(word) or css_colour(word)
-        if name:
+        if name := colours.get(word) or css_colour(word):
             yield Spelling(name, 1, NAMED)
+        if levels := nearest_colour(word):
+            yield Spelling(levels, 1, CLAMPED)
     if isinstance(field, Scalar) and word.count(",") == 1:
-        yield Spelling(word.replace(",", "."), 1, CLAMPED)
+        yield Spelling(word.replace(",", "."), 1, DECIMALS)
 
 
 def css_colour(name: str) -> str:
@@ -256,12 +263,18 @@ def css_colour(name: str) -> str:
     return ""
 
 
+def nearest_colour(word: str) -> str:
+    """Return the whole R,G,B from 0 to 255 next to the first three of some numbers, '' for other words."""
+    parts = word.split(",")[:3]
+    with suppress(ValueError):
+        return ",".join(str(round(clamp(float(part), 0, 255))) for part in parts) if len(parts) == 3 else ""
+    return ""
+
+
 def fit(field: Field, value: Any) -> tuple[Any, str]:
     """Return the value of a field next to one that is out of range, and what was done; FieldError where none is."""
     if isinstance(field, Direction):
         return unit(value), SCALED
-    if isinstance(field, Colour):
-        return tuple(clamp(part, 0, 255) for part in value), CLAMPED
     if isinstance(field, Real) and not isinstance(field, Length):
         return clamp(value, field.low, field.high), CLAMPED
     raise FieldError("has no value next to it")
@@ -281,9 +294,10 @@ def meanings(kind: type[Element], words: list[str], folder: Path | None, changes
         used, attributes, sort = (1, words[0], "") if own(words[0]) else meaning(words, are_guessed)
         for attribute in attributes.split():
             key, _, value = attribute.partition(":")
-            field = keyed.get(key)
-            if field is None or key in found or (problem := hindrance(field, value or field.bare, folder)):
-                sort = problem if field and key not in found else LEFT_OUT
+            field = None if key in found else keyed.get(key)
+            problem = hindrance(field, value or field.bare, folder) if field else LEFT_OUT
+            if problem:
+                sort = problem
             else:
                 found[key] = attribute
         if sort:

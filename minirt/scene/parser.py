@@ -11,7 +11,7 @@ from typing import NamedTuple
 from minirt.element import Element, pattern
 from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers.system import gc_paused
-from minirt.scene import dialects, fast, files
+from minirt.scene import fast, files
 from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient, FurtherLight, Light
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
@@ -76,7 +76,10 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     """Read all lines of a file: elements, comments and blank lines."""
     items: list[Item] = []
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
-    colours = dialects.colours_of_materials(sources) if log.lenient else {}
+    if log.lenient:
+        from minirt.scene import dialects
+
+        colours = dialects.colours_of_materials(sources)
     for start in range(0, len(sources), BLOCK):
         block = fast.read(sources[start : start + BLOCK], len(sources))
         seen.update((kind.code, start + 1) for kind in set(map(type, block)) if issubclass(kind, Element))
@@ -99,6 +102,8 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
 
     A line without a meaning here becomes a comment. `colours` are those of named materials.
     """
+    from minirt.scene import dialects
+
     known, before, notices = dict(seen), len(log.errors), len(log.notices)
     item = read_line(line, seen, log)
     translation = None if item else dialects.translated(line, dialects.Camera.code in known, colours, log.folder)

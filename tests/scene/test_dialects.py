@@ -36,19 +36,21 @@ CASES = [
     (f"{BALL} mat:metal:0.2 BNS:0;1", BALL, [dialects.LEFT_OUT]),
     (f"{BALL} mirror:0.2 twist:9", f"{BALL} mirror:0.2", [dialects.LEFT_OUT]),
     ("sp 0,0,20 12.6 red", "sp 0,0,20 12.6 255,0,0", [dialects.NAMED]),
-    ("sp 0,0,20 12.6 #0A00ff # blue", BALL, []),
+    ("sp 0,0,20 12.6 #0A00ff # not #fff", f"{BALL} # not #fff", [dialects.NAMED]),
     ("sp 0,0,20 12.6 shiny", "sp 0,0,20 12.6 9,8,7", [dialects.NAMED]),
     ("sp 0,0,20 12.6", "sp 0,0,20 12.6 255,255,255", [dialects.WHITE]),
     ("sp 0,0,20 12.6 rb matte 10,0,255", BALL, [dialects.LEFT_OUT]),
-    ("sp 0,0,20 12,6 10,0,255", BALL, [dialects.CLAMPED]),
+    ("sp 0,0,20 12,6 10,0,255", BALL, [dialects.DECIMALS]),
+    ("sp 0,0,20 12.6 10.4,-0.6,300", BALL, [dialects.CLAMPED]),
+    ("sp 0,0,20 12.6 10,0,255,0", BALL, [dialects.CLAMPED]),
     ("sp 0 0 20 12.6 10 0 255", BALL, [dialects.JOINED]),
     ("sp (0,0,20), 12.6 10,0,300", BALL, [dialects.CLAMPED]),
     ("pl 0,-1,0 0,20,0 200,200,200", FLOOR, [dialects.SCALED]),
     ("l 0,9,0 3.5 255,255,255 7", "l 0,9,0 1 255,255,255", [dialects.CLAMPED, dialects.LEFT_OUT]),
-    ("cu 0,1,0 2 9,8,7", "bo 0,1,0 0,1,0 2,2,2 9,8,7", [dialects.CUBES]),
-    ("cu 0,1,0 1,0,0 2,3,4 9,8,7", "bo 0,1,0 1,0,0 2,3,4 9,8,7", [dialects.CUBES]),
-    ("ci 0,1,0 0,1,0 2 9,8,7", "di 0,1,0 0,1,0 2 9,8,7", []),
-    ("SP 0,0,20 12.6 10,0,255", BALL, []),
+    ("cu 0,1,0 2 9,8,7", "bo 0,1,0 0,1,0 2,2,2 9,8,7", [dialects.RENAMED]),
+    ("cu 0,1,0 1,0,0 2,3,4 9,8,7", "bo 0,1,0 1,0,0 2,3,4 9,8,7", [dialects.RENAMED]),
+    ("ci 0,1,0 0,1,0 2 9,8,7", "di 0,1,0 0,1,0 2 9,8,7", [dialects.RENAMED]),
+    ("SP 0,0,20 12.6 10,0,255", BALL, [dialects.RENAMED]),
     ("c 0,0,0 0,0,1 70", "", [dialects.CAMERAS]),
     ("max_depth 8", "", [dialects.SETTINGS]),
     ("R 4 0", "", [dialects.SETTINGS]),
@@ -110,7 +112,7 @@ def test_the_camera_of_the_older_subject_is_the_first_one() -> None:
     text = f"{AMBIENT}\nc 0,0,-9 0,0,1 60\nc 0,0,9 0,0,-1 60\nl 0,9,0 0.5 255,255,255\n{SPHERE}\n"
     scene, notices = parse(text, lenient=True)
     assert scene.camera.position == (0, 0, -9)
-    assert [each.message for each in notices] == [f"{dialects.CAMERAS}: c"]
+    assert [each.message for each in notices] == [f"{dialects.RENAMED}: c", f"{dialects.CAMERAS}: c"]
 
 
 def test_pictures_are_found_beside_the_file(tmp_path: Path) -> None:
