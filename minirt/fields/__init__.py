@@ -8,7 +8,6 @@ from minirt.fields.field import Choice, Field, MeshField, MeshFile, Picture, Pic
 from minirt.fields.scalars import (
     FARTHEST,
     Angle,
-    Count,
     Factor,
     Flag,
     Length,

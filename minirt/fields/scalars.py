@@ -161,7 +161,7 @@ class Factor(Real):
 
 @record(kw_only=True)
 class Whole(Scalar):
-    """A whole number in [low, high]."""
+    """A whole number in [low, high], which a key press changes by one or more."""
 
     kind = int
 
@@ -173,11 +173,6 @@ class Whole(Scalar):
         if value != int(value):
             raise FieldError(f"must be a whole number, got {value}")
         return int(value)
-
-
-@record(kw_only=True)
-class Count(Whole):
-    """A whole number in [low, high] that a key press changes by one or more."""
 
     def nudge(self, value: int, steps: float) -> int:
         return int(clamp(value + round(copysign(max(abs(steps), 1.0), steps)), self.low, self.high))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from minirt.fields import Angle, Colour, Count, Length, Picture, Real, Triple, declare
+from minirt.fields import Angle, Colour, Length, Picture, Real, Triple, Whole, declare
 from minirt.materials.compound import Material
 from minirt.records import record
 
@@ -121,7 +121,7 @@ class Pattern(Material):
     feature = "patterns"
     size: float = declare(Length, "size of the pattern")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))
-    octaves: int = declare(Count, "levels of detail", low=1, high=MOST_OCTAVES, default=6)
+    octaves: int = declare(Whole, "levels of detail", low=1, high=MOST_OCTAVES, default=6)
     height: float = declare(Real, "height of the second colour, in sizes", low=-10.0, high=10.0, step=0.01, default=0.0)
 
     def features(self) -> tuple[str, ...]:

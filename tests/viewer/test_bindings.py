@@ -227,6 +227,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     ),
     "nearer": ((), approached(1)),
     "farther": ((), approached(-1)),
+    "previous value": ((*SPHERE, "press V", "press V"), lambda _, after: after.state.active.name == "colour"),
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
     "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
     "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),

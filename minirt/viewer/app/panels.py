@@ -14,8 +14,8 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import SIGNIFICANT, Binding
 from minirt.viewer.display.overlay import Panel
 from minirt.viewer.editing import structure
-from minirt.viewer.editing.editor import CHARACTERS, set_typed
 from minirt.viewer.editing.state import State
+from minirt.viewer.editing.typed import CHARACTERS, set_typed
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 TYPE = "type value"  # the action that begins with =
@@ -64,7 +64,7 @@ class Typing:
         self.show(text[:-1] if key == Key.BACKSPACE else "")
         if key in ENTER:
             self.session.say("")
-            self.session.show(set_typed(self.session.state, text, self.session.now))
+            self.session.show(set_typed(self.session.state, self.session.state.active, text, self.session.now))
         return True
 
     def show(self, text: str) -> None:

@@ -2,12 +2,6 @@
 
 `amount` is a number of steps: 1 for a press, fractions while a key is held or with Shift. `now` is the time in seconds,
 by which changes are merged for undo. Actions depend on the types of fields that elements have, never on a shape.
-
-A typed value is a number, or after = a change of the present one:
-
-3.5          that value; three numbers with commas for a colour or sizes, one for all three
-=*2  =/2     the value times or divided by a number
-=+0.5  =-1   the value plus or minus a number
 """
 
 from __future__ import annotations
@@ -16,12 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from math import fmod
-from operator import add, mul, sub, truediv
-from typing import Any
 
 from minirt.errors import ElementError, FieldError
-from minirt.fields import Colour, Count, Field, MeshFile, Point
-from minirt.fields.scalars import number
+from minirt.fields import MeshFile, Point
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
 from minirt.viewer.editing import motion, structure
@@ -33,54 +24,12 @@ from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import values
 from minirt.viewer.files import next_file
 
-OPERATIONS: dict[str, Callable[[float, float], float]] = {"*": mul, "/": truediv, "+": add, "-": sub}
-CHARACTERS = "0123456789.,+-*/="  # of which typed values are made
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
 TURN_STEP = 5.0  # degrees
 RATE = 8.0  # steps a second, at first
 PATIENCE = 1.0  # seconds after which the steps of a held key begin to grow
 GROWTH = 2.0  # of the rate in each further second, as a multiple of the first rate
 FIRST_PART = 0.5  # of the first step, which comes with the press
-
-
-def set_typed(state: State, text: str, now: float) -> State:
-    """The state whose active value is what was typed, or which says what is wrong with it."""
-    active = state.active
-    if active is None:
-        return state.with_message(f"{state.element.title} has no value to type")
-    try:
-        new = typed(active.inner or active.field, active.get(state.element), text)
-        changed = state.element.replace(**{active.field.name: active.replaced(state.element, new)})
-    except (FieldError, ValueError) as error:
-        reason = str(error)
-        return state.with_message(reason if reason.startswith(state.element.title) else f"{active.name} {reason}")
-    changed = keep_standing(state, changed)
-    return state.end_merging().edit_element(changed, f"typed {active.name}", now).end_merging()
-
-
-def typed(field: Field, old: Any, text: str) -> Any:
-    """The value of a field that `text` asks for. FieldError if it is no number, or out of the field's range."""
-    count = len(old) if isinstance(old, tuple) else 1
-    if isinstance(old, (bool, str)) or not all(isinstance(part, (int, float)) for part in parts_of(old)):
-        raise FieldError("is not a number: + and - change it")
-    body = text.removeprefix("=")
-    relative = text.startswith("=") and body[:1] in OPERATIONS and len(body) > 1
-    given = [number(part) for part in (body[1:] if relative else body).split(",")]
-    if len(given) not in (1, count):
-        raise FieldError(f"takes {'one number' if count == 1 else f'one number or {count}'}, got {len(given)}")
-    given *= count // len(given)
-    if relative:
-        if body[0] == "/" and 0 in given:
-            raise FieldError("cannot be divided by 0")
-        given = [OPERATIONS[body[0]](part, by) for part, by in zip(parts_of(old), given, strict=True)]
-    if isinstance(field, (Colour, Count)):
-        given = [round(part) for part in given]
-    return field.check(tuple(given) if isinstance(old, tuple) else given[0])
-
-
-def parts_of(value: Any) -> tuple[Any, ...]:
-    """The components of a value."""
-    return value if isinstance(value, tuple) else (value,)
 
 
 def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> State:
@@ -160,10 +109,12 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
     if active is None:
         return state.with_message(f"{state.element.title} has no size")
-    new = state.element.replace(
-        **{active.field.name: active.stepped(state.element, sign * amount, partial(next_file, state.scene))}
-    )
-    changed = state.edit_element(keep_standing(state, new), f"value {active.name}", now)
+    try:
+        new = active.stepped(state.element, sign * amount, partial(next_file, state.scene), state.stride)
+    except FieldError as error:
+        return state.with_message(f"{active.name} {error}")
+    stepped = state.element.replace(**{active.field.name: new})
+    changed = state.edit_element(keep_standing(state, stepped), f"value {active.name}", now)
     if changed is state:
         value = active.get(state.element)
         if isinstance(value, str | MeshFile):
@@ -181,12 +132,12 @@ def turn_wheel(sign: float, state: State, amount: float, now: float) -> State:
     return change_value(sign, state, amount, now)
 
 
-def next_value(state: State, _amount: float, _now: float) -> State:
-    """Make the next value of the selected element active."""
+def next_value(step: int, state: State, _amount: float, _now: float) -> State:
+    """Make the next (step 1) or previous (-1) value of the selected element active."""
     count = len(values(state.element))
     if not count:
         return state.with_message(f"{state.element.title} has no value to change")
-    return replace(state, value_index=(state.value_index + 1) % count, last_change=None)
+    return replace(state, value_index=(state.value_index + step) % count, last_change=None)
 
 
 def next_frame(state: State, _amount: float, _now: float) -> State:
@@ -218,7 +169,8 @@ EDITS: dict[str, Edit] = {
     "nearer": partial(turn_wheel, 1.0),
     "farther": partial(turn_wheel, -1.0),
     "drop": drop,
-    "next value": next_value,
+    "next value": partial(next_value, 1),
+    "previous value": partial(next_value, -1),
     "remove attribute": structure.remove_attribute,
     "next tone": motion.next_tone,
     "look at": motion.look_at,

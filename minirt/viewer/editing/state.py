@@ -9,9 +9,9 @@ from operator import indexOf
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
-from minirt.fields import Direction, Point
+from minirt.fields import Whole
 from minirt.scene import Camera, Lamp, Scene
-from minirt.viewer.editing.projection import Aim, field_names, scene_size
+from minirt.viewer.editing.projection import Aim, scene_size
 from minirt.viewer.editing.values import Value, is_editable, nice_number, round_changes, values
 
 STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
@@ -129,8 +129,8 @@ def index_of(scene: Scene, element: Element) -> int:
 
 
 def can_edit(kind: type[Element]) -> bool:
-    """Whether keys can edit elements of the kind."""
-    return any(map(is_editable, fields_of(kind))) or bool(field_names(kind, Point) or field_names(kind, Direction))
+    """Whether elements of the kind are seen in the picture, so that keys go to them; a resolution is not."""
+    return any((is_editable(each) and not isinstance(each, Whole)) or each.width > 1 for each in fields_of(kind))
 
 
 def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:

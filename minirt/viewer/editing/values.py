@@ -1,20 +1,41 @@
-"""Values of an element that keys increase and decrease: numbers, also of attributes, colours and their channels.
+"""Values of an element that keys and the panel change: numbers, also of attributes, colours, and parts of triples.
 
-For a picture or mesh file, the next value is the next file beside the scene. Edited numbers are rounded as a person
-would write them: 0.3 instead of 0.30000000000000004.
+Parts are the channels of a colour, the sizes of a box, coordinates, and the angles of a direction. For a picture or
+mesh file, the next value is the next file beside the scene. Edited numbers are rounded as a person would write them:
+0.3 instead of 0.30000000000000004.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import floor, hypot, log10
+from math import asin, atan2, degrees, floor, hypot, log10
 from typing import Any, NamedTuple, TypeVar
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import Angle, Colour, Direction, Factor, Field, Length, MeshField, Picture, Point, Real, Triple, neat
+from minirt.fields import (
+    FARTHEST,
+    Angle,
+    Colour,
+    Direction,
+    Factor,
+    Field,
+    Length,
+    Lengths,
+    MeshField,
+    Picture,
+    Point,
+    Real,
+    Three,
+    Triple,
+    clamp,
+    cos_and_sin,
+    neat,
+)
 from minirt.shapes.shape import Oriented
 
 CHANNELS = "red", "green", "blue"
+ANGLES = "heading", "elevation"  # of a direction, in degrees: from z towards x, and above the horizon
+ANGLE_STEP, PART_STEP = 5.0, 0.05  # of an angle of a direction, in degrees, and of a component
 
 NextFile = Callable[[Any, float], Any]  # (file, steps) -> the picture or mesh file that many steps further
 POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of a step of movement
@@ -28,62 +49,120 @@ RecordType = TypeVar("RecordType", bound=Record)
 
 
 class Value(NamedTuple):
-    """A field of an element, a field of a record that is the value of such a field, or a channel of either."""
+    """A field of an element, a field of a record that is the value of such a field, or a part of either."""
 
     field: Field  # of the element
     inner: Field | None = None  # of the record
-    channel: int | None = None  # 0, 1, 2: red, green, blue
+    channel: int | None = None  # index of the part in `part_names` of the field
     start: int = 0  # components of the record before the inner field
+
+    @property
+    def leaf(self) -> Field:
+        """The field that spells the value."""
+        return self.inner or self.field
 
     @property
     def name(self) -> str:
         """Name that is shown to the user."""
         title = f"{self.field.title} {self.inner.title}" if self.inner else self.field.title
-        return title if self.channel is None else f"{title}: {CHANNELS[self.channel]}"
+        return title if self.channel is None else f"{title}: {part_names(self.leaf)[self.channel]}"
 
     @property
     def range(self) -> str:
         """Range of the value in words."""
-        return (self.inner or self.field).range
+        return self.leaf.range
 
     @property
     def part(self) -> int | None:
-        """Index of the component of the field, from 0; None for the whole field."""
-        return None if self.inner is None and self.channel is None else self.start + (self.channel or 0)
+        """Index of the component of the field, from 0; None for the whole field, and for an angle of a direction."""
+        if (self.inner is None and self.channel is None) or (self.channel or 0) >= Three.width:
+            return None
+        return self.start + (self.channel or 0)
 
-    def stepped(self, element: Element, steps: float, next_file: NextFile) -> Any:
-        """The field's value after a number of steps."""
-        old = self.get(element)
-        field = self.inner or self.field
-        is_file = isinstance(field, MeshField) or any(field.pictures(old))
-        new = next_file(old, steps) if is_file else field.nudge(old, steps)
-        return self.replaced(element, new)
+    def stepped(self, element: Element, steps: float, next_file: NextFile, stride: float) -> Any:
+        """The field's value after a number of steps; `stride`: a step of a movement in scene units."""
+        field, old = self.leaf, self.get(element)
+        if isinstance(field, MeshField) or any(field.pictures(old)):
+            return self.replaced(element, next_file(old, steps))
+        if self.channel is None or isinstance(field, Colour | Lengths):
+            new = field.nudge(old, steps)
+            return self.replaced(element, new if self.channel is None else new[self.channel])
+        angle = self.channel >= Three.width
+        step = stride if isinstance(field, Point) else ANGLE_STEP if angle else PART_STEP
+        ends = (-FARTHEST, FARTHEST) if isinstance(field, Point) else (-1.0, 1.0)
+        new = self.current(element) + steps * step
+        return self.replaced(element, turned_angle(self.channel, new) if angle else clamp(new, *ends))
 
     def replaced(self, element: Element, new: Any) -> Any:
-        """The field's value with another current value; of a colour's channel, only that channel changes."""
+        """The field's value with another current value. FieldError for a direction that would point nowhere."""
         if self.channel is not None:
-            old = self.get(element)
-            new = (*old[: self.channel], new[self.channel], *old[self.channel + 1 :])
+            new = with_part(self.get(element), self.channel, new)
+            if isinstance(self.leaf, Direction):
+                new = self.leaf.check(new)
         return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new
 
     def get(self, element: Element) -> Any:
-        """The current value; for a channel, that of the whole colour."""
+        """The current value; for a part, that of the whole triple."""
         value = getattr(element, self.field.name)
         return getattr(value, self.inner.name) if self.inner else value
 
+    def current(self, element: Element) -> Any:
+        """The current value; of a triple only the part, if this is one."""
+        value = self.get(element)
+        if self.channel is None:
+            return value
+        return (*value, *angles_of(value))[self.channel] if self.channel >= Three.width else value[self.channel]
+
+
+def part_names(field: Field) -> tuple[str, ...]:
+    """Names of the parts of a field that has three components, and of the angles of a direction."""
+    if isinstance(field, Colour):
+        return CHANNELS
+    names = tuple(field.names.split(",")) if isinstance(field, Three) else ()
+    return (*names, *ANGLES) if isinstance(field, Direction) else names
+
+
+def angles_of(direction: Triple) -> tuple[float, float]:
+    """Heading and elevation of a unit vector, in degrees; the heading of a vertical one is 0."""
+    x, y, z = direction
+    heading = degrees(atan2(x, z)) if x or z else 0.0
+    return tuple(round(angle, ANGLE_DECIMALS) + 0.0 for angle in (heading, degrees(asin(clamp(y, -1, 1)))))  # type: ignore[return-value]
+
+
+def turned_angle(channel: int, angle: float) -> float:
+    """An angle of a direction in its range: a heading goes round, an elevation stops at the vertical."""
+    return (angle + 180) % 360 - 180 if channel == Three.width else clamp(angle, -90.0, 90.0)
+
+
+def with_part(triple: Triple, channel: int, new: Any) -> Triple:
+    """A triple with another part: a component, or an angle of a direction."""
+    if channel < Three.width:
+        x, y, z = (new if part == channel else old for part, old in enumerate(triple))
+        return x, y, z
+    heading, elevation = (new if part == channel else old for part, old in enumerate(angles_of(triple), Three.width))
+    (cosine, sine), (level, height) = cos_and_sin(heading), cos_and_sin(elevation)
+    return level * sine, height, level * cosine
+
 
 def values(element: Element) -> tuple[Value, ...]:
-    """All values of an element; channels of colours come last."""
+    """All values of an element; parts of triples come last, positions and directions after the others."""
     unsplit = [
-        value
-        for field in fields_of(type(element))
-        if not isinstance(field, Angle) or shows_roll(element)
-        for value in values_of_field(field, getattr(element, field.name))
+        value for field in seen_fields(element) for value in values_of_field(field, getattr(element, field.name))
     ]
     unsplit.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
-    fields = ((value, value.inner or value.field) for value in unsplit)
-    colours = [each for each, field in fields if isinstance(field, Colour) and not isinstance(each.get(element), str)]
-    return (*unsplit, *(value._replace(channel=channel) for value in colours for channel in range(3)))
+    triples = [each for each in unsplit if not isinstance(each.get(element), str)]
+    placed = [Value(field) for field in seen_fields(element) if isinstance(field, Point | Direction)]
+    sorts: tuple[type[Field], ...] = (Colour, Lengths, Point, Direction)
+    whole = [each for sort in sorts for each in (*triples, *placed) if isinstance(each.leaf, sort)]
+    parts = (value._replace(channel=part) for value in whole for part in range(len(part_names(value.leaf))))
+    return (*unsplit, *parts)
+
+
+def seen_fields(element: Element) -> Iterator[Field]:
+    """Yield the fields of an element; those of a turn about its own axis only where that is seen."""
+    for field in fields_of(type(element)):
+        if not (isinstance(field, Angle | Direction) and field.keyed) or shows_roll(element):
+            yield field
 
 
 def values_of_field(field: Field, value: Any) -> Iterator[Value]:

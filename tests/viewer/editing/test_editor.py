@@ -6,8 +6,10 @@ from math import cos, hypot, radians, sin
 
 import pytest
 
+from minirt.element import Element
 from minirt.fields import FARTHEST, unit
 from minirt.fields.scalars import LEAST_LENGTH
+from minirt.records import record
 from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -15,6 +17,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
 from minirt.viewer.editing.motion import rodrigues, turn_camera
 from minirt.viewer.editing.state import STEP_SHARE, State, initial_state
+from minirt.viewer.editing.typed import set_typed
 from tests.viewer.fake import scene
 
 RED = (255, 0, 0)
@@ -88,14 +91,20 @@ def test_a_cylinder_turns_right_handed_about_an_axis(frame, axis):
         assert turned.element.axis == pytest.approx(axis, abs=1e-15)
 
 
-def test_next_value_cycles_through_the_values():
+def test_next_value_cycles_through_the_values_and_previous_value_goes_back():
     state = selecting(Cylinder)
-    names = []
-    for _ in range(7):
-        names.append(state.active.name)
+    there, back = [], []
+    for _ in range(15):
+        there.append(state.active.name)
         state = after(state, "next value")
+    for _ in range(15):
+        state = after(state, "previous value")
+        back.append(state.active.name)
     colours = ["colour", "colour: red", "colour: green", "colour: blue"]
-    assert names == ["diameter", "height", *colours, "diameter"]
+    places = [f"centre: {part}" for part in "xyz"]
+    turns = [f"axis: {part}" for part in ("x", "y", "z", "heading", "elevation")]
+    assert there == ["diameter", "height", *colours, *places, *turns, "diameter"]
+    assert back == there[::-1]
     plane = selecting(Plane)
     assert plane.active.name == "colour"
     assert after(plane, "shrink").element.colour == (0, 247, 0)
@@ -105,11 +114,15 @@ def test_next_value_cycles_through_the_values():
 
 
 def test_a_message_says_that_an_element_has_no_value():
-    text = "R 320 200\nA 0.2 9,9,9\nC 0,0,0 0,0,1 60\n"
-    state = initial_state(scene(text))
-    state = State(state.scene, 0, state.file_camera, 1.0)
+    @record()
+    class Mark(Element):
+        code, title, plural = "mk", "mark", "marks"
+
+    opened = scene()
+    state = initial_state(Scene((Mark(), *opened.items))).select(0)
     assert "no size" in after(state, "grow").message
     assert "no value" in after(state, "next value").message
+    assert "no value" in set_typed(state, state.active, "3", 0.0).message
 
 
 def test_scaling_down_stops_at_the_least_size():

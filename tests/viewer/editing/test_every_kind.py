@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from minirt.element import Element, fields_of
-from minirt.fields import Direction, Picture, Point
+from minirt.fields import Colour, Direction, Length, Lengths, MeshFile, Picture, Point, Whole, unit
 from minirt.materials import Compound, Mirror
 from minirt.rendering.packing.camera import camera_frame
 from minirt.rendering.queries.pick import covers
@@ -32,6 +32,7 @@ from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import field_names, position_of, projection_of
 from minirt.viewer.editing.state import State, index_of, initial_state
 from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
+from minirt.viewer.editing.typed import set_typed
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
 
@@ -64,6 +65,12 @@ def holding(kind: type[Element], path: Path) -> State:
     if existing:
         return state.select(index_of(state.scene, existing[0]))
     return next(each for each in choices(state, ELEMENT) if type(each.element) is kind).end_merging()
+
+
+def tilted(state: State) -> State:
+    """The state whose selected element has tilted directions, of which each part can be changed."""
+    tilts = dict.fromkeys(field_names(type(state.element), Direction), (0.48, 0.6, 0.64))
+    return replace(state, scene=state.scene.edit(state.selected, state.element.replace(**tilts)))
 
 
 def checked(state: State) -> State:
@@ -148,11 +155,12 @@ def changes(state: State) -> Iterator[tuple[str, State]]:
 
 @pytest.mark.parametrize("kind", EDITABLE, ids=lambda kind: kind.code)
 def test_every_number_and_colour_can_be_changed(kind: type[Element], path: Path) -> None:
-    state = holding(kind, path)
+    state = tilted(holding(kind, path))
     active = {value.field.name for value in values(state.element)}
     given = {each.name for each in fields_of(kind) if getattr(state.element, each.name) is not None}
     unseen = set() if isinstance(state.element, (Box, Square, Ellipsoid, Mesh, Camera)) else {"roll"}
-    assert active == given - {*field_names(kind, Point), *field_names(kind, Direction)} - unseen
+    unseen |= {each.name for each in fields_of(kind) if each.keyed and isinstance(each, Direction)} if unseen else set()
+    assert active == given - unseen
     for name, after in changes(state):
         field = next(value.field for value in values(state.element) if value.name == name)
         others = {each.name for each in fields_of(kind)} - {field.name}
@@ -160,6 +168,33 @@ def test_every_number_and_colour_can_be_changed(kind: type[Element], path: Path)
         assert (after.element != state.element) or "cannot go further" in after.message
     changed = {name for name, after in changes(state) if after.element != state.element}
     assert changed == {value.name for value in values(state.element)}
+
+
+@pytest.mark.parametrize("kind", EDITABLE, ids=lambda kind: kind.code)
+def test_every_number_can_be_typed_and_is_saved(kind: type[Element], path: Path) -> None:
+    state = tilted(holding(kind, path))
+    for index, value in enumerate(values(state.element)):
+        old = value.current(state.element)
+        if isinstance(old, str | MeshFile):
+            continue
+        texts = {"0.5": 0.5, "0,25*2": 0.5, "0.5,0,0": (0.5, 0, 0)} if value.channel is not None else {"=*0.5": None}
+        texts = {"7": 7} if isinstance(value.leaf, Whole | Colour) else texts
+        for text, wanted in texts.items():
+            after = checked(set_typed(replace(state, value_index=index), value, text, 0.0))
+            got, least = value.current(after.element), getattr(value.leaf, "low", 0)
+            if "must" in after.message:
+                assert after.scene is state.scene
+                assert isinstance(value.leaf, Lengths | Length) or least > 0, after.message
+            elif isinstance(wanted, tuple):
+                assert value.get(after.element) == ((1, 0, 0) if isinstance(value.leaf, Direction) else wanted)
+            elif isinstance(value.leaf, Direction) and value.channel < 3:
+                x, y, z = (wanted if n == value.channel else part for n, part in enumerate(value.get(state.element)))
+                assert value.get(after.element) == pytest.approx(unit((x, y, z)), abs=1e-8)
+            elif isinstance(got, tuple):
+                assert got == pytest.approx((7, 7, 7) if wanted else tuple(part / 2 for part in old), abs=1e-6)
+            else:
+                assert got == pytest.approx(old / 2 if wanted is None else wanted, abs=1e-6)
+            assert parse(dump(after.scene), path).scene.elements == after.scene.elements
 
 
 @pytest.mark.parametrize(("kind", "name"), KEYED, ids=lambda part: getattr(part, "code", part))

@@ -1,0 +1,116 @@
+"""Typed values: numbers, sums of them, and changes of the present value.
+
+3.5 or 3,5       that value; a comma where one number is expected is a decimal comma
+2*3+1  (1+2)/4   the result
+1,2,3            three numbers for a colour, sizes, a position or a direction, even if one part of it is active
+=*2  =+0.5       the present value times 2, or plus 0.5
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from math import isfinite
+from operator import add, mul, sub, truediv
+from typing import Any
+
+from minirt.errors import FieldError
+from minirt.fields import Colour, Three, Whole
+from minirt.fields.scalars import found, number
+from minirt.viewer.editing.adding import keep_standing
+from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import Value
+
+OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Mult: mul,
+    ast.Div: truediv,
+    ast.Add: add,
+    ast.Sub: sub,
+}
+CHARACTERS = "0123456789.,+-*/=()"  # of which typed values are made
+PRESENT = "x"  # stands for the present value in a sum
+SIGNS = tuple("*/+-")
+
+
+def set_typed(state: State, value: Value | None, text: str, now: float) -> State:
+    """The state whose selected element has what was typed as a value, or which says what is wrong with it."""
+    if value is None:
+        return state.with_message(f"{state.element.title} has no value to type")
+    try:
+        return with_value(state, value, typed(value, value.get(state.element), value.current(state.element), text), now)
+    except (FieldError, ValueError) as error:
+        reason = str(error)
+        return state.with_message(reason if reason.startswith(state.element.title) else f"{value.name} {reason}")
+
+
+def with_value(state: State, value: Value, new: Any, now: float) -> State:
+    """The state whose selected element has another value, of a part also a whole triple; ValueError out of range."""
+    whole = value._replace(channel=None) if isinstance(new, tuple) else value
+    changed = state.element.replace(**{value.field.name: whole.replaced(state.element, new)})
+    return state.end_merging().edit_element(keep_standing(state, changed), f"typed {value.name}", now).end_merging()
+
+
+def typed(value: Value, old: Any, current: Any, text: str) -> Any:
+    """The number or triple that `text` asks for. FieldError if it is no number, or out of the field's range.
+
+    `old`: the whole present value; `current`: the part of it that is active, if one is.
+    """
+    presents = current if isinstance(current, tuple) else (current,)
+    if any(isinstance(part, bool) or not isinstance(part, int | float) for part in presents):
+        raise FieldError("is not a number: + and - change it")
+    body = text.removeprefix("=")
+    sign = body[0] if body != text and body.startswith(SIGNS) and len(body) > 1 else ""
+    texts = body[len(sign) :].split(",")
+    if len(texts) == Three.width and isinstance(old, tuple):
+        presents = old
+    elif len(presents) == 1 and (len(texts) == 2 or any(each in body[1:] for each in SIGNS)):
+        texts = [".".join(texts)]
+    elif len(texts) != 1:
+        numbers = "one number" if len(presents) == 1 else f"one number or {len(presents)}"
+        raise FieldError(f"takes {numbers}, got {len(texts)}")
+    texts *= len(presents) // len(texts)
+    sums = (f"{PRESENT}{sign}{each}" if sign else each for each in texts)
+    given: list[Any] = [sum_of(each, present) for each, present in zip(sums, presents, strict=True)]
+    if isinstance(value.leaf, Colour | Whole):
+        given = [round(part) for part in given]
+    return value.leaf.check(tuple(given)) if len(given) > 1 else checked(value, given[0])
+
+
+def checked(value: Value, given: float) -> float:
+    """A number that is in the range of a value, or of the part of a triple. FieldError."""
+    if value.channel is None:
+        return value.leaf.check(given)  # type: ignore[no-any-return]
+    if isinstance(value.leaf, Three) and value.channel < Three.width:
+        return value.leaf.component.check(given)
+    return given
+
+
+def sum_of(text: str, present: float) -> float:
+    """The result of a sum, product or quotient of numbers; FieldError if it is none."""
+    if not any(sign in text[1:] for sign in "*/+-()"):
+        return number(text)
+    try:
+        value = result(ast.parse(text, mode="eval").body, present)
+        if isfinite(value):
+            return value
+    except ZeroDivisionError:
+        raise FieldError("cannot be divided by 0") from None
+    except (SyntaxError, OverflowError, RecursionError, MemoryError):
+        pass
+    raise FieldError("must be a number, " + found(text.removeprefix(PRESENT)))
+
+
+def result(node: ast.expr, present: float) -> float:
+    """The result of a node of a parsed sum; SyntaxError for anything that is no arithmetic."""
+    match node:
+        case ast.BinOp(left, operator, right) if type(operator) in OPERATIONS:
+            return OPERATIONS[type(operator)](result(left, present), result(right, present))
+        case ast.UnaryOp(ast.USub(), operand):
+            return -result(operand, present)
+        case ast.UnaryOp(ast.UAdd(), operand):
+            return result(operand, present)
+        case ast.Constant(int() | float() as constant) if not isinstance(constant, bool):
+            return float(constant)
+        case ast.Name(name) if name == PRESENT:
+            return float(present)
+    raise SyntaxError
