@@ -21,14 +21,14 @@ from typing import Any, Final, NamedTuple
 from minirt.mlx.events import KEYS, Button, Key, Modifier
 
 PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
-MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
+MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT, "Alt": Modifier.ALT}
 PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
 AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
 KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
 SELECT, MOVE, CHANGE, EDIT, FILE, WINDOW = "Select", "Move", "Change", "Edit", "File", "Window"
 FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a note below each list of keys
-SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
+SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT | Modifier.ALT
 
 MOUSE: dict[str, Button | str] = {
     **{f"{each.name.lower()} click": each for each in (Button.LEFT, Button.RIGHT)},
@@ -119,6 +119,7 @@ BINDINGS = (
     on_press(MOVE, "move by hand", "move the element under the pointer; on nothing: look around", "left drag"),
     on_press(MOVE, "turn by hand", "turn the element under the pointer", "Shift+left drag"),
     on_press(MOVE, "place by hand", "move it on what lies behind, on a grid", "Ctrl+left drag"),
+    on_press(MOVE, "slide by hand", "slide it along surfaces, turned to them", "Alt+left drag", "Ctrl+Shift+left drag"),
     on_press(MOVE, "drop", "drop the element onto what lies beneath, on a grid", "B"),
     on_press(MOVE, "orbit", "orbit the camera around the selected element", "right drag"),
     on_press(MOVE, "pan", "slide the camera", "middle drag"),

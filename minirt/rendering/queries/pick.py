@@ -64,6 +64,15 @@ def surface_normal(shape: Shape, point: Triple, direction: Triple) -> Triple:
     return facing * x + 0.0, facing * y + 0.0, facing * z + 0.0
 
 
+def first_hit(shape: Shape, origin: Triple, direction: Triple) -> tuple[Triple, Triple] | None:
+    """The point where a ray meets a shape, and the unit normal there, towards the origin; None where it misses."""
+    distance = float(distances_of(shape, Vec(*np.array(origin)), Vec(*np.array(direction))).min())
+    if not np.isfinite(distance):
+        return None
+    x, y, z = (start + distance * part for start, part in zip(origin, direction, strict=True))
+    return (x, y, z), surface_normal(shape, (x, y, z), direction)
+
+
 def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Whether a shape covers the centres of pixels x, y, with no other shape in front; False everywhere for a mesh that
     reaches beside or behind the eye."""

@@ -7,12 +7,13 @@ from collections.abc import Callable
 from minirt.errors import MiniRTError
 from minirt.fields import Triple
 from minirt.mlx import Button, Cursor
+from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.display.marks import SIZE, visible_icons
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart
-from minirt.viewer.editing.projection import Aim, aim, extent
+from minirt.viewer.editing.projection import AHEAD, Aim, aim, aim_at_top, extent
 from minirt.viewer.editing.state import index_of
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
@@ -102,11 +103,16 @@ class Mouse:
         return point
 
     def aim(self) -> Aim | None:
-        """Return the place under the pointer, where a new element goes; None while the pointer is elsewhere."""
-        session = self.session
+        """Return the place for a new element: under the pointer, or while it is elsewhere on top of the selected shape.
+
+        Where no bounded shape is selected it is in the middle of the picture. None if textures cannot be read.
+        """
+        session, element = self.session, self.session.state.element
         x, y = session.window.pointer
         if (x, y) == (0, 0) or not self.inside:
-            return None
+            if isinstance(element, Shape) and element.bounds():
+                return aim_at_top(session.view, element)
+            x, y = session.window.width // 2, int(AHEAD * session.window.height)
         try:
             at = session.surface_at(x, y)
         except MiniRTError as error:

@@ -7,6 +7,7 @@ position of the pointer alone, and nothing drifts. A drag is undone as a whole.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 from minirt.element import Element
@@ -15,9 +16,9 @@ from minirt.rendering.queries.pick import pick
 from minirt.scene.elements import Camera, linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
-from minirt.viewer.editing.adding import dropped, middle_of, stand
 from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, shifted
-from minirt.viewer.editing.projection import UP, Projection, aim, extent, scene_centre, subtract
+from minirt.viewer.editing.placing import dropped, lowest_along, middle_of, settled
+from minirt.viewer.editing.projection import UP, Aim, Projection, aim, extent, scene_centre, subtract
 from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels
@@ -60,13 +61,32 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
 def place(state: State, start: DragStart, x: int, y: int) -> State:
     """Move a shape to the surface behind the pointer, with its middle on the grid, and drop it there."""
     shape = start.element
-    if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
+    there = aim_behind(state, start, x, y)
+    if there is None or not isinstance(shape, Shape):
         return move(state, start, x, y)
-    others, view = state.scene.edit(state.selected), start.projection
-    behind = pick(others, view.width, view.height, x, y)
-    there = aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *behind)
-    standing = stand(shifted(shape, subtract(there.point, middle_of(shape)[0])), there.point, UP)
+    others = state.scene.edit(state.selected)
+    at = shifted(shape, subtract(there.point, middle_of(shape)[0]))
+    standing = shifted(at, UP, there.point[1] - lowest_along(at, UP))
     return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)
+
+
+def slide(state: State, start: DragStart, x: int, y: int) -> State:
+    """Move a shape along the surfaces behind the pointer, where it stands as a new one would."""
+    shape = start.element
+    there = aim_behind(state, start, x, y)
+    if there is None or there.normal is None or not isinstance(shape, Shape):
+        return move(state, start, x, y)
+    at = settled(shape, there, state.scene.edit(state.selected), state.stride)
+    return replace(state.edit_element(at, *CHANGE), aim=there)
+
+
+def aim_behind(state: State, start: DragStart, x: int, y: int) -> Aim | None:
+    """Aim at what is behind the dragged shape; None if no bounded shape is dragged."""
+    shape, view = start.element, start.projection
+    if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
+        return None
+    behind = pick(state.scene.edit(state.selected), view.width, view.height, x, y)
+    return aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *behind)
 
 
 def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
@@ -122,6 +142,7 @@ DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
     "move by hand": move,
     "turn by hand": turn,
     "place by hand": place,
+    "slide by hand": slide,
     "orbit": orbit,
     "pan": pan,
 }

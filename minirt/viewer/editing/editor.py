@@ -17,8 +17,8 @@ from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
 from minirt.viewer.editing import motion, structure
 from minirt.viewer.editing import state as states
-from minirt.viewer.editing.adding import drop, keep_standing
 from minirt.viewer.editing.motion import FORWARD, RIGHT, UPWARD, WORLD_AXES
+from minirt.viewer.editing.placing import drop, keep_standing
 from minirt.viewer.editing.projection import field_names
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import values

@@ -11,10 +11,9 @@ from typing import Any, NamedTuple
 from minirt.element import Element, fields_of
 from minirt.fields import Whole
 from minirt.scene import Camera, Lamp, Scene
-from minirt.viewer.editing.projection import Aim, scene_size
+from minirt.viewer.editing.projection import STEP_SHARE, Aim, scene_size
 from minirt.viewer.editing.values import Value, is_editable, nice_number, round_changes, values
 
-STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
 MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
 MAX_UNDO = 1000  # length of the undo stack
 MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
@@ -156,7 +155,7 @@ def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> 
 def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """Take the last snapshot from the stack of undo or redo, and give the current one to the other stack.
 
-    The active value stays if the selected element stays.
+    The active value, and where the element stands, stay if the selected element stays.
     """
     stack: tuple[Snapshot, ...] = getattr(state, f"{taken}_stack")
     if not stack:
@@ -166,8 +165,8 @@ def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: flo
         f"{taken}_stack": stack[:-1],
         f"{given}_stack": (*getattr(state, f"{given}_stack"), state.snapshot),
     }
-    value_index = state.value_index if selected == state.selected else 0
-    return replace(state, scene=scene, selected=selected, value_index=value_index, last_change=None, **stacks)
+    state = state if selected == state.selected else state.select(selected)
+    return replace(state, scene=scene, last_change=None, **stacks)
 
 
 undo, redo = partial(travel, "undo", "redo"), partial(travel, "redo", "undo")

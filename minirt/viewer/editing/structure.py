@@ -22,7 +22,7 @@ ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """Insert a copy after the selected element, at the same position, and select it."""
+    """Insert a copy after the selected element, at the same position, and select it; what stands, stands on there."""
     element = state.element
     # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
     repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
@@ -30,7 +30,7 @@ def duplicate(state: State, _amount: float, now: float) -> State:
         return state.with_message(f"a scene has one {element.title}")
     copy = repeatable[0](**{each.name: getattr(element, each.name) for each in fields_of(type(element))})
     scene = state.scene.edit(state.selected, element, copy)
-    state = state.select(state.selected).change(scene, "", now, state.selected + 1)
+    state = replace(state.change(scene, "", now, state.selected + 1), value_index=0)
     return state.with_message(f"a copy of the {element.title}, at the same position")
 
 

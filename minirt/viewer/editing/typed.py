@@ -17,7 +17,7 @@ from typing import Any
 from minirt.errors import FieldError
 from minirt.fields import Colour, Three, Whole
 from minirt.fields.scalars import found, number
-from minirt.viewer.editing.adding import keep_standing
+from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value
 

@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import dist, hypot, sqrt
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from minirt.fields import Triple
+from minirt.lanes import Vec
+from minirt.rendering.packing.ray_casting import distances_of
 from minirt.rendering.queries.pick import clearance, pick
 from minirt.scene import Scene, load
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.box import Box
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.frames import basis
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.editing.adding import addable_kinds, default_element, dropped
+from minirt.shapes.triangle import Triangle
+from minirt.viewer.editing.adding import addable_kinds, default_element
 from minirt.viewer.editing.editor import apply
+from minirt.viewer.editing.placing import dropped, middle_of, stand
 from minirt.viewer.editing.projection import SHARE, aim, looked_at_distance, projection_of
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ELEMENT, choices
@@ -76,6 +84,57 @@ def test_a_ball_touches_the_ball_that_is_aimed_at(x: int, y: int) -> None:
     assert state.aim.normal == pytest.approx((x_at / 2, (y_at - 2) / 2, z_at / 2))
     assert isinstance(new, Sphere)
     assert dist(new.centre, (0, 2, 0)) == pytest.approx(2 + new.diameter / 2, rel=2e-3)
+
+
+FRONT = "A 0.2 255,255,255\nC 0,2,6 0,0,-1 60\n"  # level with the middle of a head
+
+
+@pytest.mark.parametrize("head", ["sp 0,2,0 1 9,9,9", "el 0,2,0 0,1,0 1,1.2,1 9,9,9", "bo 0,2,0 0,1,0 1,1,1 9,9,9"])
+@pytest.mark.parametrize("kind", ["co", "cy", "bo", "hy", "pa", "to", "di", "sq", "el"])
+def test_what_sticks_to_a_side_points_outwards_and_is_smaller(head: str, kind: str) -> None:
+    state, made = added(f"{FRONT}{head}\n", 322, 179, kind)
+    aimed = state.aim
+    assert aimed is not None
+    assert aimed.point == pytest.approx((0, 2, 0.5), abs=1e-9)  # 0.01 is 0 on the grid
+    assert aimed.normal == pytest.approx((0, 0, 1), abs=1e-9)
+    low, high = made.bounds() or ((), ())
+    assert low[2] == pytest.approx(0.5, abs=0.01)
+    assert max(b - a for a, b in zip(low, high, strict=True)) <= 0.4
+    assert [(a + b) / 2 for a, b in zip(low, high, strict=True)][:2] == pytest.approx([0, 2], abs=1e-3)
+    if kind == "co":
+        assert made.axis == (0, 0, -1)  # type: ignore[attr-defined] - from the apex to the base
+
+
+def test_a_hat_stands_upright_in_the_middle_of_a_head() -> None:
+    view = "A 0.2 255,255,255\nC 0,4,6 0,-0.3,-1 60\n"
+    state, hat = added(f"{view}sp 0.1,2,0 1 9,9,9\n", 333, 162, "cy")
+    assert state.aim is not None
+    assert 0.7 < state.aim.normal[1] < 1  # type: ignore[index]
+    assert isinstance(hat, Cylinder)
+    assert hat.axis == (0, 1, 0)
+    assert hat.centre == pytest.approx((0.1, 2.5 + hat.height / 2, 0), abs=1e-3)
+    assert hat.diameter <= 0.6
+
+
+@pytest.mark.parametrize("normal", [(0.6, 0.0, 0.8), (0.48, -0.6, 0.64), (0.0, -1.0, 0.0), (0.36, 0.48, 0.8)])
+@pytest.mark.parametrize(
+    "kind", [each for each in ELEMENTS.values() if issubclass(each, Shape)], ids=lambda kind: kind.code
+)
+def test_every_kind_stands_on_a_slope_as_it_stands_on_the_ground(kind: type[Shape], normal: Triple) -> None:
+    """Rays towards the slope find the lowest point of the shape at a distance of 0 from it, or where it is lifted."""
+    state = initial_state(scene(FRONT))
+    with suppress(LookupError):
+        shape = default_element(kind, state)
+        if shape.bounds() is None or isinstance(shape, Triangle):  # a triangle is not turned, and may be edge-on
+            return
+        standing = stand(shape, (1.0, 2.0, 3.0), normal)
+        u, v, w = basis(normal)
+        radius = middle_of(standing)[1]
+        across = np.linspace(-1.3, 1.3, 201) * radius
+        a, b = (each.ravel() for each in np.meshgrid(across, across))
+        start = Vec(1.0 + 0 * a, 2.0, 3.0) - 9.0 * w + a * u + b * v
+        distance = distances_of(standing, start, Vec(*np.array(normal))).min() - 9
+        assert -1e-9 < distance < 0.03 * radius
 
 
 def test_the_sky_and_the_far_ground_are_no_place_to_stand() -> None:
@@ -154,7 +213,8 @@ def test_a_new_element_keeps_standing_while_its_size_changes_and_until_it_is_mov
     assert larger.replace(diameter=ball.diameter) == moved.element
     other = apply(apply(state, "duplicate"), "grow").element
     assert isinstance(other, Sphere)
-    assert other.centre == ball.centre
+    assert other.centre[1] == pytest.approx(other.diameter / 2, abs=1e-3)
+    assert other.centre[::2] == ball.centre[::2]
 
 
 def test_drop_is_one_undo_step_and_says_where_nothing_can_fall() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos, degrees, dist
+from math import acos, degrees, dist, hypot
 
 import pytest
 from hypothesis import given
@@ -85,6 +85,24 @@ def test_a_drag_with_shift_turns_the_element():
     about_x = played("press X", "down Shift", "drag 41,24 53,24", "up Shift").state.element.axis
     assert about_x == pytest.approx((0, 0.5**0.5, 0.5**0.5))
     assert "same from all sides" in played("down Shift", DRAG, "up Shift").state.message
+
+
+@pytest.mark.parametrize("chord", [("Alt",), ("Ctrl", "Shift")])
+def test_a_drag_with_alt_slides_along_surfaces_and_turns_to_them(chord):
+    text = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\nsp 0,0,0 6 9,9,9\nco 0,0,4 0,0,-1 0.8 1 9,9,9\n"
+    down, up = ([f"{way} {key}" for key in chord] for way in ("down", "up"))
+    session = played(*down, "drag 32,24 42,24", *up, text=text)
+    nose = session.state.element
+    x, y, z = nose.apex
+    assert hypot(x, y, z) == pytest.approx(4, abs=1e-3)  # radius and height
+    assert (x > 1, y) == (True, pytest.approx(0, abs=0.2))
+    assert nose.axis == pytest.approx((-x / 4, -y / 4, -z / 4), abs=1e-3)
+    assert len(session.state.undo_stack) == 1
+    taller = played(*down, "drag 32,24 42,24", *up, "press V", "text 2", "press Return", text=text).state.element
+    assert hypot(*taller.apex) == pytest.approx(5, abs=1e-3)  # it still stands there
+    free = played(*down, "drag 32,24 62,2", *up, text=text).state.element
+    assert free.axis == (0, 0, -1)
+    assert free.apex[2] == 4
 
 
 @pytest.mark.parametrize("lines", [(), ("click 33,23",), ("press Tab",), ("press Ctrl+D",)])

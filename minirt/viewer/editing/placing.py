@@ -1,0 +1,144 @@
+"""Where shapes stand: on the surface that is aimed at, along its normal; on what lies beneath; and on a grid."""
+
+from __future__ import annotations
+
+from math import copysign, dist, hypot, isfinite
+
+from minirt.element import Element, fields_of
+from minirt.fields import Direction, Point, Triple, neat
+from minirt.rendering.queries.pick import clearance
+from minirt.scene import Scene
+from minirt.scene.elements import linear_combination
+from minirt.shapes import Shape
+from minirt.shapes.shape import Oriented
+from minirt.viewer.editing.motion import shifted
+from minirt.viewer.editing.projection import TOP, UP, Aim, dot, extent, field_names, position_of, subtract
+from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import round_point
+
+LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes without an axis still come to rest
+POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a standing shape are rounded
+SAME = 1 / 50  # of a step: positions closer than this differ by rounding
+FLAT_LIFT = 0.01  # of its radius: how far above a surface a flat shape lies
+DOWN = (0.0, -1.0, 0.0)
+
+
+def settled(shape: Shape, aim: Aim, scene: Scene, stride: float) -> Shape:
+    """Put a shape where the pointer aims, standing on the other shapes of a scene.
+
+    Its axis is along the normal there. On top of things it is upright and comes to rest as if it were dropped there.
+    """
+    if aim.normal is None or shape.bounds() is None:
+        return shape
+    rests = aim.normal[1] > (TOP if direction_of(shape) else LEVEL)
+    standing = stand(shape, aim.point, UP if rests else aim.normal)
+    if rests and aim.normal[1] < 1:
+        standing = dropped(standing, scene, None) or standing
+    points = {name: getattr(standing, name) for name in field_names(type(shape), Point)}
+    return standing.replace(**{name: round_point(each, POINT_ROUNDING * stride) for name, each in points.items()})
+
+
+def direction_of(shape: Shape) -> Direction | None:
+    """Return the field of the axis or the normal of a shape; None if another one would not change the picture."""
+    if not isinstance(shape, Oriented) or not shape.shows_axis:
+        return None
+    return next(each for each in fields_of(type(shape)) if isinstance(each, Direction))
+
+
+def turned_up(shape: Shape, field: Direction, up: Triple) -> Shape:
+    """Turn a shape so that what is up in a new shape of its kind points along the unit vector `up`."""
+    x, y, z = up
+    sign = copysign(1.0, (field.initial or field.instead)[1])
+    return shape.replace(**{field.name: neat((sign * x, sign * y, sign * z))})
+
+
+def stand(shape: Shape, point: Triple, normal: Triple) -> Shape:
+    """Put a bounded shape onto a point of a surface, turned so that it stands there as it would on level ground."""
+    field = direction_of(shape)
+    if field is None:
+        at = shifted(shape, subtract(point, middle_of(shape)[0]))
+        return shifted(at, normal, dot(point, normal) - lowest_along(at, normal) + lift_of(at, normal))
+    level, turned = turned_up(shape, field, UP), turned_up(shape, field, normal)
+    (x, _, z), position, there = middle_of(level)[0], position_of(level), position_of(turned)
+    assert position and there  # noqa: PT018 - what has a direction has a position
+    offset = subtract(position, (x, lowest_along(level, UP) - lift_of(level, UP), z))
+    for old, new in zip(frame_of(level), frame_of(turned), strict=True):
+        point = linear_combination(1.0, point, dot(offset, old), new)
+    return shifted(turned, subtract(point, there))
+
+
+def frame_of(shape: Shape) -> list[Triple]:
+    """The vectors of the own frame of a shape that has one."""
+    assert isinstance(shape, Oriented)
+    return [(each.x, each.y, each.z) for each in shape.frame()]
+
+
+def lift_of(shape: Shape, normal: Triple) -> float:
+    """How far above a surface a shape stands: flat ones are clear of it, since it would hide what lies in it."""
+    x, y, z = normal
+    flat = -lowest_along(shape, normal) == lowest_along(shape, (-x, -y, -z))
+    return FLAT_LIFT * middle_of(shape)[1] if flat else 0.0
+
+
+def keep_standing(state: State, changed: Element) -> Element:
+    """The changed version of the selected element; one that still is where it was added stands there again."""
+    old, aim = state.element, state.aim
+    if aim is None or not isinstance(old, Shape) or not isinstance(changed, Shape):
+        return changed
+    scene, stride = state.scene.edit(state.selected), state.stride
+    there = settled(old, aim, scene, stride)
+    same = there.replace(**{name: getattr(old, name) for name in field_names(type(old), Point)}) == old
+    before, after = position_of(old), position_of(there)
+    stands = same and before and after and dist(before, after) < SAME * stride
+    return settled(changed, aim, scene, stride) if stands else changed
+
+
+def lowest_along(shape: Shape, direction: Triple) -> float:
+    """Least coordinate of a bounded shape along a direction, by its box and its balls."""
+    box = shape.bounds()
+    assert box
+    by_box = sum(min(low * part, high * part) for low, high, part in zip(*box, direction, strict=True))
+    by_balls = (dot(centre, direction) - radius for centre, radius in shape.balls())
+    return max(by_box, min(by_balls, default=by_box))
+
+
+def middle_of(shape: Shape) -> tuple[Triple, float]:
+    """Middle and radius of a bounded shape."""
+    found = extent(shape)
+    assert found
+    return found
+
+
+def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
+    """Lower or raise a bounded shape onto what lies beneath it, or onto the ground y = 0; None if nothing does.
+
+    Its middle goes onto the middle of the shape beneath, if that is within its radius, or else onto lines of a grid.
+    """
+    (x, _, z), radius = middle_of(shape)
+    others = [each for each in scene.shapes if each is not shape]
+    _, support = clearance(shape, others)
+    box, below = shape.bounds(), support.bounds() if support else None
+    assert box
+    centre = middle_of(support)[0] if support and below else None
+    rise = 0.0
+    if below and centre and hypot(centre[0] - x, centre[2] - z) <= radius:
+        x_to, z_to, rise = centre[0], centre[2], max(0.0, below[1][1] - box[0][1])  # all of it is above the other
+    else:
+        x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
+    there = shifted(shape, (x_to - x, rise, z_to - z))
+    gap, support = clearance(there, others)
+    low, high = box[0][1] + rise, box[1][1] + rise
+    if support is None and high > 0:
+        gap = low
+    return shifted(there, DOWN, gap) if isfinite(gap) else None
+
+
+def drop(state: State, _amount: float, now: float) -> State:
+    """Drop the selected shape onto what lies beneath, on a grid or in the middle."""
+    shape = state.element
+    if not isinstance(shape, Shape) or shape.bounds() is None:
+        return state.with_message(f"{shape.title} cannot stand on anything")
+    there = dropped(shape, state.scene.edit(state.selected), state.stride)
+    if there is None:
+        return state.with_message(f"there is nothing beneath the {shape.title}")
+    return state.edit_element(there, "", now).with_message(f"on what lies beneath, on a grid of {state.stride:g}")
