@@ -18,6 +18,7 @@ from minirt.materials.pictures import picture
 from minirt.meshes import load_mesh
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX
+from minirt.scene.pages import Item
 
 INTERVAL = 0.25  # seconds between two checks of the file
 Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
@@ -57,9 +58,16 @@ def save_recovery(scene: Scene, path: Path) -> Path:
 
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:
-    """Whether two scenes differ in more than the camera: looking around is not an unsaved change."""
-    one, other = ([item for item in each.items if not isinstance(item, Camera)] for each in (scene, saved))
-    return one != other
+    """Whether a scene differs from the saved one; looking around is not an unsaved change, a value of a camera is."""
+    one, other = scene.items, saved.items
+    return len(one) != len(other) or any(
+        a is not b and a != b and not looks(a, b) for a, b in zip(one, other, strict=True)
+    )
+
+
+def looks(one: Item, other: Item) -> bool:
+    """Whether two entries of a scene are cameras that were given the same values, and may look elsewhere."""
+    return isinstance(one, Camera) and isinstance(other, Camera) and one.edited == other.edited
 
 
 def error_summary(error: MiniRTError) -> str:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from minirt.scene import load
+from minirt.viewer.app.replay import play
 from minirt.viewer.files import WatchedFile, contents_differ, save_recovery, signature
-from tests.viewer.fake import TEXT, colour_of, played, scene, write
+from tests.viewer.fake import TEXT, FakeRenderer, colour_of, played, scene, write
 from tests.waiting import until
 
 SELECT_SPHERE = ("press Tab", "press Tab")
@@ -59,6 +60,51 @@ def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the
     assert load(copy).scene.items == scene().items
     copy.unlink()
     copy.parent.rmdir()
+
+
+CAMERA = ("press C",)
+LOOKING = (
+    "press d",
+    "hold Left 0.3",
+    "press .",
+    "drag 5,3 20,12",
+    "drag 10,10 22,16 right",
+    "drag 33,23 45,15 middle",
+    "wheel up 3",
+    "press L\npress F",
+    "press d\npress Home",
+)
+VALUES = ("text 50\npress Return", "press +", "press T", "move 33,23\npress Shift+F", "press M\npress Return")
+POSED = ("press V\npress V\npress V\npress V\ntext 3\npress Return",)
+
+
+@pytest.mark.parametrize("tone", ["plain", "srgb"])
+@pytest.mark.parametrize(
+    ("lines", "unsaved"),
+    [
+        *((each, False) for each in LOOKING),
+        *((each, True) for each in (*VALUES, *POSED)),
+        ("text 50\npress Return", True),
+    ],
+)
+def test_values_of_the_camera_are_to_be_saved_and_looking_around_is_not(path, tone, lines, unsaved):
+    """With --tone srgb the window shows another scene than the file holds, which is no change of the user's."""
+    saved = load(path).scene
+    shown = saved.replace(saved.camera, tone=tone)
+
+    def differs(*more: str) -> bool:
+        session = play(
+            shown, [*CAMERA, *lines.split("\n"), *more], renderer=FakeRenderer(), size=(64, 48), path=path, saved=saved
+        )
+        return contents_differ(session.state.scene, session.saved)
+
+    assert differs() == unsaved
+    assert not unsaved or differs("press d", "press Left")
+    assert not differs(*["press Ctrl+Z"] * 3)
+    assert not differs("press Ctrl+S")
+    assert not differs("press Ctrl+S", "press C", "press d")
+    path.write_text(TEXT)
+    assert differs("press Ctrl+S", "press Ctrl+Z") == (unsaved and lines != "press d\npress Home")
 
 
 # File watching: changes by other programs are reported once, as soon as the file is stable.

@@ -17,7 +17,7 @@ from minirt.viewer.app.session import Session, title_of
 from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
-from minirt.viewer.editing.state import initial_state, state_after_reading
+from minirt.viewer.editing.state import initial_state, state_after_reading, with_edited_cameras
 from minirt.viewer.files import contents_differ
 from minirt.viewer.recovery import FoundChanges, find_changes
 
@@ -147,6 +147,7 @@ def take_found(session: Session, found: FoundChanges) -> None:
     scene = parse(found.text, session.path, session.lenient).scene
     if session.state.scene.camera.left_handed:
         scene = scene.replace(scene.camera, left_handed=True)
+    scene = with_edited_cameras(session.saved, scene, "value")
     session.show_file(state_after_reading(session.state, scene, None), session.saved)
     session.say(f"{found.title}: {named('Ctrl+S')} saves them, {named('Ctrl+Z')} takes them back")
     if session.recovery and not found.beside:

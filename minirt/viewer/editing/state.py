@@ -15,6 +15,7 @@ from minirt.viewer.editing.projection import STEP_SHARE, Aim, scene_size
 from minirt.viewer.editing.values import Value, is_editable, nice_number, round_changes, values
 
 MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
+GIVEN = ("typed", "value")  # how the kinds of changes begin that give an element a value
 MAX_UNDO = 1000  # length of the undo stack
 MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
 
@@ -98,11 +99,13 @@ class State:
         """Replace the scene and push the old one on the undo stack.
 
         kind: changes of the same kind within MERGE_SECONDS are undone together; an empty kind is never merged.
+        Values that a camera was given are noted in it as `edited`: unlike looking around they are to be saved.
         """
         last = self.last_change
         merged = bool(kind) and last is not None and last[0] == kind and now - last[1] <= MERGE_SECONDS
         past = self.undo_stack if merged else (*self.undo_stack[1 - MAX_UNDO :], self.snapshot)
         selected = self.selected if selected is None else selected
+        scene = with_edited_cameras(self.scene, scene, kind)
         return replace(self, scene=scene, selected=selected, undo_stack=past, redo_stack=(), last_change=(kind, now))
 
     def edit_element(self, element: Element, kind: str, now: float, index: int | None = None) -> State:
@@ -115,6 +118,17 @@ class State:
     def edit_camera(self, camera: Camera, kind: str, now: float) -> State:
         """Replace the scene's camera by `camera`, whose changed numbers are rounded."""
         return self.edit_element(camera, kind, now, next(self.scene.indices_of(Camera)))
+
+
+def with_edited_cameras(old: Scene, new: Scene, kind: str) -> Scene:
+    """Note the values of cameras that were changed by a value, or in more than where they are and look."""
+    for before, after in zip(old.of(Camera), new.of(Camera), strict=False):
+        if before is not after and before.edited == after.edited:
+            looked = before.replace(position=after.position, direction=after.direction, roll=after.roll) == after
+            if not looked or kind.startswith(GIVEN):
+                given = tuple(getattr(after, each.name) for each in fields_of(Camera))
+                new = new.replace(after, after.replace(edited=given))
+    return new
 
 
 def initial_state(scene: Scene) -> State:
@@ -190,7 +204,8 @@ def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
     """
     new = initial_state(scene)
     if saved and scene.camera == saved.camera:
-        new = replace(new, scene=scene.replace(scene.camera, old.scene.camera.replace(source=scene.camera.source)))
+        kept = old.scene.camera.replace(source=scene.camera.source, edited=scene.camera.edited)
+        new = replace(new, scene=scene.replace(scene.camera, kept))
     same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
     selected, value_index = (old.selected, old.value_index) if same else (new.selected, 0)
     stack = stack_after_reading(old)
