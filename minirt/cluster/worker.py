@@ -13,6 +13,7 @@ import shutil
 import sys
 from collections.abc import Callable
 from copy import copy
+from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -63,7 +64,11 @@ def renamed(record: Kind, name: Callable[[str], str]) -> Kind:
             changed = copy(record)
             if isinstance(record, Element):
                 object.__setattr__(changed, "source", "")
-        new = name(value) if isinstance(value, str) else renamed(value, name)
+        if isinstance(value, minirt.MeshFile):
+            materials = tuple(renamed(each, name) for each in value.triangles.materials)
+            new: Any = minirt.MeshFile(value.name, replace(value.triangles, materials=materials))
+        else:
+            new = name(value) if isinstance(value, str) else renamed(value, name)
         object.__setattr__(changed, field.name, new)  # unchecked: checking normalises the other values again
     return changed
 

@@ -18,7 +18,7 @@ from typing import Any, ClassVar, NamedTuple
 from minirt.errors import FieldError, quoted
 from minirt.records import Immutable, record
 
-FORBIDDEN = " \t\r\n\0#"  # a line is cut at blanks, and `#` begins a comment
+FORBIDDEN = '\t\r\n\0#"'  # `#` begins a comment; a name with spaces is written within quotes
 
 
 class PictureFile(NamedTuple):
@@ -172,10 +172,20 @@ class Choice(Field):
 
 def file_name(text: str, also: str = "", sort: str = "picture") -> str:
     """Check the name of a file: FieldError if it cannot stand in a line, or has one of the characters in `also`."""
-    if not isinstance(text, str) or not text or any(character in text for character in FORBIDDEN + also):
+    if not isinstance(text, str) or not text.strip() or any(character in text for character in FORBIDDEN + also):
         commas = ", commas" if "," in also else ""
-        raise FieldError(f"must be the name of a {sort} file, without blanks{commas} and #, got {text!r}")
+        raise FieldError(f"must be the name of a {sort} file, without tabs{commas}, quotes and #, got {text!r}")
     return text
+
+
+def unquoted(text: str) -> str:
+    """Return the name of a file that stands in a line within quotes, or without."""
+    return text[1:-1] if len(text) > 1 and text[0] == text[-1] == '"' else text
+
+
+def in_quotes(name: str) -> str:
+    """Return the name of a file as it stands in a line: within quotes if it has blanks."""
+    return f'"{name}"' if " " in name else name
 
 
 @record(kw_only=True)
@@ -185,6 +195,12 @@ class Picture(Field):
     placeholder: str = "file"
     heights: bool = False
     also: str = ""
+
+    def parse(self, text: str) -> str:
+        return unquoted(text)
+
+    def format(self, value: str) -> str:
+        return in_quotes(value)
 
     def check(self, value: str) -> str:
         return file_name(value, self.also)
@@ -206,10 +222,13 @@ class MeshField(Field):
     """A mesh file, its name kept as written."""
 
     def parse(self, text: str) -> MeshFile:
-        return MeshFile(file_name(text, sort="mesh"))
+        return MeshFile(file_name(unquoted(text), sort="mesh"))
 
     def format(self, value: MeshFile) -> str:
-        return value.name
+        return in_quotes(value.name)
+
+    def pictures(self, value: MeshFile) -> Iterator[PictureFile]:
+        return value.triangles.pictures() if value.triangles else iter(())
 
     def check(self, value: MeshFile | str | os.PathLike[str]) -> MeshFile:
         if isinstance(value, MeshFile):

@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, ClassVar
 
 from minirt.errors import FieldError, quoted
-from minirt.fields.field import Field, PictureFile, Repair, file_name
+from minirt.fields.field import Field, PictureFile, Repair, file_name, in_quotes, unquoted
 from minirt.fields.scalars import PLAIN, Length, Scalar, Whole, clamp, number, scaled
 from minirt.records import record
 
@@ -121,10 +121,10 @@ class Paint(Colour):
     """A colour or a picture file; a word with a comma is a colour."""
 
     def parse(self, text: str) -> Triple | str:  # type: ignore[override]
-        return super().parse(text) if "," in text else text
+        return super().parse(text) if "," in text else unquoted(text)
 
     def format(self, value: Triple | str) -> str:
-        return value if isinstance(value, str) else super().format(value)
+        return in_quotes(value) if isinstance(value, str) else super().format(value)
 
     def check(self, value: Triple | str) -> Triple | str:  # type: ignore[override]
         return file_name(value, ",") if isinstance(value, str) else super().check(value)

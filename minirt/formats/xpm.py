@@ -26,7 +26,6 @@ TRANSPARENT = 0
 # Colours of X11 that CSS lacks, or that are others in CSS.
 OWN = {
     "gray": 0xBEBEBE,
-    "grey": 0xBEBEBE,
     "green": 0x00FF00,
     "maroon": 0xB03060,
     "purple": 0xA020F0,
@@ -131,7 +130,7 @@ def colour(definition: bytes, number: int) -> int:
         levels = (int(match[1][at : at + digits], 16) for at in range(0, 3 * digits, digits))
         red, green, blue = ((510 * level + most) // (2 * most) for level in levels)
         return 0xFF000000 | red << 16 | green << 8 | blue
-    name = value.lower()
+    name = value.lower().replace("grey", "gray")
     if name in ("none", "transparent"):
         return TRANSPARENT
     if name not in names():
@@ -150,5 +149,5 @@ def names() -> dict[str, int]:
         for number, share in enumerate(SHADES, 1):
             colours[f"{name}{number}"] = int.from_bytes(bytes(int(level * share) for level in first), "big")
     for percent in range(101):
-        colours[f"gray{percent}"] = colours[f"grey{percent}"] = int(2.55 * percent + 0.5) * 0x010101
+        colours[f"gray{percent}"] = int(2.55 * percent + 0.5) * 0x010101
     return colours | OTHER_SHADES

@@ -144,7 +144,21 @@ def lock(descriptor: int) -> bool:
     return True
 
 
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 LARGEST_ASSET = 256 * 2**20  # bytes of a picture or mesh file that a scene names
+
+
+def located(folder: Path, name: str) -> Path:
+    """Return the path of a file that a scene in a folder names: there, or else in the nearest folder above that has it,
+    up to the working folder."""
+    path = folder / name
+    if not path.exists():
+        for above in Path(os.path.abspath(folder)).parents:  # noqa: PTH100 - links are not followed
+            if not above.is_relative_to(Path.cwd()):
+                break
+            if (above / name).is_file():
+                return above / name
+    return path
 
 
 def reason(error: OSError | ValueError) -> str:
@@ -175,6 +189,8 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
     check_size(path, len(data), largest)
+    if data.startswith(LFS_POINTER):
+        raise FileError(path, "is a pointer of Git LFS in place of the file: 'git lfs pull' fetches it")
     return data
 
 

@@ -63,7 +63,7 @@ class SceneArrays(NamedTuple):
     lens: Any = None  # (7,) half axes of the camera's lens, and one over the distance at which it is sharp
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.lights`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
-    transparent: Any = None  # (n, 4) glass as light from light sources meets it, `minirt.kernel.shading.shadows`
+    transparent: Any = None  # (n, 5) glass as light from light sources meets it, `minirt.kernel.shading.shadows`
     media: Any = None  # (n, 6) tinted glass, see `minirt.kernel.shading.surfaces`
     eye_medium: Any = None  # (3,) absorption at the eye, likewise
     fresnel: Any = None  # (n,) how far the shares of mirrors and glass are those of Fresnel's equations, from 0 to 1

@@ -117,7 +117,7 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
         cone, row = scene.light_cones[rays.light, index], scene.slots[index, 1]
         if not any(visible & in_cell & (rays.distance > cone[4])):
             break
-        if counts(scene, index, glass) and (cone[3] <= -1.0 or rarely(in_cell & in_cone(cone, -rays.towards))):
+        if may_count(scene, index, glass) and (cone[3] <= -1.0 or rarely(in_cell & in_cone(cone, -rays.towards))):
             if group.trees is None:
                 visible = unoccluded_by_shape(group, row, index, in_cell, visible, arguments)
             else:
@@ -130,10 +130,11 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
 def unoccluded_by_shape(group: Group, row: int, index: int, active: Mask, visible: Mask, arguments: Arguments) -> Mask:
     """Remove the shadow rays that one shape, or a triangle of a mesh, occludes from `visible`; only `active` ones may
     meet it."""
-    scene, rays, _, _, _ = arguments
+    scene, rays, _, _, glass = arguments
     shape = read(group.rows, row)
-    if is_parallel(scene, rays.light) or any(
-        may_meet(shape, rays.position, rays.origin, rays.direction, visible & active)
+    if counts(scene, index, glass) and (
+        is_parallel(scene, rays.light)
+        or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & active))
     ):
         hit, t = occludes(shape, rays.origin, rays.direction)
         visible = visible & ~(active & hit & (t < rays.distance))
@@ -165,3 +166,8 @@ def counts(scene: SceneArrays, index: int, glass: bool) -> bool:
     if scene.transparent is None:
         return True
     return (has_rows(scene.transparent) and scene.transparent[index, 1] > 0.0) == glass
+
+
+def may_count(scene: SceneArrays, index: int, glass: bool) -> bool:
+    """Whether a shape, or some triangle of the mesh whose first one it is, counts as an occluder."""
+    return counts(scene, index, glass) or (has_rows(scene.transparent) and scene.transparent[index, 4] > 0.0)

@@ -38,7 +38,7 @@ class Secondary(Material):
         total = max(1.0, mirror.share + glass.share)
         row = mirror.share / total, glass.share / total, refractive_index(shape)
         fades = [1.0 / fade if fade else 0.0 for fade in (mirror.fade, glass.fade)]
-        through = {"transparent": (*row, shape.fresnel or 0.0)} if shape.glass else {}
+        through = {"transparent": (*row, shape.fresnel or 0.0, 0.0)} if shape.glass else {}
         return {"reflective": row, "fades": fades, **through}
 
 

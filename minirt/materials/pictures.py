@@ -13,6 +13,7 @@ import warnings
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -134,9 +135,19 @@ def decode_xpm(path: Path, data: bytes) -> np.ndarray:
     try:
         header = xpm.read_header(strings)
         check_size(path, header.width, header.height)
-        return xpm.read_pixels(strings, header)[..., 2::-1]
+        pixels = xpm.read_pixels(strings, header)
+        note_transparency(path, int(pixels[..., 3].min()))
+        return pixels[..., 2::-1]
     except xpm.XpmError as error:
         raise FileError(path, f"is a damaged XPM picture: {error}") from None
+
+
+transparent: set[str] = set()  # absolute paths of the pictures read last that are not wholly opaque
+
+
+def note_transparency(path: Path, alpha: int) -> None:
+    """Note the least alpha of a picture, from 0 to 255."""
+    (transparent.add if alpha < 255 else transparent.discard)(os.path.abspath(path))  # noqa: PTH100
 
 
 class Parts(io.BytesIO):
@@ -155,7 +166,7 @@ class Parts(io.BytesIO):
 def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
     """Decode the bytes of a file, as `decode`; FileError."""
     from PIL import Image as pillow  # noqa: N813
-    from PIL import UnidentifiedImageError
+    from PIL import ImageOps, UnidentifiedImageError
 
     if data.startswith(PLAIN_PNM):
         data = COMMENTS.sub(b"\n", data)
@@ -163,10 +174,12 @@ def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about oddities of a file that is decoded
             warnings.simplefilter("error", pillow.DecompressionBombWarning)
-            image = pillow.open(Parts(data), formats=FORMATS)  # reads the header alone
+            image: Any = pillow.open(Parts(data), formats=FORMATS)  # reads the header alone
             check_size(path, *image.size)
             if image.format == "JPEG" and data.count(SCAN) > MOST_SCANS:
                 raise TooLargeError(f"is a damaged picture (it has more than {MOST_SCANS:,} scans)")
+            image = ImageOps.exif_transpose(image)
+            note_transparency(path, image.convert("RGBA").getextrema()[3][0] if image.has_transparency_data else 255)
             pixels = np.asarray(image if image.mode in DEEP_MODES else image.convert("RGB"))
     except (FileError, TooLargeError):
         raise

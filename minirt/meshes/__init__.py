@@ -15,6 +15,6 @@ def load_mesh(path: Path) -> Triangles:
     from minirt.meshes.obj import ObjError, parse
 
     try:
-        return parse(file_io.read(path, file_io.LARGEST_ASSET))
+        return parse(file_io.read(path, file_io.LARGEST_ASSET), path.parent)
     except ObjError as error:
         raise FileError(path, str(error)) from None

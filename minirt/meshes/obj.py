@@ -2,13 +2,17 @@
 
 A line is `v x y z`, a point; `vt u v`, texture coordinates; `vn x y z`, a normal; or `f` and three or more corners of
 a face, each `v`, `v/vt`, `v//vn` or `v/vt/vn`. These are numbers of such lines, counted from 1, or backwards from -1,
-the last one before the face. Groups, materials, lines and points are skipped.
-Polygons are cut into triangles, see `minirt.meshes.polygons`.
+the last one before the face; a corner whose vt or vn is not there is as one without. `v x y z r g b` has a colour, in
+[0, 1]. The faces after `usemtl name` have that material of the files named by `mtllib`. Groups, lines and points are
+skipped without a word, unknown words with a notice. Polygons are cut into triangles, see `minirt.meshes.polygons`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from io import BytesIO
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,8 +27,9 @@ MAX_TRIANGLES = 10_000_000
 MAX_LINES = 2**24  # of 16 bytes fill the largest file
 
 
-def parse(data: bytes) -> Triangles:
-    """Parse a file; degenerate triangles are dropped. ObjError when it is not a mesh."""
+def parse(data: bytes, folder: Path | None = None) -> Triangles:
+    """Parse a file; degenerate triangles are dropped. Materials are read beside it, in `folder`. ObjError when it is
+    not a mesh."""
     if (lines_in_all := data.count(b"\n")) > MAX_LINES:
         raise ObjError(f"has {lines_in_all:,} lines, more than {MAX_LINES:,}")
     data = data.removeprefix(b"\xef\xbb\xbf")
@@ -38,7 +43,7 @@ def parse(data: bytes) -> Triangles:
         triangles += int((block.sizes - 2).sum())
         if triangles > MAX_TRIANGLES:
             raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
-    return assemble(blocks, data)
+    return assemble(blocks, data, folder)
 
 
 def read_lines(file: BytesIO, first: int) -> list[bytes]:
@@ -53,25 +58,74 @@ def read_lines(file: BytesIO, first: int) -> list[bytes]:
     return lines
 
 
-def assemble(blocks: list[Block], data: bytes) -> Triangles:
+def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles:
     """Assemble the blocks of a file into triangles; ObjError."""
     if not sum(len(block.sizes) for block in blocks):
         raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
-    check_indices(whole, data)
-    fans = whole.corners[triangulate(whole.points, whole.corners[:, 0], whole.sizes, whole.lines)]
-    corners = fans[..., 0]
-    valid = non_degenerate(whole.points[corners])
-    if not valid.any():
+    check_points(whole, data)
+    notices = [*drop_absent(whole)]
+    if len(whole.unknown):
+        notices.append(f"has lines that begin with no word of .obj: they are skipped (the first is {whole.unknown[0]})")
+    cut = triangulate(whole.points, whole.corners[:, 0], whole.sizes, whole.lines)
+    cut = cut[non_degenerate(whole.points[whole.corners[cut, 0]])]
+    if not len(cut):
         raise ObjError("has no triangle that is more than a line")
-    fans, corners = fans[valid], np.ascontiguousarray(corners[valid])
-    uvs = None
+    fans = whole.corners[cut]
+    corners = np.ascontiguousarray(fans[..., 0])
+    uvs = normals = None
     if (fans[..., 1] >= 0).any():
         uvs = np.where(fans[..., 1, None] >= 0, np.concatenate([whole.uvs, np.zeros((1, 2))])[fans[..., 1]], 0.0)
-    flat = Triangles(whole.points, corners, None, uvs)
-    if (fans[..., 2] < 0).all():
-        return flat
-    return Triangles(whole.points, corners, corner_normals(whole.normals, fans[..., 2], flat.flat_normals), uvs)
+    if (fans[..., 2] >= 0).any():
+        flat = Triangles(whole.points, corners).flat_normals
+        normals = corner_normals(whole.normals, fans[..., 2], flat)
+    colours = None
+    if len(whole.colours) == len(whole.points):
+        colours = np.rint(255 * np.clip(whole.colours, 0, 1)[corners].mean(axis=1)).astype(np.uint8)
+        notices.append("has colours of points: each triangle has the mean of those of its corners")
+    faces = np.searchsorted(np.cumsum(whole.sizes), cut[:, 0], side="right")
+    looks = materials_of(whole, faces, folder, notices) if folder and len(whole.libraries) else (None, ())
+    return Triangles(whole.points, corners, normals, uvs, colours, *looks, tuple(notices))
+
+
+def materials_of(
+    whole: Block, faces: np.ndarray, folder: Path, notices: list[str]
+) -> tuple[np.ndarray | None, tuple[Any, ...]]:
+    """Return the index of the material of each triangle, given its face, and the materials; add what is not used of
+    them to the notices. The first material is that of the mesh, without a file."""
+    from minirt.meshes import mtl
+
+    found, unused = mtl.read_libraries(map(decoded, whole.libraries), folder)
+    names = ["", *map(decoded, whole.materials)]
+    index = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    if found and index.keys() - {"", *found}:
+        unused.add("materials that no file has")
+    if unused:
+        notices.append(f"has materials of which this is not used: {', '.join(sorted(unused))}")
+    uses = np.searchsorted(whole.material_lines, whole.lines[faces])
+    own = mtl.MeshMaterial()
+    return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index)
+
+
+def decoded(name: bytes) -> str:
+    """Return the name of a material or file."""
+    return name.decode("utf-8", "replace")
+
+
+def drop_absent(whole: Block) -> Iterator[str]:
+    """Mark what corners name though it is not there as not named, and yield a notice about it."""
+    for part, items in ((1, whole.uvs), (2, whole.normals)):
+        indices = whole.corners[:, part]
+        beyond = (indices >= len(items)) | (indices == obj_lines.NOWHERE)
+        if beyond.any():
+            indices[beyond] = obj_lines.ABSENT
+            line = int(whole.lines[face_of(whole, int(np.argmax(beyond)))])
+            yield f"has corners that name a {obj_lines.CORNER_PARTS[part]} that is not there (the first in line {line})"
+
+
+def face_of(whole: Block, corner: int) -> int:
+    """Return the index of the face of a corner."""
+    return int(np.searchsorted(np.cumsum(whole.sizes), corner, side="right"))
 
 
 def corner_normals(normals: np.ndarray, indices: np.ndarray, flat: np.ndarray) -> np.ndarray:
@@ -82,14 +136,12 @@ def corner_normals(normals: np.ndarray, indices: np.ndarray, flat: np.ndarray) -
     return np.where(squared_lengths(chosen)[..., None] > 0, chosen, flat[:, None])
 
 
-def check_indices(whole: Block, data: bytes) -> None:
-    """Check that the file has all items that its corners name; ObjError otherwise."""
-    counts = [len(whole.points), len(whole.uvs), len(whole.normals)]
-    beyond = whole.corners >= counts
+def check_points(whole: Block, data: bytes) -> None:
+    """Check that the file has all points that its corners name; ObjError otherwise."""
+    beyond = whole.corners[:, 0] >= len(whole.points)
     if beyond.any():
-        corner = int(np.argmax(beyond.any(axis=1)))
-        part = int(np.argmax(beyond[corner]))
-        face = int(np.searchsorted(np.cumsum(whole.sizes), corner, side="right"))
+        corner = int(np.argmax(beyond))
+        face = face_of(whole, corner)
         line, number = int(whole.lines[face]), corner - int(whole.sizes[:face].sum())
         words = obj_lines.words_of(obj_lines.plain_lines(BytesIO(data).readlines())[line - 1])
-        raise ObjError(obj_lines.missing_index_message(part, counts[part]), line, words[1 + number].start() + 1)
+        raise ObjError(obj_lines.missing_point_message(len(whole.points)), line, words[1 + number].start() + 1)

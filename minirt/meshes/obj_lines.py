@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
@@ -12,11 +13,13 @@ import numpy as np
 from minirt.errors import FieldError
 from minirt.fields.scalars import FARTHEST, LONGEST, number, whole
 
+COLOURED = 6  # numbers of a point that has a colour: further ones are left out
 NUMBERS = {b"v": (3, 7, "x y z"), b"vt": (1, 3, "u v"), b"vn": (3, 3, "x y z")}  # fewest, most, names of those read
 CORNER_PARTS = ("point", "vt", "vn")  # the parts of a corner in messages
-SKIPPED = frozenset(
-    b"g o s mg usemtl mtllib usemap maplib l p lod bevel c_interp d_interp shadow_obj trace_obj".split()
-)
+SKIPPED = frozenset(b"g o s mg usemap maplib l p lod bevel c_interp d_interp shadow_obj trace_obj".split())
+MATERIAL, LIBRARIES = b"usemtl", b"mtllib"
+READ = (*NUMBERS, b"f", MATERIAL, LIBRARIES)  # first words of the lines that are read
+ABSENT, NOWHERE = -1, -2  # indices of a vt or vn that a corner does not name, and that is not there
 
 
 class ObjError(Exception):
@@ -31,21 +34,26 @@ class ObjError(Exception):
 
 
 class Block(NamedTuple):
-    """Vertices, corners and faces of a block of lines, or of a whole file."""
+    """Vertices, corners, faces and materials of a block of lines, or of a whole file."""
 
     points: np.ndarray  # (n, 3) vertex positions
     uvs: np.ndarray  # (k, 2) texture coordinates
     normals: np.ndarray  # (j, 3) of any length
-    corners: np.ndarray  # (c, 3) for each corner of all faces the index of its point, uv and normal, or -1
+    corners: np.ndarray  # (c, 3) for each corner of all faces the index of its point, uv and normal, or a negative one
     sizes: np.ndarray  # (f,) number of corners of each face
     lines: np.ndarray  # (f,) line of each face, from 1
+    colours: np.ndarray  # (i, 3) of the points that have one, in [0, 1]
+    materials: np.ndarray  # (j,) names of materials, bytes
+    material_lines: np.ndarray  # (j,) lines from which on they are those of faces
+    libraries: np.ndarray  # names of files of materials, bytes
+    unknown: np.ndarray  # lines that begin with another word
 
 
 def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) -> Block:
     """Parse lines from number `first` on, after so many points, uvs and normals; ObjError for the first wrong line."""
     lines = plain_lines(lines)
     rows = [line.split() for line in lines]
-    places: dict[bytes, list[int]] = {key: [] for key in (*NUMBERS, b"f", *SKIPPED)}  # indices, by the first word
+    places: dict[bytes, list[int]] = defaultdict(list)  # indices, by the first word
     try:
         for index, row in enumerate(rows):
             if row:
@@ -59,12 +67,21 @@ def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) 
         named = corner_table([word for index in places[b"f"] for word in rows[index]])
         preceding = [count + np.searchsorted(places[key], faces) for key, count in zip(NUMBERS, before, strict=True)]
         corners = np.where(named < 0, np.repeat(np.stack(preceding, axis=1), sizes, axis=0) + named, named - 1)
-        if (sizes < 3).any() or ((named < 0) & (corners < 0)).any():
+        corners[(named < 0) & (corners < 0)] = NOWHERE
+        if (sizes < 3).any() or (corners[:, 0] < 0).any():
             raise ValueError
-    except (KeyError, ValueError, OverflowError):
+        coloured = [row[3:6] for row in (rows[index] for index in places[b"v"]) if len(row) >= COLOURED]
+        colours = number_table(coloured, 3, 3, 3)
+    except (ValueError, OverflowError):
         explain(lines, first, before)
         raise
-    return Block(points, uvs, normals, corners, sizes, first + faces)
+    materials, libraries = (
+        np.array([b" ".join(rows[index]) for index in places[key]], object) for key in (MATERIAL, LIBRARIES)
+    )
+    unknown = [index for key in places.keys() - SKIPPED.union(READ) for index in places[key]]
+    numbers = (first + np.array(each, np.int64) for each in (places[MATERIAL], sorted(unknown)))
+    uses, others = numbers
+    return Block(points, uvs, normals, corners, sizes, first + faces, colours, materials, uses, libraries, others)
 
 
 def plain_lines(lines: list[bytes]) -> list[bytes]:
@@ -97,12 +114,11 @@ def number_table(rows: list[list[bytes]], least: int, most: int, width: int) -> 
 
 def corner_table(words: list[bytes]) -> np.ndarray:
     """Return the numbers of corners `v`, `v/vt`, `v//vn` or `v/vt/vn`, (c, 3), 0 for a missing one; ValueError."""
-    text = b" ".join(words)
-    parts = text.replace(b"//", b"/0/").replace(b"/", b" ").split()
+    text = b" ".join([*words, b""])
+    parts = text.replace(b"//", b"/0/").replace(b"/ ", b"/0 ").replace(b"/", b" ").split()
     numbers = np.array(list(map(int, parts)), np.int64)
     sizes = np.array([word.count(b"/") for word in words], np.int64) + 1
-    zeros = len(numbers) - np.count_nonzero(numbers)
-    if len(numbers) != sizes.sum() or zeros != text.count(b"//") or (sizes > 3).any() or is_foreign(parts, text):
+    if len(numbers) != sizes.sum() or (sizes > 3).any() or is_foreign(parts, text):
         raise ValueError
     return padded(numbers, sizes, 3)
 
@@ -132,9 +148,7 @@ def explain(lines: list[bytes], first: int, before: Sequence[int]) -> None:
             if len(values) < 3:
                 raise ObjError(f"a face has at least 3 corners, got {len(values)}", line)
             for word in values:
-                check_corner(word, list(counts.values()), line)
-        elif words and key not in SKIPPED:
-            raise ObjError("a line begins with v, vt, vn, f or another word of .obj", line, words[0].start() + 1)
+                check_corner(word, counts[b"v"], line)
 
 
 def words_of(line: bytes) -> list[re.Match[str]]:
@@ -161,10 +175,10 @@ def expected(error: FieldError) -> str:
     return str(error).partition(", got ")[0]
 
 
-def check_corner(word: re.Match[str], counts: list[int], line: int) -> None:
-    """Check the numbers of a corner's point, uv and normal; `counts` of them precede it."""
+def check_corner(word: re.Match[str], count: int, line: int) -> None:
+    """Check the numbers of a corner's point, uv and normal; `count` points precede it."""
     parts, column = word[0].split("/"), word.start() + 1
-    if len(parts) > 3 or not parts[0] or not parts[-1]:
+    if len(parts) > 3 or not parts[0]:
         raise ObjError("a corner is v, v/vt, v//vn or v/vt/vn", line, column)
     for part, text in enumerate(parts):
         if not text:
@@ -173,10 +187,10 @@ def check_corner(word: re.Match[str], counts: list[int], line: int) -> None:
             named = whole(text)
         except FieldError as error:
             raise ObjError(f"the {CORNER_PARTS[part]} of a corner {expected(error)}", line, column) from None
-        if named == 0 or not -counts[part] <= named < 2**63:
-            raise ObjError(missing_index_message(part, counts[part]), line, column)
+        if not -(2**63) <= named < 2**63 or (part == 0 and not (named and named >= -count)):
+            raise ObjError(missing_point_message(count), line, column)
 
 
-def missing_index_message(part: int, count: int) -> str:
-    """Return the message about a corner that names an item that does not exist."""
-    return f"a corner names a {CORNER_PARTS[part]} that is not there: there {'is' if count == 1 else 'are'} {count}"
+def missing_point_message(count: int) -> str:
+    """Return the message about a corner that names a point that does not exist."""
+    return f"a corner names a point that is not there: there {'is' if count == 1 else 'are'} {count}"

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+
+from minirt.element import fields_of
+from minirt.fields import PictureFile
 
 FLATNESS = 16 * 2.0**-53  # a triangle lower than this share of its largest coordinate is degenerate
 
@@ -18,19 +23,30 @@ class Triangles:
     corners: np.ndarray  # (m, 3) indices of points, counter-clockwise as seen from outside
     normals: np.ndarray | None = None  # (m, 3, 3) unit normals at the corners, for smooth shading
     uvs: np.ndarray | None = None  # (m, 3, 2) texture coordinates at the corners
+    colours: np.ndarray | None = None  # (m, 3) uint8, by which the colour of the mesh is multiplied
+    material_of: np.ndarray | None = None  # (m,) index of the material of each triangle
+    materials: tuple[Any, ...] = ()  # `minirt.meshes.mtl.MeshMaterial`
+    notices: tuple[str, ...] = ()  # what was left out of the file
 
     def __len__(self) -> int:
         return len(self.corners)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Give `pickle` the arrays, without what was computed of them."""
-        return Triangles, (self.points, self.corners, self.normals, self.uvs)
+        return Triangles, tuple(getattr(self, each.name) for each in fields(self))
 
     def some(self, indices: np.ndarray) -> Triangles:
         """Return the triangles with those indices."""
-        normals = None if self.normals is None else self.normals[indices]
-        uvs = None if self.uvs is None else self.uvs[indices]
-        return Triangles(self.points, self.corners[indices], normals, uvs)
+        names = "normals", "uvs", "colours", "material_of"
+        of_each = {name: array[indices] for name in names if (array := getattr(self, name)) is not None}
+        return replace(self, corners=self.corners[indices], **of_each)
+
+    def pictures(self) -> Iterator[PictureFile]:
+        """The pictures of its materials."""
+        for material in self.materials:
+            for field in fields_of(type(material)):
+                if (value := getattr(material, field.name)) is not None:
+                    yield from field.pictures(value)
 
     @cached_property
     def used(self) -> np.ndarray:

@@ -126,8 +126,8 @@ class Packing:
                 self.cells_that_fit[len(sources)] = cells
         light_starts, light_buffers = cached(keys, joined_light_buffers, binned, shapes)
         look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
-        packed = cached(look, materials.pack_materials, scene, shapes.owner, used)
-        traits = materials.traits_of(packed, len(shapes.slots))
+        packed = cached(look, materials.pack_materials, scene, shapes, used)
+        traits = materials.traits_of(packed, shapes)
         extents = np.zeros((len(shapes.slots) * (self.precision == "single"), 4), np.float32)
         if TILES in self.without:
             square, eye = TILE, visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))

@@ -197,6 +197,7 @@ def identity(scene: Scene, settings: str) -> str:
     """Return a hash of a scene, the files that it names, the settings and the kernel. FileError where a file cannot be
     read."""
     found = hashlib.sha256(f"{fingerprint_of(V3)} {settings}\n{dump(scene)}".encode())
+    found.update(repr([mesh.triangles.materials for mesh in scene.meshes]).encode())
     for name in sorted({name for element in scene.elements for name in files_of(element)}):
         data = file_io.read(scene.beside(name), file_io.LARGEST_ASSET)
         found.update(f"{name} {len(data)}\n".encode())
@@ -210,5 +211,5 @@ def files_of(element: Element) -> Iterator[str]:
         value = getattr(element, field.name)
         if isinstance(value, MeshFile):
             yield value.name
-        elif value is not None:
+        if value is not None:
             yield from (each.name for each in field.pictures(value))

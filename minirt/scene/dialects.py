@@ -16,6 +16,7 @@ from minirt.element import Element, fields_by_key, positional_fields
 from minirt.errors import FieldError, FileError, Problem, printable, quoted
 from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
 from minirt.fields.scalars import Scalar
+from minirt.helpers import file_io
 from minirt.scene.element_reader import HEX_COLOUR
 from minirt.scene.elements import LAMPS, Ambient, Camera, Resolution
 from minirt.scene.lines import Line, Log, first_unprintable, line_from
@@ -336,7 +337,7 @@ def are_readable(files: Iterable[PictureFile], folder: Path) -> bool:
 
     try:
         for file in files:
-            pictures.reader(file)(folder / file.name)
+            pictures.reader(file)(file_io.located(folder, file.name))
     except FileError:
         return False
     return True

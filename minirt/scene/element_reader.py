@@ -5,6 +5,7 @@ It works in four steps: split the line into words, identify the element, assign 
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,7 @@ from minirt.element import Element, fields_by_key, pattern, positional_fields
 from minirt.errors import FieldError, FileError, hint, quoted
 from minirt.fields import Colour, Field, MeshFile, PictureFile
 from minirt.fields.scalars import code_point_name
+from minirt.helpers import file_io
 from minirt.materials import pictures
 from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
@@ -192,7 +194,10 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
 def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
     """Load the mesh that a value names, and try its pictures; an error for each file that cannot be used."""
     if isinstance(value, MeshFile):
-        return MeshFile(value.name, load_file(load_mesh, PictureFile(value.name), "mesh", slot, line, log))
+        triangles = load_file(load_mesh, PictureFile(value.name), "mesh", slot, line, log)
+        for notice in triangles.notices if triangles else ():
+            log.notice(line, f"{slot.title} {quoted(value.name)} {notice}", *slot.span(None))
+        return MeshFile(value.name, triangles)
     for file in slot.field.pictures(value):
         load_file(pictures.reader(file), file, "picture", slot, line, log)
     return value
@@ -201,7 +206,14 @@ def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
 def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: Slot, line: Line, log: Log) -> Any:
     """Read a file that a value names; None, with an error, when it cannot be used."""
     try:
-        return read((log.folder or Path()) / file.name)
+        folder = log.folder or Path()
+        path = file_io.located(folder, file.name)
+        content = read(path)
+        if path != folder / file.name:
+            log.notice(line, f"{slot.title} is read from {quoted(str(path))}, above the scene", *slot.span(file.part))
+        if os.path.abspath(path) in pictures.transparent:  # noqa: PTH100
+            log.notice(line, f"{slot.title} has transparent parts, which are drawn opaque", *slot.span(file.part))
+        return content
     except FileError as error:
         message = f"{slot.title} must be a {sort} file, got {quoted(file.name)}: {error.reason}"
         log.error(line, message, *slot.span(file.part))

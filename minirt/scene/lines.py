@@ -20,8 +20,9 @@ MAX_ERRORS = 1000  # in one file; a file with more is not a scene
 MAX_NOTICES = 1000
 MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
-WORD = re.compile(r"[ \t]*+([^ \t]++)")
-JOINED = re.compile(r"([^ \t]++(?:(?:[ \t]++(?=,)|(?<=,)[ \t]++)[^ \t]++)*+)")  # with blanks around commas
+PART = r'(?:"[^"]*+"|[^ \t])++'  # blanks may stand within quotes
+WORD = re.compile(rf"[ \t]*+({PART})")
+JOINED = re.compile(rf"({PART}(?:(?:[ \t]++(?=,)|(?<=,)[ \t]++){PART})*+)")  # with blanks around commas
 
 
 class Line(NamedTuple):
@@ -46,8 +47,8 @@ class Word(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Text of the word without blanks inside."""
-        return "".join(self.raw.split())
+        """Text of the word without blanks inside, but for those within quotes."""
+        return "".join(self.raw.split()) if '"' not in self.raw else self.raw
 
     @property
     def end(self) -> int:

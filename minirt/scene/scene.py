@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from minirt import shapes as kinds
 from minirt.element import Element
 from minirt.errors import check_whole
+from minirt.helpers import file_io
 from minirt.records import Immutable
 from minirt.scene import writer
 from minirt.scene.elements import Ambient, Background, Camera, FurtherLight, Lamp, ParallelLight, Resolution, SpotLight
@@ -90,8 +91,8 @@ class Scene(Immutable):
     resolution = first(Resolution, "The size of the picture, if the file has one.")
 
     def beside(self, name: str) -> Path:
-        """Return the path of a file that an element names, relative to the folder of the scene file."""
-        return self.file.parent / name if self.file else Path(name)
+        """Return the path of a file that an element names, relative to the folder of the scene file or one above."""
+        return file_io.located(self.file.parent, name) if self.file else Path(name)
 
     def of(self, sort: type[Any]) -> tuple[Any, ...]:
         """Return the elements that are instances of a type, subclasses included, in the order of the file."""

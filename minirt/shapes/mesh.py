@@ -4,7 +4,8 @@ Triangles from a Wavefront .obj file, whose path begins at the folder of the sce
 `x,y,z` in the scene, and lengths of the file are multiplied by `scale`. Triangles that share corners have no gap
 between them. Normals of the file make the surface look smooth (Phong shading), and its texture coordinates place
 pictures. With `axis:ax,ay,az` the file's y axis points there, turned as for a box, and with `roll:degrees` the mesh is
-turned about it.
+turned about it. The colours of the materials of its .mtl files are multiplied by `R,G,B`; their other attributes count
+where the line has none of its own (`minirt.meshes.mtl`).
 
     ob meshes/knot.obj 0,1,20 2.5 220,180,90    a knot, two and a half times as large as in its file
 """
@@ -12,14 +13,17 @@ turned about it.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from minirt import meshes
+from minirt.element import fields_of
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
 from minirt.lanes import Number, Vec, copysign, cross, dot, maximum, minimum, unit, where
+from minirt.materials import Attributes
 from minirt.records import record
 from minirt.shapes import triangle
 from minirt.shapes.boundary import Boundary, facing, triangle_boundary
@@ -28,6 +32,7 @@ from minirt.shapes.triangle import plane_normals
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
 BLOCK = 16384  # triangles that are packed at a time
+ATTRIBUTES = tuple(field.name for field in fields_of(Attributes))
 OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel, and the mean points anywhere
 
 
@@ -36,7 +41,7 @@ class Mesh(Turnable):
     """A line `ob` of a scene file."""
 
     code, title, plural, aliases, batched = "ob", "mesh", "meshes", ("obj",), True
-    file: MeshFile = declare(MeshField, "a Wavefront .obj file")
+    file: MeshFile = declare(MeshField, "a mesh file")
     position: Triple = declare(Point, "where its origin is")
     scale: float = declare(Length, "length of what is 1 in the file")
     colour: Triple = declare(Colour, "colour")
@@ -66,6 +71,33 @@ class Mesh(Turnable):
     def smooth(self) -> bool:  # type: ignore[override]
         """Whether its file has normals."""
         return self.triangles.normals is not None
+
+    @cached_property
+    def looks(self) -> tuple[Mesh, ...]:
+        """One of its triangles for each material of its file, with the attributes of that and the mesh's own, which
+        count more; the mesh itself where the file has none. The colours are multiplied."""
+        if not self.triangles.materials:
+            return (self,)
+        triangle = replace(self.triangles.some(np.arange(1)), material_of=None, materials=())
+        one = self.replace(file=MeshFile(self.file.name, triangle))
+        own = {name: value for name in ATTRIBUTES if (value := getattr(self, name)) is not None}
+        return tuple(
+            one.replace(
+                **{name: getattr(material, name) for name in ATTRIBUTES} | own,
+                colour=tuple(round(a * b / 255) for a, b in zip(self.colour, material.colour, strict=True)),
+            )
+            for material in self.triangles.materials
+        )
+
+    def look_numbers(self) -> np.ndarray:
+        """The index in `looks` of that of each triangle, (m,)."""
+        numbers: np.ndarray | None = self.triangles.material_of
+        return np.zeros(len(self.triangles), np.int64) if numbers is None else numbers
+
+    def colours(self) -> np.ndarray:
+        """The colour of each triangle, (m, 3), in [0, 1]."""
+        colours = np.array([look.colour for look in self.looks], np.float64)[self.look_numbers()] / 255
+        return colours if self.triangles.colours is None else colours * self.triangles.colours / 255
 
     def some(self, indices: np.ndarray) -> Mesh:
         return self.replace(file=MeshFile(self.file.name, self.triangles.some(indices)))

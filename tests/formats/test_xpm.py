@@ -85,7 +85,7 @@ def test_colours(definition: str, expected: int) -> None:
     ],
 )
 def test_names_of_x11(name: str, expected: int) -> None:
-    assert len(names()) == 666
+    assert len(names()) == 565
     assert names()[name] == expected
 
 

@@ -148,8 +148,8 @@ def face(counts: tuple[int, ...], chance: random.Random) -> str:
 
 FLOAT, INDEX = rb"[ \t\r\v\f]+[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", rb"[-+]?0*[1-9][0-9]*"
 LINE = re.compile(
-    rb"\s*((v(%b){3,7}|vt(%b){1,3}|vn(%b){3}|f([ \t\r\v\f]+%b(/%b|/(%b)?/%b)?){3,})|(%b)([ \t\r\v\f].*)?)?\s*"
-    % (FLOAT, FLOAT, FLOAT, INDEX, INDEX, INDEX, INDEX, b"|".join(obj_lines.SKIPPED))
+    rb"\s*((v(%b){3,7}|vt(%b){1,3}|vn(%b){3}|f([ \t\r\v\f]+%b(/(%b)?(/(%b)?)?)?){3,})|%b\S+([ \t\r\v\f].*)?)?\s*"
+    % (FLOAT, FLOAT, FLOAT, INDEX, rb"[-+]?[0-9]+", rb"[-+]?[0-9]+", rb"(?!(v|vt|vn|f)(\s|\Z))")
 )
 
 
@@ -167,9 +167,10 @@ def grammar_tables(data: bytes) -> list[list[list[float]]] | None:
             for word in parts:
                 named = [int(each or 0) for each in (word + 2 * [b""])[:3]]
                 corner = [n - 1 if n >= 0 else count + n for n, count in zip(named, counts, strict=True)]
-                if max(named) >= 2**63 or any(n < 0 > index for n, index in zip(named, corner, strict=True)):
+                if max(named) >= 2**63 or min(named) < -(2**63) or corner[0] < 0:
                     return None
-                items[key].append(corner)
+                nowhere = obj_lines.NOWHERE
+                items[key].append([nowhere if n < 0 > at else at for n, at in zip(named, corner, strict=True)])
         elif key in items:
             if not all(abs(float(word)) <= 1e15 for word in words):
                 return None

@@ -72,9 +72,32 @@ def test_a_zero_normal_becomes_that_of_the_triangle() -> None:
     assert mesh.normals.tolist() == [[[0, 0, 1], [0, 0.6, 0.8], [0, 0, 1]]]
 
 
-def test_colours_and_weights_of_points_are_left_out() -> None:
-    mesh = read("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0.5 0 1\nvt 0 0 0\nf 1 2 3\n")
+def test_each_triangle_has_the_mean_colour_of_its_corners() -> None:
+    text = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 {} 0 1\nvt 0 0 0\nf 1 2 3\n"
+    mesh = read(text.format(0.4))
     assert corners(mesh) == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
+    assert mesh.colours is not None
+    assert mesh.colours.tolist() == [[204, 0, 85]]  # thirds of 255 times 2.4, 0 and 1
+    assert mesh.notices == ("has colours of points: each triangle has the mean of those of its corners",)
+    assert read("v 2 2 2\n" + text.format(0.4)).colours is None  # one point has none
+
+
+def test_corners_may_name_texture_coordinates_and_normals_that_are_not_there() -> None:
+    mesh = read(SQUARE + "vn 0 3 4\nf 1/2/1 2/0/-2 3//\nf 1/ 2/-1 4//1\n")
+    assert mesh.corners.tolist() == [[0, 1, 2], [0, 1, 3]]
+    assert mesh.uvs is None
+    assert mesh.normals is not None
+    assert mesh.normals[0].tolist() == [[0, 0.6, 0.8], [0, 0, 1], [0, 0, 1]]
+    assert mesh.notices == (
+        "has corners that name a vt that is not there (the first in line 6)",
+        "has corners that name a vn that is not there (the first in line 6)",
+    )
+
+
+def test_lines_of_unknown_words_are_skipped_with_a_notice() -> None:
+    mesh = read(SQUARE + "curv 0 1\nV 1 2 3\nf 1 2 3\n")
+    assert len(mesh) == 1
+    assert mesh.notices == ("has lines that begin with no word of .obj: they are skipped (the first is 5)",)
 
 
 def test_a_backslash_continues_a_line_and_a_comment_ends_it() -> None:

@@ -157,7 +157,7 @@ def test_there_is_at_most_one_background() -> None:
         (lambda: Glass(0.5), "glass ior must be in [1, 10], got 0.5"),
         (lambda: Checker(-1), "checker size must be > 0, got -1"),
         (lambda: Checker(1, (1, 2)), "checker colour must be R,G,B, three numbers, got (1, 2)"),
-        (lambda: Bump("a b"), "bump file must be the name of a picture file, without blanks, commas and #, got 'a b'"),
+        (lambda: Bump("a\tb"), "bump file must be the name of a picture file, without tabs, commas, quotes and #, got"),
         (lambda: Bump("a", 11), "bump strength must be in [-10, 10], got 11"),
         (
             lambda: Sphere((0, 0, 0), 1, (0, 0, 0), specular=(0.5, 30)),  # type: ignore[arg-type]
@@ -165,11 +165,11 @@ def test_there_is_at_most_one_background() -> None:
         ),
         (
             lambda: Plane((0, 0, 0), (0, 1, 0), (0, 0, 0), normal_map="a#"),
-            "plane normal map must be the name of a picture file, without blanks and #, got 'a#'",
+            "plane normal map must be the name of a picture file, without tabs, quotes and #, got 'a#'",
         ),
         (
             lambda: Background("a,b"),
-            "background paint must be the name of a picture file, without blanks, commas and #",
+            "background paint must be the name of a picture file, without tabs, commas, quotes and #",
         ),
         (lambda: Background((1, 2)), "background paint must be R,G,B, three numbers, got (1, 2)"),  # type: ignore[arg-type]
     ],

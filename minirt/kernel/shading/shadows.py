@@ -7,8 +7,8 @@ light fades as the light source sets.
 
 A shadow ray that something occludes is followed from surface to surface, straight on. Opaque surfaces end it. Each
 surface of glass lets its share through; with Fresnel's equations, that of the angle outside, since a ray leaves a pane
-or a ball at the angle at which it entered. `SceneArrays.transparent` (n, 4) has the shares of reflection and
-refraction, the index of refraction, and how far Fresnel's equations count.
+or a ball at the angle at which it entered. `SceneArrays.transparent` (n, 5) has the shares of reflection and
+refraction, the index of refraction, how far Fresnel's equations count, and 1 where a mesh has glass and opaque parts.
 """
 
 from __future__ import annotations

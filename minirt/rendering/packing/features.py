@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
+from itertools import chain
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -13,6 +14,7 @@ from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
 from minirt.scene import Background, Camera, Lamp, Scene
 from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 
 
 class Feature(NamedTuple):
@@ -52,7 +54,7 @@ FEATURES = {
     "spots": Feature("spots, parallel and fading light", (0.0,) * 7, of_shapes=False, single=True),
     "background": Feature("a coloured background", of_shapes=False, single=True),
     "environment": Feature("a picture as background", of_shapes=False),
-    "transparent": Feature("", (0.0, 0.0, 1.0, 0.0), secondary=True),
+    "transparent": Feature("", (0.0, 0.0, 1.0, 0.0, 0.0), secondary=True),
     "fades": Feature("", (0.0, 0.0), secondary=True),
 }
 WORDS = {name: feature.words for name, feature in FEATURES.items() if feature.words}
@@ -86,7 +88,9 @@ def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
 
 def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shape]:
     """Find the `examples` among some elements."""
-    return {(type(item), *shape_features(item)): item for item in items if isinstance(item, Shape)}
+    shapes = (item for item in items if isinstance(item, Shape))
+    looks = chain.from_iterable(item.looks if isinstance(item, Mesh) else (item,) for item in shapes)
+    return {(type(item), *shape_features(item)): item for item in looks}
 
 
 def features_beside_shapes(items: Iterable[Element | str]) -> frozenset[Hashable]:

@@ -22,9 +22,11 @@ from minirt.materials.pictures import check_textures
 from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, PLAIN
 from minirt.rendering.packing.lights import Colours, colours_of
 from minirt.rendering.packing.ray_casting import cast
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
+from minirt.shapes.mesh import Mesh
 from minirt.shapes.shape import UPRIGHT, Flat, Oriented
 from minirt.shapes.triangle import Triangle
 
@@ -37,27 +39,37 @@ Frame = tuple[Vec, Vec, Vec, Vec]  # origin and three axes, the last one along t
 OF_SHAPES = {name for name, feature in FEATURES.items() if feature.of_shapes}  # features with a row for each shape
 
 
-def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> dict[str, Any]:
-    """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each.
+def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -> dict[str, Any]:
+    """Pack the materials of n primitives for the features that a scene uses.
 
     They are fields of `minirt.kernel.scene_arrays.SceneArrays`; those that are missing are None.
     """
     if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
         return {}
-    with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
+    shapes, owner = primitives.looks()
+    with_materials = [(i, shape) for i, shape in enumerate(shapes) if ATTRIBUTES(shape) != PLAIN]
     reader = Reader(scene)
-    arrays = {name: FEATURES[name].rows(len(scene.shapes)) for name in FEATURES if name in used & OF_SHAPES}
+    arrays = {name: FEATURES[name].rows(len(shapes)) for name in FEATURES if name in used & OF_SHAPES}
     for i, shape in with_materials:
         for name, row in rows_of(shape, reader):
             if name in arrays:
                 arrays[name][i] = row
     packed: dict[str, Any] = {name: array[owner] for name, array in arrays.items()}
+    if "transparent" in packed:
+        mark_mixed(packed["transparent"], primitives.owner)
     maps = {name: packed.pop(name) for name in MAPS if name in packed}
     if maps:
         packed["surface_maps"] = pack_surface_maps(maps, reader, len(owner))
     if used & PATTERN_FEATURES:
         packed["patterns"] = pack_patterns(with_materials, owner, used, reader.colours)
     return packed
+
+
+def mark_mixed(transparent: np.ndarray, owner: np.ndarray) -> None:
+    """Mark the primitives of shapes that have both glass and opaque ones, in `SceneArrays.transparent`."""
+    glass = np.bincount(owner, transparent[:, 1] > 0)
+    mixed = (glass > 0) & (glass < np.bincount(owner))
+    transparent[:, 4] = mixed[owner]
 
 
 def rows_of(shape: Shape, reader: Reader) -> list[tuple[str, Any]]:
@@ -216,12 +228,14 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
 SHOWN = (("reflective", 2), ("specular", 1))  # features, and their columns that are 0 where a shape lacks it
 
 
-def traits_of(materials: dict[str, Any], count: int) -> np.ndarray:
-    """Return a bit for each of `SHOWN` that a shape has, (n,)."""
-    traits = np.zeros(count, np.int64)
+def traits_of(materials: dict[str, Any], primitives: ShapeArrays) -> np.ndarray:
+    """Return a bit for each of `SHOWN` that a primitive has, (n,): a triangle, that some triangle of its mesh has."""
+    traits = np.zeros(len(primitives.owner), np.int64)
     for bit, (name, columns) in enumerate(SHOWN):
         if name in materials:
             traits |= (materials[name][:, :columns] != 0.0).any(axis=1).astype(np.int64) << bit
+    if Mesh in primitives.group_numbers:
+        traits = np.bitwise_or.reduceat(traits, primitives.listed)[primitives.owner]
     return traits
 
 

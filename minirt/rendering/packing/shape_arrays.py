@@ -88,6 +88,13 @@ def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
     return np.array([shape.bounds() or [getattr(shape, name) for name in points] for shape in shapes])
 
 
+def colours_of(shapes: list[Shape]) -> np.ndarray:
+    """Return the colours of the primitives of some shapes of a kind, (n, 3), in [0, 1]."""
+    if isinstance(shapes[0], Mesh):
+        return np.concatenate([shape.colours() for shape in shapes if isinstance(shape, Mesh)])
+    return column(shapes, "colour", 3) / 255
+
+
 CHUNK = 4096  # shapes that are compared or written at once, so that their Python objects stay in the processor's cache
 FIRST = np.arange(1)  # index of the first primitive
 
@@ -177,6 +184,17 @@ class ShapeArrays:
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((count, 2, 3))
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
+    def looks(self) -> tuple[tuple[Shape, ...], np.ndarray]:
+        """Return shapes of one material each, meshes once for each of theirs, and that of each primitive, (n,)."""
+        if Mesh not in self.group_numbers:
+            return self.shapes, self.owner
+        looks = [shape.looks if isinstance(shape, Mesh) else (shape,) for shape in self.shapes]
+        numbers = np.cumsum([0, *map(len, looks)])[self.owner]
+        for shape, start, end in zip(self.shapes, self.first_primitive, self.first_primitive[1:], strict=False):
+            if isinstance(shape, Mesh):
+                numbers[start:end] += shape.look_numbers()
+        return tuple(chain.from_iterable(looks)), numbers
+
     def smooth(self) -> np.ndarray:
         """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""
         return np.array([shape.smooth for shape in self.shapes], np.int64)[self.owner]
@@ -184,10 +202,9 @@ class ShapeArrays:
     def write(self, group: int, shapes: np.ndarray) -> None:
         """Write some shapes of one kind, given by their indices, into the arrays."""
         members = [self.shapes[index] for index in shapes.tolist()]
-        sizes = self.first_primitive[shapes + 1] - self.first_primitive[shapes]
         indices, end, hulls = ranges(self.first_primitive, shapes), 0, []
         table = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
-        self.colours_and_extents[indices, :3] = np.repeat(column(members, "colour", 3), sizes, axis=0) / 255
+        self.colours_and_extents[indices, :3] = colours_of(members)
         for rows, boxes, balls in primitives_of(members):
             start, end = end, end + len(rows)
             at = indices[start:end]

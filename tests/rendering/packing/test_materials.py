@@ -44,7 +44,8 @@ def scene_of(folder: Path, *shapes: Shape) -> Scene:
 
 def materials_of(scene: Scene, owner: np.ndarray) -> Any:
     """The packed materials of primitives, by the names of their fields."""
-    return SimpleNamespace(**pack_materials(scene, owner, features(scene)))
+    primitives: Any = SimpleNamespace(owner=owner, looks=lambda: (scene.shapes, owner))
+    return SimpleNamespace(**pack_materials(scene, primitives, features(scene)))
 
 
 def test_every_material_names_a_feature() -> None:
@@ -55,7 +56,7 @@ def test_every_material_names_a_feature() -> None:
 
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
     plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert pack_materials(plain, np.arange(2), features(plain)) == {}
+    assert vars(materials_of(plain, np.arange(2))) == {}
 
 
 def test_each_shape_has_its_row(tmp_path: Path) -> None:
@@ -85,7 +86,7 @@ def test_mirrors_and_glass_have_their_rows(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, *shapes)
     packed = materials_of(scene, np.arange(4))
     assert np.allclose(packed.reflective, [[0.25, 0, 3], [0, 0.9, 1.5], [0.5, 0.5, 1.5], [0, 0, 1]])
-    assert np.allclose(packed.transparent, [[0, 0, 1, 0], [0, 0.9, 1.5, 0], [0.5, 0.5, 1.5, 0], [0, 0, 1, 0]])
+    assert np.allclose(packed.transparent[:, :4], [[0, 0, 1, 0], [0, 0.9, 1.5, 0], [0.5, 0.5, 1.5, 0], [0, 0, 1, 0]])
     assert np.allclose(packed.media[1], [np.log2(5) / 2, 0, BLACK, 1, 1, 1])
     assert np.allclose(packed.media[[0, 2, 3]], [[0, 0, 0, 1, 1, 1], [0, 0, 0, 0.2, 1, 0], [0, 0, 0, 1, 1, 1]])
     assert np.array_equal(packed.fresnel, [0.5, 0, 0, 1])
