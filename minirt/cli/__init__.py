@@ -105,7 +105,7 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
     from minirt.helpers.system import gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
-        from minirt.cli.commands import command_for, show
+        from minirt.cli.commands import command_for, replay, show
         from minirt.cli.files import output_for, read_scene, with_camera_options
         from minirt.cli.options import with_settings
 
@@ -114,7 +114,7 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         options = with_settings(parser, options)
         command = command_for(options)
         # A picture may go to standard output. A window leaves it free, and standard error stays empty without errors.
-        read = read_scene(options, sys.stdout if command is show else sys.stderr)
+        read = read_scene(options, sys.stdout if command is show else sys.stderr, command in (show, replay))
     if command is show:  # which compares what it shows with the file
         return show(with_camera_options(read, options), options, read)
     from minirt.helpers.signals import end_work, ended_by_signals

@@ -24,8 +24,8 @@ STANDARD_INPUT = "standard input"
 PLACE = "{name}"  # in an output, stands for the name of the scene's file without its extension
 
 
-def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
-    """Load the scene; print its notices, one for each tolerated mistake, to `stream`."""
+def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False) -> Scene:
+    """Load the scene; print its notices, one for each tolerated mistake, to `stream`. `new`: an empty file is one."""
     from minirt.scene import Reading, load, parse
     from minirt.scene.parser import example
 
@@ -36,7 +36,7 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
         elif path == "-":  # whose pictures and meshes are looked for in the current folder
             reading = parse(standard_input(), STANDARD_INPUT, options.lenient)
         else:
-            reading = load(path, options.lenient)
+            reading = load(path, options.lenient, new=new)
     for notice in reading.notices:
         tell(f"notice: {notice}", stream)
     scene = reading.scene

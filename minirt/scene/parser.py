@@ -19,6 +19,7 @@ from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
 from minirt.scene.scene import MISSING, Scene
 
+NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
 BLOCK = 4096  # lines that the fast path reads at once
 
 
@@ -29,9 +30,14 @@ class Reading(NamedTuple):
     notices: tuple[Problem, ...]
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
-    """Read a scene file; SceneError with all of its errors. `left_handed` mirrors its pictures."""
+def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False, new: bool = False) -> Reading:
+    """Read a scene file; SceneError with all of its errors.
+
+    `left_handed` mirrors its pictures; `new`: a file that holds nothing is the beginning of a scene.
+    """
     data = files.read(path)
+    if new and not data.strip():
+        data = NEW
     scene, notices = parse(data, path, lenient, files.picture_folder(path) if files.is_picture(path) else None)
     if left_handed:
         scene = scene.replace(scene.camera, left_handed=True)

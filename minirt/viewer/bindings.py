@@ -26,7 +26,8 @@ PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
 AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
 KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
-SELECT, MOVE, CHANGE, EDIT, FILE, WINDOW = "Select", "Move", "Change", "Edit", "File", "Window"
+SELECT, LOOK, MOVE, BUILD = "Select", "Look around", "Move and turn", "Build"
+CHANGE, FILE, WINDOW = "Change values", "Save and open", "Window"
 FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a note below each list of keys
 SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT | Modifier.ALT
 
@@ -103,6 +104,14 @@ BINDINGS = (
     on_press(SELECT, "select at pointer", "select the element under the pointer", "left click"),
     on_press(SELECT, "select camera", "select the camera", "C", "Backspace", "right click"),
     on_press(SELECT, "select light", "select the next light", "L"),
+    on_press(LOOK, "orbit", "orbit the camera around the selected element", "right drag"),
+    on_press(LOOK, "pan", "slide the camera", "middle drag"),
+    in_steps(LOOK, "nearer", "camera: nearer; other elements: increase the active value", "wheel up"),
+    in_steps(LOOK, "farther", "camera: farther; other elements: decrease the active value", "wheel down"),
+    on_press(LOOK, "look at", "bring the selected element into view", "F"),
+    on_press(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
+    on_press(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
+    on_press(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),
     while_held(MOVE, "left", "move left", "A", azerty="Q"),
     while_held(MOVE, "right", "move right", "D"),
     while_held(MOVE, "forward", "move forward", "W", azerty="Z"),
@@ -118,30 +127,26 @@ BINDINGS = (
     on_press(MOVE, "next frame", "move objects in the view, or along X, Y, Z", "X"),
     on_press(MOVE, "move by hand", "move the element under the pointer; on nothing: look around", "left drag"),
     on_press(MOVE, "turn by hand", "turn the element under the pointer", "Shift+left drag"),
-    on_press(MOVE, "place by hand", "move it on what lies behind, on a grid", "Ctrl+left drag"),
-    on_press(MOVE, "slide by hand", "slide it along surfaces, turned to them", "Alt+left drag", "Ctrl+Shift+left drag"),
-    on_press(MOVE, "drop", "drop the element onto what lies beneath, on a grid", "B"),
-    on_press(MOVE, "orbit", "orbit the camera around the selected element", "right drag"),
-    on_press(MOVE, "pan", "slide the camera", "middle drag"),
+    on_press(
+        BUILD, "add", "add an element at the pointer, from a list: type, arrows, Enter; again: the next kind", "N"
+    ),
+    on_press(BUILD, "add previous", "the same; again: the previous kind", "Shift+N"),
+    on_press(BUILD, "duplicate", "duplicate the selected element", "Ctrl+D"),
+    on_press(BUILD, "delete", "delete the selected element", "Delete"),
+    on_press(BUILD, "drop", "drop the element onto what lies beneath, on a grid", "B"),
+    on_press(BUILD, "place by hand", "move it on what lies behind, on a grid", "Ctrl+left drag"),
+    on_press(
+        BUILD, "slide by hand", "slide it along surfaces, turned to them", "Alt+left drag", "Ctrl+Shift+left drag"
+    ),
+    on_press(BUILD, "undo", "undo", "Ctrl+Z"),
+    on_press(BUILD, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
     in_steps(CHANGE, "grow", "increase the active value", "+"),
     in_steps(CHANGE, "shrink", "decrease the active value", "-"),
     on_press(CHANGE, "type value", "type the active value: 3.5 Enter, or = *2 Enter, = +0.5 Enter, = 2*3+1 Enter", "="),
-    in_steps(CHANGE, "nearer", "camera: nearer; other elements: increase the active value", "wheel up"),
-    in_steps(CHANGE, "farther", "camera: farther; other elements: decrease the active value", "wheel down"),
     on_press(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
     on_press(CHANGE, "previous value", "previous value", "Shift+V"),
     on_press(CHANGE, "add attribute", "add an attribute from a list: type, arrows, Enter; again: the next", "M"),
     on_press(CHANGE, "remove attribute", "remove the attribute of the active value", "Shift+M"),
-    on_press(CHANGE, "next tone", "next tone: plain, srgb, filmic", "T"),
-    on_press(CHANGE, "look at", "bring the selected element into view", "F"),
-    on_press(CHANGE, "focus", "focus the camera on what is under the pointer", "Shift+F"),
-    on_press(CHANGE, "reset camera", "reset the camera to that of the file", "Home", "R"),
-    on_press(EDIT, "undo", "undo", "Ctrl+Z"),
-    on_press(EDIT, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
-    on_press(EDIT, "add", "add an element at the pointer, from a list: type, arrows, Enter; again: the next kind", "N"),
-    on_press(EDIT, "add previous", "the same; again: the previous kind", "Shift+N"),
-    on_press(EDIT, "duplicate", "duplicate the selected element", "Ctrl+D"),
-    on_press(EDIT, "delete", "delete the selected element", "Delete"),
     on_press(FILE, "save", "save the scene", "Ctrl+S"),
     on_press(FILE, "save copy", "save a copy: name-1.rt", "Ctrl+Shift+S"),
     on_press(FILE, "screenshot", "save the picture: name-1.png", "P", "F12"),
@@ -149,7 +154,7 @@ BINDINGS = (
     on_press(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
     on_press(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
     on_press(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
-    on_press(WINDOW, "toggle help", "this help; again: its next page, or the picture", "H", "?", "F1"),
+    on_press(WINDOW, "toggle help", "this help, or the picture", "H", "?", "F1"),
     on_press(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),
     on_press(WINDOW, "smaller text", "smaller text and icons", "Ctrl+-"),
     on_press(WINDOW, "usual text", "text of the usual size", "Ctrl+0"),
@@ -158,10 +163,15 @@ BINDINGS = (
 )
 
 
-def key_groups(layout: str) -> Iterator[KeyGroup]:
-    """Yield the rows of the table by group, with the keys of a layout, and then a note without a title."""
-    for title, rows in groupby(BINDINGS, key=lambda binding: binding.group):
-        yield title, [(" / ".join(map(platform_spelling, binding.spellings(layout))), binding.help) for binding in rows]
+def key_groups(layout: str, search: str = "") -> Iterator[KeyGroup]:
+    """Yield the rows of the table by group, with the keys of a layout, and then a note without a title.
+
+    `search`: letters that a row, or the title of its group, contains.
+    """
+    for title, bindings in groupby(BINDINGS, key=lambda binding: binding.group):
+        rows = [(" / ".join(map(platform_spelling, each.spellings(layout))), each.help) for each in bindings]
+        if found := [row for row in rows if search.lower() in " ".join((title, *row)).lower()]:
+            yield title, found
     yield "", [FINE_NOTE]
 
 

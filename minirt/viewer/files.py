@@ -59,9 +59,13 @@ def save_recovery(scene: Scene, path: Path) -> Path:
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:
     """Whether a scene differs from the saved one; looking around is not an unsaved change, a value of a camera is."""
-    one, other = scene.items, saved.items
-    return len(one) != len(other) or any(
-        a is not b and a != b and not looks(a, b) for a, b in zip(one, other, strict=True)
+    sides = [(one.items, other.items) for one, other in zip(scene.pages, saved.pages, strict=False) if one is not other]
+    if any(len(one) != len(other) for one, other in sides) or len(scene.pages) != len(saved.pages):
+        sides = [(scene.items, saved.items)]
+    return any(
+        len(one) != len(other)
+        or any(a is not b and a != b and not looks(a, b) for a, b in zip(one, other, strict=True))
+        for one, other in sides
     )
 
 

@@ -220,6 +220,18 @@ def test_errors_name_standard_input(run: Run, give: Callable[[bytes], None]) -> 
     assert run("-", "--check").err == "Error\nstandard input: is empty\n"
 
 
+@pytest.mark.parametrize("text", ["", "\n  \n"])
+def test_an_empty_file_is_a_new_scene_for_the_window_and_an_error_for_a_picture(
+    run: Run, text: str, tmp_path: Path
+) -> None:
+    path, keys = tmp_path / "new.rt", tmp_path / "keys.txt"
+    path.write_text(text)
+    assert run(str(path), "-o", str(tmp_path / "new.png")).status == 1
+    keys.write_text("press N\npress Return\npress Ctrl+S\n")
+    assert run(str(path), "--replay", str(keys)).status == 0
+    assert [line.split()[0] for line in path.read_text().splitlines()] == ["A", "C", "sp", "L"]
+
+
 def test_standard_input_that_is_closed_is_an_error(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     closed = io.TextIOWrapper(io.BytesIO())
     closed.close()

@@ -124,7 +124,7 @@ def read_file(session: Session, keep_camera: bool = False) -> None:
 
 def open_another(session: Session, path: Path) -> None:
     """Show another file; write unsaved changes to a recovery file beside the old one. SceneError, FileError."""
-    scene = load(path, session.lenient, session.state.scene.camera.left_handed).scene
+    scene = load(path, session.lenient, session.state.scene.camera.left_handed, new=True).scene
     kept = ""
     if contents_differ(session.state.scene, session.saved):
         kept = f"; the changes that were not saved are in {files.save_recovery(session.state.scene, session.path)}"
@@ -163,7 +163,7 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "focus": focus,
     "toggle HUD": toggle_hud,
     "toggle icons": toggle_icons,
-    "toggle help": lambda session: session.screen.turn_help_page(),
+    "toggle help": lambda session: session.screen.turn_help(0),
     "larger text": partial(scale_text, factor=TEXT_STEP),
     "smaller text": partial(scale_text, factor=1 / TEXT_STEP),
     "usual text": partial(scale_text, factor=0.0),

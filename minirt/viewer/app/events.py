@@ -10,7 +10,7 @@ from pathlib import Path
 from minirt.mlx.events import MODIFIER_KEYS, Event
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
-from minirt.viewer.app.panels import ADDING, LISTS, TYPE, Choosing, Typing
+from minirt.viewer.app.panels import ADDING, HELP, LISTS, TYPE, Choosing, Help, Typing
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
@@ -27,6 +27,7 @@ class EventDispatcher:
         self.mouse = Mouse(session, self.perform)
         self.typing = Typing(session)
         self.choosing = Choosing(session)
+        self.help = Help(session)
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
         self._tick_hook = self.as_hook(self.on_tick)
 
@@ -62,8 +63,7 @@ class EventDispatcher:
             return
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
-        panel = self.typing if self.typing.is_open else self.choosing
-        if panel.is_open and panel.takes(code, pressed):
+        if any(panel.is_open and panel.takes(code, pressed) for panel in (self.help, self.typing, self.choosing)):
             return
         if pressed:  # any other key that does something closes them
             self.typing.end()
@@ -75,6 +75,9 @@ class EventDispatcher:
 
     def on_button(self, button: int, x: int, y: int) -> None:
         """A mouse button goes down, or the wheel turns."""
+        if self.help.is_open:
+            self.help.takes(button, None)
+            return
         self.typing.end()
         self.choosing.end()
         self.mouse.on_press(button, x, y)
@@ -86,6 +89,8 @@ class EventDispatcher:
             self.typing.on_text(character)
             return
         binding, key = session.keymap.find(character), self._unbound
+        if self.help.is_open and (not binding or binding.action != HELP):
+            return
         if character.isascii() and character.isdigit():
             self.choosing.end()
             self.typing.begin(character)

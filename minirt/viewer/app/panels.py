@@ -1,4 +1,4 @@
-"""Panels: typing the active value, and choosing an element or an attribute from a list.
+"""Panels: typing the active value, choosing an element or an attribute from a list, and the help.
 
 A digit or = begins a value, Enter sets it, Escape leaves it as it was. In a list letters filter, arrows go through it
 and Enter takes the choice, which is in the scene at once, so that the picture shows it. Escape takes it out again, and
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from minirt.mlx import Key
+from minirt.mlx import Button, Key
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import SIGNIFICANT, Binding
 from minirt.viewer.display.overlay import Panel
@@ -19,6 +19,11 @@ from minirt.viewer.editing.typed import CHARACTERS, set_typed
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 TYPE = "type value"  # the action that begins with =
+HELP = "toggle help"
+TURNS: dict[int, int] = {  # keys and buttons that turn the pages of the help
+    **dict.fromkeys((Key.RIGHT, Key.DOWN, Key.PAGE_DOWN, Key.RETURN, Button.WHEEL_DOWN), 1),
+    **dict.fromkeys((Key.LEFT, Key.UP, Key.PAGE_UP, Button.WHEEL_UP), -1),
+}
 MAX_LENGTH = 40  # characters
 ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
 LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
@@ -75,6 +80,37 @@ class Typing:
         name = active.name if active else "no value"
         session.screen.panel = Panel(f"{name}: {text}_    Enter: set it    Esc: leave it") if text else None
         session.refresh()
+
+
+class Help:
+    """The open help: letters search it, arrows and the wheel turn its pages; H, Escape and a click close it."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the help is shown."""
+        return self.session.screen.help > 0
+
+    def takes(self, key: int, pressed: Binding | None) -> bool:
+        """Take a key press or button; False if the key means nothing to the help."""
+        screen = self.session.screen
+        closes = pressed is not None and pressed.action == HELP and not screen.search
+        if closes or key in (Key.ESCAPE, Button.LEFT, Button.MIDDLE, Button.RIGHT):
+            screen.turn_help(0)
+        elif key in TURNS:
+            screen.turn_help(TURNS[key])
+        elif self.session.modifiers & SIGNIFICANT:
+            return False
+        elif Key.A <= key <= Key.Z or key == Key.SPACE:
+            screen.help, screen.search = 1, screen.search + chr(key)
+        elif key == Key.BACKSPACE:
+            screen.help, screen.search = 1, screen.search[:-1]
+        else:
+            return False
+        self.session.refresh()
+        return True
 
 
 class Choosing:

@@ -25,7 +25,7 @@ from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
 from minirt.viewer.editing.projection import Projection, projection_of
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.files import WatchedFile, create_numbered, error_summary
+from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
@@ -93,6 +93,7 @@ class Session:
     def show(self, state: State) -> None:
         """Make `state` the current one."""
         self.state = state
+        self.screen.tips = self.screen.tips and not contents_differ(state.scene, self.opened)
         self.update()
         self.refresh()
 

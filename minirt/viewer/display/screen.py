@@ -1,108 +1,26 @@
-"""Screen: compose picture, marks, text and the pages of the help into a frame, and bring it to the window."""
+"""Screen: compose picture, marks and text, or a page of the help, into a frame, and bring it to the window."""
 
 from __future__ import annotations
 
 import ctypes
 import sys
-from collections.abc import Iterator
 from contextlib import suppress
-from functools import lru_cache
-from itertools import zip_longest
 
 import numpy as np
 
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
-from minirt.mlx.text import draw_text, measure
-from minirt.viewer.bindings import key_groups
 from minirt.viewer.display import overlay
+from minirt.viewer.display.help import draw_help, help_pages
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, Panel, wrap
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
 
-READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
-INDENT = "  "  # of keys below their title
-
-Column = tuple[str, str]  # lines of keys, titles among them, and of their help
-
-
-def draw_help(pixels: Pixels, layout: str, max_size: int, number: int) -> None:
-    """Draw a page of the help, counted from 1, over the darkened picture."""
-    pixels >>= 2  # 20 times as fast as the three colours alone
-    pixels[..., 3] = 255
-    height, width = pixels.shape[:2]
-    size, pages = help_pages(layout, width, height, max_size)
-    number = min(number, len(pages))
-    x = MARGIN
-    for column in pages[number - 1]:
-        for text, colour in zip(column, (MESSAGE_COLOUR, overlay.TEXT_COLOUR), strict=True):
-            x += draw_text(pixels, x, MARGIN, text, colour, size=size)[0] + size
-    if len(pages) > 1:
-        key = "next page" if number < len(pages) else "back to the picture"
-        footer = height - MARGIN // 2 - measure(" ", size)[1]
-        draw_text(pixels, MARGIN, footer, f"page {number} of {len(pages)}    H: {key}", MESSAGE_COLOUR, size=size)
-
-
-@lru_cache(maxsize=4)
-def help_pages(layout: str, width: int, height: int, max_size: int) -> tuple[int, list[list[Column]]]:
-    """Arrange the table with as few pages as readable text allows, in the largest text of so many pages.
-
-    Returns the size of the text in pixels, and the columns of each page.
-    """
-    least = min(max_size, max(READABLE[0], round(READABLE[1] * max_size), overlay.MIN_TEXT_SIZE))
-    fewest = len(arrange(layout, width, height, least))
-    arranged = ((size, arrange(layout, width, height, size)) for size in range(max_size, least - 1, -1))
-    return next((size, pages) for size, pages in arranged if len(pages) <= fewest)
-
-
-def arrange(layout: str, width: int, height: int, size: int) -> list[list[Column]]:
-    """Fill columns from top to bottom, and pages from left to right."""
-    line = measure(" ", size)[1]
-    columns = list(filled_columns(layout, width, size, (height - 2 * MARGIN) // line))
-    if width_of(columns, size) > width - 2 * MARGIN and height > 4 * line:  # several pages: the last line is taken
-        columns = list(filled_columns(layout, width, size, (height - MARGIN * 3 // 2 - line) // line))
-    pages: list[list[Column]] = [[]]
-    for column in columns:
-        if pages[-1] and width_of([*pages[-1], column], size) > width - 2 * MARGIN:
-            pages.append([])
-        pages[-1].append(column)
-    return pages
-
-
-def filled_columns(layout: str, width: int, size: int, capacity: int) -> Iterator[Column]:
-    """Yield columns of at most `capacity` lines, but at least 3; no title is the last line of one."""
-    lines: list[tuple[str, str]] = []
-    for title, rows in key_groups(layout):
-        for index, row in enumerate(rows):
-            block = wrapped(row, width, size)
-            if index == 0:
-                block = [*([("", "")] if lines else []), *([(title, "")] if title else []), *block]
-            if lines and len(lines) + len(block) > max(3, capacity):
-                yield joined(lines)
-                lines, block = [], [line for line in block if any(line)]
-            lines += block
-    yield joined(lines)
-
-
-def wrapped(row: tuple[str, str], width: int, size: int) -> list[tuple[str, str]]:
-    """Return the lines of a row whose texts are wrapped where they take more than their share of a narrow window."""
-    share = (width - 2 * MARGIN - 2 * size) // 5
-    keys, help = (
-        wrap(text, part * share + 2 * MARGIN, size).split("\n") for text, part in zip(row, (2, 3), strict=True)
-    )
-    keys = [INDENT + keys[0].strip(), *(2 * INDENT + line.strip() for line in keys[1:])]
-    return list(zip_longest(keys, help, fillvalue=""))
-
-
-def joined(lines: list[tuple[str, str]]) -> Column:
-    """Return lines as a column."""
-    return "\n".join(keys for keys, _ in lines), "\n".join(help for _, help in lines)
-
-
-def width_of(columns: list[Column], size: int) -> int:
-    """Width of columns in pixels, with the blanks to their right."""
-    return sum(measure(text, size)[0] + size for column in columns for text in column)
+# Shown until the first edit; the keys are the same on all keyboards.
+TIPS = """drag an object to move it, or nothing to look around
+N adds an object where the pointer is
+H: all keys    Ctrl+S: save"""
 
 
 class Screen:
@@ -114,6 +32,8 @@ class Screen:
         self.layout = layout  # of the keyboard, for the help
         self.level = HudLevel.LINE
         self.help = 0  # its page in the window, counted from 1
+        self.search = ""  # the letters that the rows of the help contain
+        self.tips = False  # whether help for the first minute is shown
         self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
         self.panel: Panel | None = None  # a value that is typed, or a list to choose from
@@ -136,10 +56,11 @@ class Screen:
         """The size of text, in pixels."""
         return overlay.text_size(self.window.width, self.window.height, self.scale)
 
-    def turn_help_page(self) -> None:
-        """Show the first page of the help, the next one, or after the last one the picture."""
-        pages = help_pages(self.layout, self.window.width, self.window.height, self.text_size)[1]
-        self.help = self.help + 1 if self.help < len(pages) else 0
+    def turn_help(self, step: int) -> None:
+        """Turn the pages of the help; a step of 0 opens or closes it."""
+        count = len(help_pages(self.layout, self.search, self.window.width, self.window.height, self.text_size)[1])
+        self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
+        self.search = self.search if step else ""
 
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
@@ -150,7 +71,7 @@ class Screen:
         width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        shown = self.panel, self.level, self.help, self.icons
+        shown = self.panel, self.level, self.help, self.search, self.icons, self.tips
         contents = described, picture, message, *shown, width, height, scale
         if contents == self._drawn:
             return False
@@ -158,7 +79,7 @@ class Screen:
         self.image = Image(self.picture_alone(picture))
         bottom = 0
         if self.help:
-            draw_help(self.frame, self.layout, size, self.help)
+            draw_help(self.frame, self.layout, self.search, size, self.help)
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
@@ -166,7 +87,9 @@ class Screen:
             bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
         if self.panel and not self.help:
             overlay.draw_panel(self.frame, self.panel, size)
-        if message:  # above the text at the bottom
+        elif self.tips and self.level and not message:
+            message = TIPS
+        if message and not self.help:  # above the text at the bottom
             overlay.draw_lines(self.frame, -MARGIN - bottom, wrap(message, width, size), MESSAGE_COLOUR, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
-from minirt.viewer.display import screen
+from minirt.viewer.display.help import Column, draw_help, help_pages, width_of
 from minirt.viewer.display.overlay import (
     MARGIN,
     MESSAGE_COLOUR,
@@ -28,7 +28,6 @@ from minirt.viewer.display.overlay import (
     wrap,
 )
 from minirt.viewer.display.painter import Job, Outcome
-from minirt.viewer.display.screen import draw_help, width_of
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import TEXT, scene
@@ -158,15 +157,15 @@ def test_text_grows_with_the_window_the_screen_and_the_wish(size, screen, wanted
 # Pages of the help: every row is shown, readable and within the window, whatever its size.
 
 
-def table(width: int, height: int) -> tuple[int, list[list[screen.Column]]]:
+def table(width: int, height: int, search: str = "") -> tuple[int, list[list[Column]]]:
     """Return the size of the text and the pages of the help of a window of that size."""
-    return screen.help_pages("qwerty", width, height, text_size(width, height, overlay_scale(width, height, 1, 1)))
+    return help_pages("qwerty", search, width, height, text_size(width, height, overlay_scale(width, height, 1, 1)))
 
 
 def drawn(width: int, height: int, number: int) -> NDArray[np.uint8]:
     """Draw a page over a white picture."""
     pixels = np.full((height, width, 4), 255, np.uint8)
-    draw_help(pixels, "qwerty", text_size(width, height, overlay_scale(width, height, 1, 1)), number)
+    draw_help(pixels, "qwerty", "", text_size(width, height, overlay_scale(width, height, 1, 1)), number)
     return pixels
 
 
@@ -192,14 +191,14 @@ def test_all_pages_and_their_text_fit_the_window_and_do_not_overlap(width: int, 
         assert width_of(page, size) <= width
         assert not any(keys.split("\n")[-1] and not help.split("\n")[-1] for keys, help in page)  # a title
         used = max(measure(keys, size)[1] for keys, _ in page) + 10
-        assert used <= (height if len(pages) == 1 else footer + size // 3)  # the last line's blank below may be used
+        assert used <= footer + size // 3  # the last line's blank below may be used
         lit = (drawn(width, height, number)[..., :3] > DARK).any(axis=2)
         assert lit.any()
         assert not lit[:, -4:].any()
         assert not lit[-2:].any()
 
 
-@pytest.mark.parametrize(("size", "pages", "least"), [((320, 240), 8, 11), ((640, 480), 3, 11), ((1280, 720), 1, 13)])
+@pytest.mark.parametrize(("size", "pages", "least"), [((320, 240), 8, 11), ((640, 480), 3, 11), ((1280, 720), 1, 12)])
 def test_there_are_few_pages_of_readable_text(size: tuple[int, int], pages: int, least: int) -> None:
     text_size, shown = table(*size)
     assert len(shown) <= pages
@@ -212,12 +211,44 @@ def test_tiny_windows_have_some_help(width: int, height: int) -> None:
         assert drawn(width, height, number)[..., :3].min() == DARK
 
 
-def test_the_key_turns_the_pages_and_ends_with_the_picture() -> None:
+def test_arrows_and_the_wheel_turn_the_pages() -> None:
     harness = SessionHarness()
     session = harness.session
-    harness.play("resize 320x240")
+    harness.play("resize 320x240", "press h")
     last = len(table(320, 240)[1])
-    assert last > 1
-    for page in [*range(1, last + 1), 0, 1]:
-        harness.play("press h")
+    assert last > 2
+    for key, page in (("Right", 2), ("Left", 1), ("PageUp", 1), ("Down", 2), ("Return", 3)):
+        harness.play(f"press {key}")
         assert session.screen.help == page
+    harness.play("wheel up")
+    assert session.screen.help == 2
+    harness.play(f"wheel down {last}")
+    assert session.screen.help == last
+
+
+@pytest.mark.parametrize(
+    "close", ["press h", "press Escape", "press ?", "click 9,9", "click 9,9 right", "drag 9,9 30,9"]
+)
+@pytest.mark.parametrize("turns", [0, 2])
+def test_the_help_closes_at_once_from_any_page(close: str, turns: int) -> None:
+    harness = SessionHarness()
+    harness.play("resize 320x240", "press h", *["press Right"] * turns, close)
+    session = harness.session
+    assert session.screen.help == 0
+    assert session.state == SessionHarness().session.state  # which the click did not change
+    harness.play("press h")
+    assert session.screen.help == 1
+
+
+def test_letters_search_the_help() -> None:
+    harness = SessionHarness()
+    screen = harness.session.screen
+    harness.play("press h", "press Right", "text d", "press d", "press u", "press p")
+    assert (screen.help, screen.search) == (1, "dup")
+    rows = [keys for page in table(640, 480, "dup")[1] for keys, _ in page]
+    assert "Ctrl+D" in " ".join(rows)
+    assert "Ctrl+S" not in " ".join(rows)
+    assert len(table(640, 480, "build")[1][0][0][0].split("\n")) > 5  # the title of a group finds all of it
+    harness.play("press Backspace", "text 3", "press Escape", "press h")
+    assert (screen.help, screen.search) == (1, "")
+    assert screen.panel is None  # nothing was typed as a value

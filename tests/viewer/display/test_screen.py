@@ -75,8 +75,28 @@ def test_messages_and_banners_stand_above_other_words(level: HudLevel, words: di
     assert says_it_above_other_words(level, **words)
 
 
-def test_help_leaves_a_message_visible() -> None:
-    assert (shown(HudLevel.LINE, TEXT, help=True) != shown(HudLevel.LINE, help=True)).any()
+def test_no_message_covers_the_help() -> None:
+    assert (shown(HudLevel.LINE, TEXT, TEXT, help=True) == shown(HudLevel.LINE, help=True)).all()
+
+
+def test_tips_are_shown_until_the_first_edit() -> None:
+    """Looking around and selecting is no edit."""
+    harness = SessionHarness()
+    screen = harness.session.screen
+    screen.tips = True
+    harness.play("resize 500x333", "press C", "press d", "press Tab", "press Tab")
+    harness.finish(0.001)
+    assert screen.tips
+    frames = []
+    for screen.tips in (True, False):
+        screen.draw(harness.session.state.with_message(""), harness.session.refinement.latest)
+        frames.append(screen.frame.copy())
+    rows, _ = np.nonzero((frames[0] != frames[1]).any(axis=2))
+    assert rows.min() > 240
+    assert rows.max() > 315
+    screen.tips = True
+    harness.play("press d")
+    assert not screen.tips
 
 
 # Memory that is given back to the system: once after each resize or reload, and really.
