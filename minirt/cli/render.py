@@ -147,7 +147,7 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
         seconds = perf_counter() - start
         write(image.encode(**how), options.output)
     single = None if executor or job.settings.precision == "double" else job.settings.renderer.packing
-    for each in notices_about(job.scene, image.array, job.size, single):
+    for each in notices_about(job.scene, image.array, job.size, single, job.settings.samples):
         tell(f"notice: {each}")
     if is_measured:
         tell("\n".join(measurements(*job[:3], seconds, image.not_finite)))

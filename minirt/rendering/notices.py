@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.rendering.queries.preview import notice_about
+from minirt.rendering.packing.features import features
+from minirt.rendering.queries.preview import hidden_shapes, notice_about
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.settings import RenderSettings, rendered
 from minirt.rendering.tone_mapping import clipped_pixels
@@ -16,10 +17,10 @@ NOT_COMPUTED = "a notice about the picture cannot be computed"
 
 
 def notices_about(
-    scene: Scene, pixels: np.ndarray, size: tuple[int, int], single: Packing | None = None
+    scene: Scene, pixels: np.ndarray, size: tuple[int, int], single: Packing | None = None, samples: object = None
 ) -> Iterator[str]:
     """Yield sentences about a picture of this size, or a region of it, (h, w, channels). The packing is that of a
-    picture in single precision which this process has rendered.
+    picture in single precision which this process has rendered, with so many samples a pixel.
 
     A notice costs nobody the picture: numbers that leave the range of a float64 or of a field are told in its place.
     """
@@ -31,6 +32,9 @@ def notices_about(
                 yield f"single precision cannot show {each}"
         if pixels.shape[1::-1] == size and (text := notice_about(scene, pixels)):
             yield text
+        if samples == 1 and features(scene) & {"soft", "lens"}:
+            yield "with one sample a pixel the size of a light or lens has no effect: try --samples auto"
+        yield from hidden_shapes(scene)
     except (ArithmeticError, ValueError) as error:
         yield f"{NOT_COMPUTED}: {error}"
 

@@ -12,12 +12,13 @@ from minirt.element import Element, pattern
 from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
-from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line
+from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient, FurtherLight, Light
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
 from minirt.scene.scene import MISSING, Scene
+from minirt.shapes.mesh import Mesh
 
 NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
 BLOCK = 4096  # lines that the fast path reads at once
@@ -158,11 +159,30 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
     conflict = element.conflict()
     if conflict is None:
+        tell_useless(element, slots, line, log)
         return element
     name, message = conflict
     slot = next(slot for slot in slots if slot.field.name == name)
     log.error(line, f"{kind.title} {name} {message}", *slot.span(None))
     return None
+
+
+# Attributes, by the fields of which they need one.
+NEEDS = {
+    "tint": ("glass",),
+    "fresnel": ("glass", "mirror"),
+    "uv": ("checker", "texture", "bump", "normal_map"),
+    "focus": ("lens",),
+}
+
+
+def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> None:
+    """Add a notice for each attribute of a line that has no effect without another; meshes may have that in a file."""
+    for slot in slots:
+        needs = NEEDS.get(slot.field.name, ())
+        if needs and not any(getattr(element, name) for name in needs) and not isinstance(element, Mesh):
+            keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in needs)
+            log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
 
 
 def check_required(seen: dict[str, int], line: Line, log: Log) -> None:

@@ -178,3 +178,16 @@ def test_wrong_values_are_refused_in_python_too(make: Any, message: str) -> None
     with pytest.raises(ValueError, match=r".") as caught:
         make()
     assert str(caught.value).startswith(message)
+
+
+USELESS = {
+    f"{SPHERE} tint:1,2,3": "sphere tint has no effect without 'glass:'",
+    f"{SPHERE} fresnel": "sphere fresnel has no effect without 'glass:' or 'mirror:'",
+    f"{PLANE} uv:1,2": "plane uv has no effect without 'checker:' or 'texture:' or 'bump:' or 'normal:'",
+}
+
+
+@pytest.mark.parametrize(("line", "message"), USELESS.items())
+def test_an_attribute_that_has_no_effect_is_told(line: str, message: str) -> None:
+    assert [each[2] for each in notices(line)] == [message]
+    assert not notices(f"{line} glass:1.5 mirror:0.5 checker:2")

@@ -6,6 +6,8 @@ for each shape, which takes longer the more rays there are.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
 from math import atan2, ceil, cos, dist, floor, log10, pi, radians, sin, tan
 from typing import Any
 
@@ -17,12 +19,20 @@ from minirt.kernel.frame import ray_direction
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame import thread_memory
+from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import Crop, Request
+from minirt.rendering.packing.lights import emitting_lights
+from minirt.rendering.packing.materials import encloses
 from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.rendering.tone_mapping import map_tones
 from minirt.scene import Camera, Scene, describe
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.ellipsoid import Ellipsoid
+from minirt.shapes.sphere import Sphere
 
 BUDGET = 0.12  # seconds
 SHAPE, RAY = 2e-4, 2e-7  # seconds to intersect a shape with all rays, and seconds more for each ray
@@ -66,7 +76,7 @@ def draw_background(request: Request) -> None:
         linear[...] = 0.0
 
 
-# A notice about a picture in which nothing is in view, with a camera that would show the scene.
+# Notices about what is not seen, with a camera that would show the scene.
 
 COLUMNS, ROWS = 32, 18  # rays that look for shapes
 MOST_PRIMITIVES = 20_000  # that are looked for: in a second
@@ -74,21 +84,75 @@ TESTS = 4_000_000  # of rays against primitives, which choose a camera
 AZIMUTHS, ELEVATIONS = 8, (25.0, -25.0, 70.0)  # degrees: places around the scene from which a camera may look
 NARROWEST, WIDEST, USUAL = 20.0, 100.0, 60.0  # degrees of the field of view: others are replaced by the usual one
 MARGIN = 1.15  # of the distance at which the bounding ball of the scene fills the picture
+IN_PLANE = 1e-9  # distance from a plane, relative to the coordinates of the eye
+CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid)
+MOST_COMPARED = 200  # shapes of which one may be inside of another
+CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
 DIGITS = 3  # of coordinates, relative to the size of the scene
 PLACES = 4  # decimals of directions
 
 
 def notice_about(scene: Scene, pixels: np.ndarray) -> str:
-    """Return a sentence for a picture, (h, w, channels), in which nothing is in view; empty for any other."""
+    """Return a sentence for a picture, (h, w, channels), of one colour: why, and which camera would show the scene;
+    empty for any other."""
     height, width = pixels.shape[:2]
     if not is_blank(pixels) or not scene.shapes:
         return ""
     arrays = ShapeArrays()
     arrays.update(scene.shapes)
-    if len(arrays.slots) > MOST_PRIMITIVES or len(visible_shapes(arrays, scene.camera, width, height)):
+    if len(arrays.slots) > MOST_PRIMITIVES:
         return ""
+    seen = visible_shapes(arrays, scene.camera, width, height)
+    if len(seen) and not is_lit(scene):
+        return "no light is on: all that is in view is black"
+    reason = reason_for(scene, arrays, seen)
     camera = showing_camera(scene, arrays, width, height)
-    return f"nothing is in view; this line would show the scene: {camera}" if camera else "nothing is in view"
+    return f"{reason}; this line would show the scene: {camera}" if camera else reason
+
+
+def is_lit(scene: Scene) -> bool:
+    """Whether anything in a scene gives light."""
+    ambient, background = scene.ambient, scene.background
+    is_ambient = bool(ambient and ambient.brightness and any(ambient.colour))
+    is_bright = bool(background and (isinstance(background.paint, str) or any(background.paint)))
+    return is_ambient or is_bright or bool(emitting_lights(scene)) or any(shape.glow for shape in scene.shapes)
+
+
+def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
+    """Return why a picture has one colour, in which the shapes with the indices `seen` are in view."""
+    eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
+    for index, shape in enumerate(scene.shapes):
+        flat = shape.flat()
+        if flat and abs(np.dot(np.subtract(eye, flat[0]), flat[1])) <= IN_PLANE * (1 + np.abs(eye).max()):
+            return f"the eye is in {shape_name(arrays, arrays.listed[index])}"
+        if not flat and encloses(shape, eye):
+            return f"the eye is inside {shape_name(arrays, arrays.listed[index])}"
+    if len(seen):
+        return f"only {shape_name(arrays, arrays.listed[seen[0]])} is in view, in one colour"
+    depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
+    is_behind = depths.max() < 0 and not any(kind.infinite for kind in arrays.group_numbers)
+    return "nothing is in view: all is behind the eye" if is_behind else "nothing is in view"
+
+
+def hidden_shapes(scene: Scene) -> Iterator[str]:
+    """Yield sentences about shapes that are never seen, as they are inside an opaque convex one that the eye is not in.
+
+    Only what is certain counts: the corners of the bounding box, grown, are inside the other one.
+    """
+    eye, shapes = np.array(scene.camera.position), scene.shapes[:MOST_COMPARED]
+    arrays = ShapeArrays()
+    arrays.update(shapes)
+    low, high = arrays.boxes.transpose(1, 0, 2)
+    ends = np.maximum.reduceat(high, arrays.listed) if len(shapes) else high
+    starts = np.minimum.reduceat(low, arrays.listed) if len(shapes) else low
+    grown = CERTAIN * (ends - starts)
+    for outer, shape in enumerate(shapes):
+        if isinstance(shape, CONVEX) and not shape.glass and not scene.camera.lens and not encloses(shape, eye):
+            for index in np.flatnonzero((starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)):
+                corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
+                if index != outer and shapes[index].bounds() and all(encloses(shape, np.array(at)) for at in corners):
+                    names = (shape_name(arrays, arrays.listed[each]) for each in (index, outer))
+                    yield "{} is never seen: it is inside {}, which is opaque".format(*names)
 
 
 def is_blank(pixels: np.ndarray) -> bool:

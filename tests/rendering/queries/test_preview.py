@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from minirt.rendering.queries.preview import (
     FEWEST,
     RAY,
     SHAPE,
+    hidden_shapes,
     is_blank,
     notice_about,
     preview,
@@ -125,7 +127,7 @@ def render(scene: Scene) -> np.ndarray:
 
 def shown_by(scene: Scene, notice: str) -> Scene:
     """The scene as the camera of a notice sees it."""
-    assert notice.startswith("nothing is in view; this line would show the scene: C ")
+    assert re.match("nothing is in view(: all is behind the eye)?; this line would show the scene: C ", notice)
     line = notice.partition("scene: ")[2]
     camera, notices = parse(f"A 0 0,0,0\n{line}\n")
     assert not notices
@@ -147,17 +149,65 @@ def test_the_camera_that_is_named_shows_the_scene(name: str) -> None:
 
 
 def test_pictures_that_show_something_have_no_notice() -> None:
-    black = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\nsp 0,0,0 2 255,0,0\n").scene
     empty = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\n").scene
-    for scene in (EVERY, black, empty, load(SCENES / "subject.rt").scene, load(SCENES / "sky.rt").scene):
+    for scene in (EVERY, empty, load(SCENES / "subject.rt").scene, load(SCENES / "sky.rt").scene):
         assert notice_about(scene, render(scene)) == ""
+
+
+CAMERA = "C 0,0,0 0,0,1 60\n"
+GREY = "A 0.5 255,255,255\n" + CAMERA
+BLANK = {
+    "A 0 255,255,255\nL 0,9,0 0 255,255,255\n" + CAMERA + "sp 0,0,9 2 255,0,0\n": "no light is on: all that is in",
+    "A 1 255,255,255\n" + CAMERA + "sp 0,0,9 2 0,0,0\n": "only sphere 1 is in view, in one colour; this line",
+    GREY + "sp 0,0,-9 2 255,0,0\nsp 9,0,0.5 2 255,0,0\nsp 1,0,1 9 0,255,0\n": "the eye is inside sphere 3; this line",
+    GREY + "cy 0,0,90 0,1,0 2 2 9,9,9\nbo 1,1,1 0,1,0 4,4,4 0,255,0\n": "the eye is inside box 1; this line would",
+    GREY + "pl 0,0,5 1,0,0 0,255,0\nsp 0,0,-5 1 9,9,9\n": "the eye is in plane 1; this line would show",
+    GREY + "sp 0,0,-5 1 9,9,9\nsp 5,0,-3 5.9 9,9,9\n": "nothing is in view: all is behind the eye; this line",
+    GREY + "sp 0,0,-5 1 9,9,9\nsp 9,0,-2.5 6 9,9,9\n": "nothing is in view; this line would show the scene",
+}
+
+
+@pytest.mark.parametrize(("text", "reason"), BLANK.items(), ids=range(len(BLANK)))
+def test_the_reason_is_told_why_a_picture_has_one_colour(text: str, reason: str) -> None:
+    scene = parse(text).scene
+    assert notice_about(scene, module.render_interpreted(scene, WIDTH, HEIGHT)[0][..., 2::-1]).startswith(reason)
+
+
+BALL = "sp 0,0,9 4 255,0,0"
+HIDDEN = {
+    "sp 0.5,0,9 1 0,255,0": True,
+    "cy 0,0,9 0.6,0.8,0 1 1 9,9,9": True,
+    "sp 0.5,0,9 2.9 0,255,0": False,  # the corners of its box are outside
+    "sp 1.6,0,9 1 0,255,0": False,  # 0.1 of it is outside
+    "sp 0,0,9 4 0,255,0": False,  # the same ball
+    "pl 0,0,9 0,1,0 9,9,9": False,
+    "bo 0,0,9 0,1,0 2.2,2.2,2.2 9,9,9": True,  # its corners are 1.91 from the middle
+    "bo 0,0,9 0,1,0 2.4,2.4,2.4 9,9,9": False,  # 2.08
+}
+
+
+@pytest.mark.parametrize(("line", "is_hidden"), HIDDEN.items())
+def test_a_shape_inside_an_opaque_one_is_told(line: str, is_hidden: bool) -> None:
+    found = [*hidden_shapes(parse(f"{GREY}{BALL}\n{line}\n").scene)]
+    title = {"sp": "sphere 2", "cy": "cylinder 1", "bo": "box 1", "pl": "plane 1"}[line[:2]]
+    assert found == [f"{title} is never seen: it is inside sphere 1, which is opaque"] * is_hidden
+    for visible in (f"{BALL} glass:1.5", "to 0,0,9 0,1,0 4 3.9 9,9,9", "sp 0,0,9 40 255,0,0"):  # the eye is in the last
+        assert not [*hidden_shapes(parse(f"{GREY}{visible}\n{line}\n").scene)]
+
+
+def test_a_size_without_effect_is_told() -> None:
+    scene = parse(f"{GREY}L 0,9,0 1 255,255,255 size:1\n{BALL}\n").scene
+    about = scene, np.arange(WIDTH * HEIGHT * 3, dtype=np.uint8).reshape(HEIGHT, WIDTH, 3), (WIDTH, HEIGHT), None
+    (told,) = notices_about(*about, 1)
+    assert told == "with one sample a pixel the size of a light or lens has no effect: try --samples auto"
+    assert not [*notices_about(*about, 4)]
 
 
 def test_a_notice_whose_numbers_leave_their_range_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A camera at a distance of 2.6e15."""
     far = parse("A 0 0,0,0\nC 0,0,0 0,0,1 60\nsp -1e15,0,-9e14 1e15 9,9,9\n").scene
     about = far, render(far), (WIDTH, HEIGHT)
-    assert list(notices_about(*about)) == ["nothing is in view"]
+    assert list(notices_about(*about)) == ["nothing is in view: all is behind the eye"]
     monkeypatch.setattr(module, "FARTHEST", 1e16)
     (told,) = notices_about(*about)
     assert told.startswith(f"{NOT_COMPUTED}: camera position ")
