@@ -8,7 +8,7 @@ PYTHON  ?= python3
 PIP     := $(VENV)/bin/python -m pip --disable-pip-version-check
 WORKERS ?= auto
 PYTEST  := $(VENV)/bin/python -m pytest --numprocesses $(WORKERS)
-SCENE   ?= scenes/demo.rt
+SCENE   ?= scenes/opening.rt
 SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 
 # The program is installed in editable mode, so only a change of its dependencies installs it again. The path to the
@@ -67,6 +67,9 @@ quick: $(DEV)  ## run the tests that take a minute in all
 
 pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each other Python of this machine, in new environments
 	$(VENV)/bin/python -m tests.pythons
+
+newest: $(NAME)  ## the same with the newest of them alone
+	$(VENV)/bin/python -m tests.pythons newest
 
 FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
             tests/kernel/shading/test_lights.py
@@ -148,4 +151,4 @@ docs: $(DEV)  ## build pages on the public names in out/docs, with pdoc
 re: fclean  ## install everything anew
 	$(MAKE) all
 
-.PHONY: all help further-packages first-kernels bonus run test quick pythons processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re
+.PHONY: all help further-packages first-kernels bonus run test quick pythons newest processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re

@@ -14,6 +14,7 @@ import minirt
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "scenes" / "README.md"
 SHOWN = [
+    "opening",
     "figure-iv1-planet",
     *sorted(path.stem for path in (ROOT / "scenes").glob("gallery-*.rt")),
     "material-glass-window",
@@ -28,7 +29,7 @@ def row(name: str) -> str:
     start = time.process_time()
     picture = minirt.render(scene, WIDTH, HEIGHT, samples=SAMPLES, threads=1)
     seconds = time.process_time() - start
-    file = f"{name.split('-', 1)[1]}.jpg"
+    file = f"{name.split('-', 1)[-1]}.jpg"
     picture.save(ROOT / "assets" / f"gallery-{file}")
     caption = (scene.file.read_text().splitlines()[0] if scene.file else "").removeprefix("# ")
     command = f"miniRT scenes/{name}.rt --size {WIDTH}x{HEIGHT} --samples {SAMPLES} -o {file}"
@@ -38,12 +39,11 @@ def row(name: str) -> str:
 def write(name: str, text: str) -> None:
     """Write the row of a scene in the place of its former one, or as the last."""
     table = PAGE.read_text(encoding="utf-8")
-    start = table.index("<!-- table: gallery -->")
-    end = table.index("\n<!-- end -->", start)
-    rows = table[start:end].rstrip().splitlines()
+    start = table.index("| | |\n", table.index("## Gallery"))  # the last part of the page
+    rows = table[start:].rstrip().splitlines()
     former = [i for i, each in enumerate(rows) if f"`miniRT scenes/{name}.rt " in each]
     rows[former[0] if former else len(rows) : former[0] + 1 if former else len(rows)] = [text]
-    PAGE.write_text(table[:start] + "\n".join(rows) + "\n" + table[end:], encoding="utf-8")
+    PAGE.write_text(table[:start] + "\n".join(rows) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

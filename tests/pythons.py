@@ -1,7 +1,8 @@
 """Run the quick tests, a film, a window and a notebook with each other Python that the machine has: `make pythons`.
 
 Each gets a new environment in .venv/pythons, with the newest versions of all packages, and compiles its own kernels.
-`python -m tests.pythons lowest` prints the lowest versions of the dependencies as arguments of pip, for `make lowest`.
+`python -m tests.pythons newest` takes the newest of them alone, for `make newest`; `python -m tests.pythons lowest`
+prints the lowest versions of the dependencies as arguments of pip, for `make lowest`.
 The Pythons are those that pyproject.toml names, but for the one of .venv, with which `make test` runs all tests.
 """
 
@@ -56,14 +57,15 @@ def passes(version: str, python: Path) -> bool:
     return subprocess.run(make, cwd=ROOT, env=environment, check=False).returncode == 0
 
 
-def main() -> int:
-    """Run the tests with each Python, and print what became of it; return 1 where some fail."""
+def main(newest: bool) -> int:
+    """Run the tests with each Python or the newest, and print what became of it; return 1 where some fail."""
     others = [version for version in named() if version != f"3.{sys.version_info.minor}"]
     told = dict.fromkeys(others, "not found on PATH or in pyenv")
-    for version in others:
-        if python := find(version):
-            print(f"Python {version}: {python}", flush=True)
-            told[version] = "passed" if passes(version, python) else "FAILED"
+    found = {version: python for version in others if (python := find(version))}
+    for version, python in list(found.items())[-1 if newest else 0 :]:
+        print(f"Python {version}: {python}", flush=True)
+        told[version] = "passed" if passes(version, python) else "FAILED"
+    told |= dict.fromkeys([version for version in found if "not found" in told[version]], "left out")
     print(*(f"Python {version}: {what}" for version, what in told.items()), sep="\n")
     return int("FAILED" in told.values())
 
@@ -72,4 +74,4 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["lowest"]:
         print(*lowest_versions("video", "report"))
     else:
-        sys.exit(main())
+        sys.exit(main(newest=sys.argv[1:] == ["newest"]))

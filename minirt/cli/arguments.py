@@ -22,7 +22,7 @@ FAILED = 1  # an error in a scene, in rendering or in writing
 USAGE = 2  # wrong arguments
 INTERRUPTED = 130  # Ctrl+C; 128 + n after another signal n
 SAMPLES, WINDOW_SAMPLES = 1, 16  # default samples a pixel: of a file, of the window
-DEMO = "demo"  # the example scene of a program without arguments
+OPENING = "opening"  # the example scene of a program without arguments
 DEPTH, MAX_DEPTH = 8, 32  # bounces of light: default and limit
 MAX_SIDE = 16384  # pixels
 MOST = 999_999_999  # pixels of a side that --cluster takes, if the format holds them
@@ -188,8 +188,8 @@ def argument_parser() -> Arguments:
     add = parser.add_argument
     scene_help = "the scene file, or a PNG picture of it; - for standard input"
     add("scene", type=file_name, nargs="*", metavar="SCENE.rt", help=scene_help)
-    example_help = f"show an example scene ({DEMO}) that is installed with the program, in place of a scene file"
-    add("--example", nargs="?", const=DEMO, metavar="NAME", help=example_help)
+    example_help = f"show an example scene ({OPENING}) that is installed with the program, in place of a scene file"
+    add("--example", nargs="?", const=OPENING, metavar="NAME", help=example_help)
     for group in OPTIONS.strip().replace("\n    ", " ").split("\n\n"):
         title, *lines = group.split("\n")
         add = parser.add_argument_group(title.removesuffix(":")).add_argument

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from minirt.cli.arguments import DEMO, Arguments
+from minirt.cli.arguments import OPENING, Arguments
 from minirt.cli.output import say, tell
 from minirt.errors import RenderError, SceneError
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
@@ -19,7 +19,7 @@ from minirt.helpers.progress import State, progress
 if TYPE_CHECKING:
     from minirt.scene import Scene
 
-DEMO_PICTURE = "miniRT-demo.png"  # of a program without arguments, where no window can be opened
+OPENING_PICTURE = "miniRT-opening.png"  # of a program without arguments, where no window can be opened
 STANDARD_INPUT = "standard input"
 PLACE = "{name}"  # in an output, stands for the name of the scene's file without its extension
 
@@ -89,7 +89,7 @@ def choose_example(parser: Arguments, options: argparse.Namespace, arguments: Se
     The window saves it to a new file in the current folder.
     """
     if not arguments:
-        options.example, options.fallback = DEMO, DEMO_PICTURE
+        options.example, options.fallback = OPENING, OPENING_PICTURE
     if not options.example:
         return
     if options.scene:

@@ -224,7 +224,7 @@ def examples() -> list[str]:
     return sorted(path.stem for path in folder().glob("*.rt"))
 
 
-def example(name: str = "demo") -> Scene:
+def example(name: str = "opening") -> Scene:
     """Return an example scene by its name.
 
     The scene belongs to no file, and names its textures and meshes by their absolute paths, so that it can be saved

@@ -13,7 +13,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.cli import argument_parser
-from minirt.cli.files import DEMO_PICTURE, choose_example
+from minirt.cli.files import OPENING_PICTURE, choose_example
 from minirt.formats import png
 from minirt.scene import files
 from tests.cli.program import SCENE, Run, program
@@ -21,13 +21,13 @@ from tests.cli.test_output import pixels
 from tests.paths import SCENES
 
 
-def test_the_program_without_arguments_renders_the_demo_where_no_window_is(folder: Path) -> None:
+def test_the_program_without_arguments_renders_the_opening_scene_where_no_window_is(folder: Path) -> None:
     ended = program(folder)
     assert (ended.status, ended.err) == (0, "")
-    assert str(folder / DEMO_PICTURE) in ended.out.decode()
-    with pillow.open(folder / DEMO_PICTURE) as picture:
+    assert str(folder / OPENING_PICTURE) in ended.out.decode()
+    with pillow.open(folder / OPENING_PICTURE) as picture:
         shown = np.asarray(picture)
-    expected = minirt.render(minirt.load(SCENES / "demo.rt")).array
+    expected = minirt.render(minirt.load(SCENES / "opening.rt")).array
     assert np.array_equal(shown, expected)
     assert not np.array_equal(shown, minirt.render(minirt.example("shapes")).array)
 
@@ -47,7 +47,7 @@ def test_an_unknown_example_is_an_error_that_names_what_is_like_it(run: Run) -> 
 
 def test_the_window_saves_an_example_to_a_new_file(folder: Path) -> None:
     parser = argument_parser()
-    for name in ("demo.rt", "demo-1.rt", "demo-2.rt"):
+    for name in ("opening.rt", "opening-1.rt", "opening-2.rt"):
         options = parser.parse_args(["--example"])
         choose_example(parser, options, ["--example"])
         assert options.scene == [name]
