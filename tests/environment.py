@@ -22,6 +22,7 @@ def prepare() -> None:
         os.environ.setdefault("NUMBA_CPU_FEATURES", "")
     if not is_cache_writable():
         os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
+    os.environ["LANGUAGE"] = "en"  # of the window's texts, whatever the user's is
     os.environ["XDG_STATE_HOME"] = str(STATE)
     os.environ["XDG_CONFIG_HOME"] = str(CONFIGURATION)
 

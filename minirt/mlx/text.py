@@ -2,6 +2,7 @@
 
     draw_text(pixels, 10, 10, "hello", 0xFFFFFF, size=16, background=0x80000000)
 
+The font has the letters of ASCII alone: accents are drawn as strokes above small letters, and left out on capitals.
 Rendered lines are cached, independent of position and colour.
 """
 
@@ -16,6 +17,15 @@ from numpy.typing import NDArray
 from minirt.mlx.canvas import OPAQUE, blend
 
 SIZE = 16  # pixels
+# Strokes of accents, as parts of the text's size: right of the letter's middle, and above the baseline.
+STROKES = {
+    "\u0300": (((-0.13, 0.74), (0.07, 0.61)),),  # grave
+    "\u0301": (((0.13, 0.74), (-0.07, 0.61)),),  # acute
+    "\u0302": (((-0.14, 0.61), (0.0, 0.74), (0.14, 0.61)),),  # circumflex
+    "\u0308": (((-0.12, 0.72), (-0.12, 0.64)), ((0.12, 0.72), (0.12, 0.64))),  # diaeresis
+    "\u0327": (((0.03, 0.0), (0.03, -0.08), (-0.07, -0.16)),),  # cedilla
+}
+LIGATURES = {"œ": "oe", "Œ": "OE", "«": '"', "»": '"', "\u2019": "'", "\u00a0": " ", "\u202f": " "}
 
 
 def draw_text(
@@ -69,12 +79,19 @@ def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint32]:
 
     if pitch and len(line) > 1:
         return np.hstack([_coverage(character, size, pitch) for character in line])
+    line, accents = _without_accents(line)
     width, height, natural = _width(line, size, pitch), _line_height(size), _font(size).getlength(line)
     if width == 0:
         return np.zeros((height, 0), np.uint32)
     image = Image.new("L", (max(width, int(np.ceil(natural))), height))
     place = (image.width - natural) / 2 if pitch else 0
-    ImageDraw.Draw(image).text((place, 0), line, fill=255, font=_font(size))
+    draw = ImageDraw.Draw(image)
+    draw.text((place, 0), line, fill=255, font=_font(size))
+    for index, accent in accents:
+        middle = place + (_font(size).getlength(line[:index]) + _font(size).getlength(line[: index + 1])) / 2
+        for stroke in STROKES[accent]:
+            points = [(middle + x * size, _font(size).getmetrics()[0] - y * size) for x, y in stroke]
+            draw.line(points, fill=230, width=max(1, round(size / 12)))
     if image.width > width:  # narrow a wide character to the pitch
         image = image.resize((width, height), Image.Resampling.BILINEAR)
     coverage = np.asarray(image).astype(np.uint32) << np.uint32(24)
@@ -85,7 +102,22 @@ def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint32]:
 @lru_cache(maxsize=1024)
 def _width(line: str, size: int, pitch: int) -> int:
     """Width of one line in pixels; six times as fast as drawing it."""
-    return pitch * len(line) if pitch else int(np.ceil(_font(size).getlength(line)))
+    return pitch * len(line) if pitch else int(np.ceil(_font(size).getlength(_without_accents(line)[0])))
+
+
+def _without_accents(line: str) -> tuple[str, list[tuple[int, str]]]:
+    """Return a line of letters that the font has, and the accents of small letters with the index of the letter."""
+    if line.isascii():
+        return line, []
+    from unicodedata import normalize
+
+    letters, accents = "", []
+    for character in line:
+        letter, *marks = list(LIGATURES.get(character) or normalize("NFD", character))
+        letters += letter
+        accents += [(len(letters) - 1, mark) for mark in marks if mark in STROKES and letter.islower()]
+        letters += "".join(mark for mark in marks if mark.isascii())
+    return letters, accents
 
 
 def _line_height(size: int) -> int:

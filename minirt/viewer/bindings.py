@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import locale
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 from typing import Any, Final, NamedTuple
 
 from minirt.mlx.events import KEYS, Button, Key, Modifier
+from minirt.viewer.language import searchable
 
 PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
 MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT, "Alt": Modifier.ALT}
@@ -154,7 +155,7 @@ BINDINGS = (
     on_press(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
     on_press(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
     on_press(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
-    on_press(WINDOW, "toggle help", "this help, or the picture", "H", "?", "F1"),
+    on_press(WINDOW, "toggle help", "this help, or the picture", "H", "?"),
     on_press(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),
     on_press(WINDOW, "smaller text", "smaller text and icons", "Ctrl+-"),
     on_press(WINDOW, "usual text", "text of the usual size", "Ctrl+0"),
@@ -163,16 +164,19 @@ BINDINGS = (
 )
 
 
-def key_groups(layout: str, search: str = "") -> Iterator[KeyGroup]:
+def key_groups(layout: str, search: str = "", translate: Callable[[str], str] = str) -> Iterator[KeyGroup]:
     """Yield the rows of the table by group, with the keys of a layout, and then a note without a title.
 
-    `search`: letters that a row, or the title of its group, contains.
+    `search`: letters that a row, or the title of its group, contains; `translate` is given titles and help.
     """
     for title, bindings in groupby(BINDINGS, key=lambda binding: binding.group):
-        rows = [(" / ".join(map(platform_spelling, each.spellings(layout))), each.help) for each in bindings]
-        if found := [row for row in rows if search.lower() in " ".join((title, *row)).lower()]:
-            yield title, found
-    yield "", [FINE_NOTE]
+        rows = [
+            (" / ".join(translate(platform_spelling(key)) for key in each.spellings(layout)), translate(each.help))
+            for each in bindings
+        ]
+        if found := [row for row in rows if search in searchable(" ".join((translate(title), *row)))]:
+            yield translate(title), found
+    yield "", [(FINE_NOTE[0], translate(FINE_NOTE[1]))]
 
 
 def keys_text(layout: str = "auto") -> str:

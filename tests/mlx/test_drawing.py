@@ -225,3 +225,19 @@ def test_files_become_images(tmp_path: Path) -> None:
         image, width, height = load(mlx, tmp_path / name)
         assert (width, height) == (2, 1)
         assert image.pixels.tolist() == [[[3, 2, 1, 255], [6, 5, 4, 255]]]
+
+
+def test_accents_are_strokes_above_small_letters_and_left_out_on_capitals() -> None:
+    def drawn(text: str) -> np.ndarray:
+        pixels = np.zeros((24, 60, 4), np.uint8)
+        draw_text(pixels, 0, 0, text, 0xFFFFFF)
+        return pixels[..., 0]
+
+    for accented, plain in ("éa", "ea"), ("èa", "ea"), ("êa", "ea"), ("aï", "ai"), ("ça", "ca"), ("ôx", "ox"):
+        assert measure(accented) == measure(plain)
+        changed = (drawn(accented) != drawn(plain)).nonzero()[0]
+        below = accented.startswith("ç")
+        assert changed.size
+        assert (changed.min() > 10) if below else (changed.max() < 10)
+    assert (drawn("Éa") == drawn("Ea")).all()
+    assert measure("œuf")[0] == measure("oeuf")[0]

@@ -16,6 +16,7 @@ from minirt.viewer.display.overlay import Panel
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.typed import CHARACTERS, set_typed
+from minirt.viewer.language import searchable, translated
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 TYPE = "type value"  # the action that begins with =
@@ -189,12 +190,13 @@ class Choosing:
     def title(self, choice: State) -> str:
         """What a choice is called in the list."""
         of_attribute = self._group == structure.ATTRIBUTE and choice.active
-        return of_attribute.field.title if of_attribute else choice.element.title
+        return translated(of_attribute.field.title if of_attribute else choice.element.title)
 
     def rows(self) -> list[State]:
         """The choices that contain the letters: first those that begin with them, then those of which a word does."""
         letters = self._letters
-        found = [(title, choice) for choice in self._choices if letters in (title := self.title(choice))]
+        titles = [(searchable(self.title(choice)), choice) for choice in self._choices]
+        found = [(title, choice) for title, choice in titles if letters in title]
         if letters:
             found.sort(key=lambda row: (not row[0].startswith(letters), f" {letters}" not in row[0]))
         return [choice for _, choice in found]

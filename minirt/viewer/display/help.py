@@ -11,6 +11,7 @@ from minirt.viewer.bindings import key_groups
 from minirt.viewer.display import overlay
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, fit_width, wrap
 from minirt.viewer.display.painter import Pixels
+from minirt.viewer.language import translated
 
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
@@ -32,7 +33,7 @@ def draw_help(pixels: Pixels, layout: str, search: str, max_size: int, number: i
     footer = f"search: {search}_" if search else "type to search    Esc, H, click: back to the picture"
     if len(pages) > 1:
         footer += f"    page {number} of {len(pages)}: arrows, wheel"
-    line = fit_width(footer, width, size)
+    line = fit_width(translated(footer), width, size)
     draw_text(pixels, MARGIN, height - MARGIN // 2 - measure(line, size)[1], line, MESSAGE_COLOUR, size=size)
 
 
@@ -63,7 +64,7 @@ def arrange(layout: str, search: str, width: int, height: int, size: int) -> lis
 def filled_columns(layout: str, search: str, width: int, size: int, capacity: int) -> Iterator[Column]:
     """Yield columns of at most `capacity` lines, but at least 3; no title is the last line of one."""
     lines: list[tuple[str, str]] = []
-    for title, rows in key_groups(layout, search):
+    for title, rows in key_groups(layout, search, translated):
         for index, row in enumerate(rows):
             block = wrapped(row, width, size)
             if index == 0:

@@ -15,6 +15,7 @@ from minirt.scene.writer import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import Value
+from minirt.viewer.language import translated
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
 MARGIN, PADDING = 10, 4  # pixels
@@ -58,14 +59,16 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLeve
     keys = hints(state, every=level == HudLevel.ALL)
     if level == HudLevel.LINE:
         rendered = f"    {status(shown)}" if shown else ""
-        line = fit_width(f"{element_line(state)}    {keys}{rendered}", width, size)
+        line = fit_width(f"{element_line(state)}    {translated(keys + rendered)}", width, size)
         draw_lines(pixels, MARGIN, line, TEXT_COLOUR, size)
         return 0
-    position = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
+    position = f"element {state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
     max_lines = max(2, (pixels.shape[0] // 3 - 4 * PADDING) // measure(" ", size)[1])  # in a third of the window
-    top = wrap(f"{element_line(state)}\n{keys}    {position}", width, size).split("\n")[: max_lines - 1]
+    top = wrap(f"{element_line(state)}\n{translated(f'{keys}    {position}')}", width, size).split("\n")[
+        : max_lines - 1
+    ]
     draw_lines(pixels, MARGIN, "\n".join(top), TEXT_COLOUR, size)
-    bottom = wrap("\n".join((*shown.about, status(shown, rate))), width, size) if shown else ""
+    bottom = wrap(translated("\n".join((*shown.about, status(shown, rate)))), width, size) if shown else ""
     bottom = last_lines(bottom, max_lines - len(top))
     if bottom:
         draw_lines(pixels, -MARGIN, bottom, TEXT_COLOUR, size)
@@ -176,10 +179,10 @@ def draw_panel(pixels: Pixels, panel: Panel, size: int) -> None:
     """Draw a panel in text of a size, above the messages; of a long list the rows around the chosen one."""
     line = measure(" ", size)[1]
     top = MARGIN + TOP * line
-    draw_on_dark(pixels, MARGIN, top, panel.title, MESSAGE_COLOUR, size=size)
+    draw_on_dark(pixels, MARGIN, top, translated(panel.title), MESSAGE_COLOUR, size=size)
     count = max(1, (pixels.shape[0] - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM)
     first = min(max(panel.chosen - count // 2, 0), max(len(panel.rows) - count, 0))
-    rows = panel.rows[first : first + count]
+    rows = [translated(row) for row in panel.rows[first : first + count]]
     if rows:
         top, left = top + line + 2 * PADDING, MARGIN + measure(MARK, size)[0]
         draw_on_dark(pixels, left, top, "\n".join(rows), ROW_COLOUR, size=size)

@@ -16,6 +16,7 @@ from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, Panel, wrap
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
+from minirt.viewer.language import translated
 
 # Shown until the first edit; the keys are the same on all keyboards.
 TIPS = """drag an object to move it, or nothing to look around
@@ -90,7 +91,8 @@ class Screen:
         elif self.tips and self.level and not message:
             message = TIPS
         if message and not self.help:  # above the text at the bottom
-            overlay.draw_lines(self.frame, -MARGIN - bottom, wrap(message, width, size), MESSAGE_COLOUR, size)
+            words = wrap(translated(message), width, size)
+            overlay.draw_lines(self.frame, -MARGIN - bottom, words, MESSAGE_COLOUR, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 
