@@ -172,7 +172,7 @@ def test_the_example_of_the_subject_is_read_and_a_camera_that_shows_it_is_named(
     ended = run(path, "-o", "printed.png", "--size", "32x18")
     assert ended.status == 0
     *_, notice = ended.err.splitlines()
-    assert notice.startswith("notice: nothing is in view; this line would show the scene: C ")
+    assert notice.startswith("notice: the eye is in plane 1; this line would show the scene: C ")
     camera = notice[notice.index("C ") :]
     lines = [line for line in Path(path).read_text().splitlines() if not line.startswith("C ")]
     (folder / "shown.rt").write_text("\n".join([*lines, camera]))

@@ -106,7 +106,7 @@ def notice_about(scene: Scene, pixels: np.ndarray) -> str:
     if len(seen) and not is_lit(scene):
         return "no light is on: all that is in view is black"
     reason = reason_for(scene, arrays, seen)
-    camera = showing_camera(scene, arrays, width, height)
+    camera = reason and showing_camera(scene, arrays, width, height)
     return f"{reason}; this line would show the scene: {camera}" if camera else reason
 
 
@@ -119,7 +119,8 @@ def is_lit(scene: Scene) -> bool:
 
 
 def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
-    """Return why a picture has one colour, in which the shapes with the indices `seen` are in view."""
+    """Return why a picture has one colour, in which the shapes with the indices `seen` are in view; empty if they are
+    the reason."""
     eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
     for index, shape in enumerate(scene.shapes):
         flat = shape.flat()
@@ -128,7 +129,7 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
         if not flat and encloses(shape, eye):
             return f"the eye is inside {shape_name(arrays, arrays.listed[index])}"
     if len(seen):
-        return f"only {shape_name(arrays, arrays.listed[seen[0]])} is in view, in one colour"
+        return ""
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
     is_behind = depths.max() < 0 and not any(kind.infinite for kind in arrays.group_numbers)
     return "nothing is in view: all is behind the eye" if is_behind else "nothing is in view"

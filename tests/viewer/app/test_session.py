@@ -129,7 +129,8 @@ def test_a_first_picture_with_nothing_in_view_is_remarked_on_once():
     session.update()
     while harness.painter.busy:
         harness.finish(0.001)
-    assert session.state.message.startswith("nothing is in view; this line would show the scene: C ")
+    told = "nothing is in view: all is behind the eye; this line would show the scene: C "
+    assert session.state.message.startswith(told)
     harness.play("press d")
     assert session.state.message == ""
     harness.finish(0.001)
