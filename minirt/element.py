@@ -19,6 +19,7 @@ from minirt.fields import Field, FieldError
 from minirt.records import Immutable, record
 
 Ask = TypeVar("Ask", bound=Callable[..., Any])
+Kind = TypeVar("Kind", bound="Element")
 cached_per_kind = cast("Callable[[Ask], Ask]", cache)  # type checkers take no class for hashable
 
 
@@ -92,6 +93,10 @@ class Element(Record):
         conflict = self.conflict()
         if conflict:
             raise ElementError(" ".join((self.title, *conflict)))
+
+    def as_kind(self, kind: type[Kind]) -> Kind:
+        """An element of another kind with the same fields, such as a further light for a light."""
+        return kind(**vars(self) | {"source": ""})
 
     def conflict(self) -> tuple[str, str] | None:
         """A field that contradicts the others, by name, and what it must be; None if there is none."""

@@ -127,6 +127,7 @@ output:
 --error=E  with --samples auto: sample until the estimated error is at most E (0.002)
 --time=SECONDS  with --samples auto: sample for that long
 --strict  exit with status 1 when the picture has not reached the error that --error asks for
+--camera=N  camera of the picture and the window, in the order of the file (1)
 --tone={{plain,srgb,filmic}}  how light becomes colour, in place of the camera's tone (plain)
 --exposure=EV  light times two to this power, in place of the camera's (0)
 --dither  dither with blue noise instead of rounding to 8 bits
@@ -160,7 +161,8 @@ inspect:
 -v --verbose  report each step and its duration
 --version  print the version
 """
-DEFAULTS = {"keys": "auto", "text_scale": 1.0, "precision": "double"}  # of options that are not off or unset without
+# Defaults of options that are not off or unset without one.
+DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "precision": "double", "camera": 1}
 KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text
     **dict.fromkeys(("output", "fallback", "replay", "report"), file_name),
     **dict.fromkeys(("error", "time"), number),
@@ -177,6 +179,7 @@ KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more
     "text_scale": partial(number, low=TEXT_SCALES[0], high=TEXT_SCALES[1]),
     "threads": partial(whole_number, low=1, high=1024),
     "memory": memory_size,
+    "camera": partial(whole_number, low=1, high=9999),
     "depth": partial(whole_number, low=0, high=MAX_DEPTH),
     "cluster": cluster,
 }

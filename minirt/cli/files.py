@@ -39,8 +39,10 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False) -
             reading = load(path, options.lenient, new=new)
     for notice in reading.notices:
         tell(f"notice: {notice}", stream)
-    scene = reading.scene
-    return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene
+    scene = reading.scene.mirrored() if options.left_handed else reading.scene
+    if options.camera > len(scene.cameras):
+        raise RenderError(f"{path} has {len(scene.cameras)} cameras: there is no --camera {options.camera}")
+    return scene.seen_by(options.camera)
 
 
 @contextmanager
@@ -80,7 +82,9 @@ def with_camera_options(scene: Scene, options: argparse.Namespace) -> Scene:
     """Return the scene with the tone and the exposure that the options ask for."""
     given = {"tone": options.tone, "exposure": options.exposure}
     changes = {name: value for name, value in given.items() if value is not None}
-    return scene.replace(scene.camera, **changes) if changes else scene
+    for camera in scene.cameras if changes else ():
+        scene = scene.replace(camera, **changes)
+    return scene
 
 
 def choose_example(parser: Arguments, options: argparse.Namespace, arguments: Sequence[str]) -> None:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from itertools import zip_longest
 from pathlib import Path
 
-from minirt.cli.arguments import MAX_SIDE
+from minirt.cli.arguments import DEFAULTS, MAX_SIDE
 from minirt.errors import FileError, did_you_mean
 from minirt.helpers import file_io
 
@@ -21,8 +21,8 @@ from minirt.helpers import file_io
 # samples mean something else.
 PICTURES = ("size", "samples", "quality", "depth", "precision", "dither", "metadata", "lenient", "left_handed")
 CONFIGURABLE = (*PICTURES, "keys", "watch", "threads", "memory", "verbose")
-CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "dither", "left_handed")
-IN_WINDOWS_TOO = ("size", "depth", "precision", "left_handed")
+CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "dither", "camera", "left_handed")
+IN_WINDOWS_TOO = ("size", "depth", "precision", "camera", "left_handed")
 LARGEST = 2**16  # bytes of a configuration file
 BASH = """_miniRT() {{
     local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}"
@@ -114,8 +114,7 @@ def settings_text(options: argparse.Namespace, width: int, height: int) -> str:
     """Return the settings of a picture of this size as options: `--size 640x480 --samples 16`."""
     values = {name: getattr(options, name) for name in CARRIED} | {"size": f"{width}x{height}"}
     values["region"] = options.region and ",".join(map(str, options.region))
-    if values["precision"] == "double":
-        values["precision"] = None
+    values |= {name: None for name, usual in DEFAULTS.items() if values.get(name) == usual}
     given = {"--" + name.replace("_", "-"): value for name, value in values.items() if value not in (None, False)}
     return " ".join(option if value is True else f"{option} {value}" for option, value in given.items())
 

@@ -25,7 +25,7 @@ from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.sampling.packets import classify_call
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Scene, parse
+from minirt.scene import Camera, Scene, parse
 
 
 class BackgroundCompiler:
@@ -194,7 +194,7 @@ def minimal_scene(scene: Scene) -> Scene:
     shapes = [shape.some(np.arange(1)) for shape in examples(scene).values()]
     more = min(some_primitives(scene), SMALL + 1) - len(shapes)
     background = (scene.background,) if scene.background else ()
-    return Scene((scene.camera, *background, *scene.lights, *shapes, *shapes[:1] * more), scene.file)
+    return Scene((scene.camera.as_kind(Camera), *background, *scene.lights, *shapes, *shapes[:1] * more), scene.file)
 
 
 # With so many shapes parallel light needs a BVH.

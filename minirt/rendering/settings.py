@@ -196,7 +196,7 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
 def identity(scene: Scene, settings: str) -> str:
     """Return a hash of a scene, the files that it names, the settings and the kernel. FileError where a file cannot be
     read."""
-    found = hashlib.sha256(f"{fingerprint_of(V3)} {settings}\n{dump(scene)}".encode())
+    found = hashlib.sha256(f"{fingerprint_of(V3)} {settings} {scene.shown}\n{dump(scene)}".encode())
     found.update(repr([mesh.triangles.materials for mesh in scene.meshes]).encode())
     for name in sorted({name for element in scene.elements for name in files_of(element)}):
         data = file_io.read(scene.beside(name), file_io.LARGEST_ASSET)

@@ -61,8 +61,9 @@ def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
 
 def with_element(scene: Scene, added: Any) -> Scene:
     """Return a scene with an element more; a background and a camera replace those of the scene."""
-    replaced = type(added) if isinstance(added, Background | Camera) else ()
-    return Scene((*(each for each in scene.elements if not isinstance(each, replaced)), added), scene.file)
+    if isinstance(added, Camera):
+        return scene.replace(scene.camera, added)
+    return scene.remove(*scene.of(Background) if isinstance(added, Background) else ()).add(added)
 
 
 class InvisibleElements:

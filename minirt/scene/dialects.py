@@ -18,7 +18,7 @@ from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, T
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
 from minirt.scene.element_reader import HEX_COLOUR
-from minirt.scene.elements import LAMPS, Ambient, Camera, Resolution
+from minirt.scene.elements import LAMPS, Ambient, Camera, FurtherCamera, Resolution
 from minirt.scene.lines import Line, Log, first_unprintable, line_from
 from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
 
@@ -27,7 +27,6 @@ LEFT_OUT = "words without a meaning here are left out"
 SETTINGS = "settings of other programs are left out"
 MISSING = "shapes are missing"
 LIGHTS = "lights that cannot be read are left out"
-CAMERAS = "cameras behind the first are left out"
 CLAMPED = "numbers out of range become the nearest that can be"
 DECIMALS = "decimal commas become points"
 SCALED = "directions are scaled to length 1"
@@ -43,7 +42,7 @@ ABSENT = "pictures that cannot be read are left out"
 HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
 
 # What lines of other programs begin with: elements by another name, and what is no element.
-CODES = {"c": "C", "cam": "C", "camera": "C", "obj": "ob", "cu": "bo", "cube": "bo", "ci": "di"}
+CODES = {"cam": "c", "camera": "c", "obj": "ob", "cu": "bo", "cube": "bo", "ci": "di"}
 CUBE = {"cu", "cube"}
 SETTING = re.compile(
     r"@?(?:ma?t|mtl|tex|txt?|xpm|bmp|img|sky|set|render|res|max|aa|alias|win|title|name|depth|sampl|thread|pat)\w*[:=]?"
@@ -136,7 +135,7 @@ def colours_of_materials(sources: list[str]) -> dict[str, str]:
     return found
 
 
-def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder: Path | None) -> Translation | None:
+def translated(line: Line, colours: Mapping[str, str], folder: Path | None) -> Translation | None:
     """Translate a line: to '' where it is no element, or one that is not known; None where it stays an error.
 
     `colours` are those of named materials, and pictures are looked for in `folder`.
@@ -149,8 +148,6 @@ def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder:
         return None
     code, *values = words
     kind = SPELLINGS.get(CODES.get(code.lower(), code)) or SPELLINGS.get(code.lower()) or SPELLINGS.get(code.upper())
-    if kind is Camera and has_camera:
-        return Translation("", ((CAMERAS, code),))
     if kind is None:
         is_shape = any(map(TRIPLE.fullmatch, values)) and not SETTING.fullmatch(code)
         return Translation("", ((MISSING if is_shape else SETTINGS, code),))
@@ -160,7 +157,7 @@ def translated(line: Line, has_camera: bool, colours: Mapping[str, str], folder:
     try:
         spelled = fields_of_words(kind, cube(values) if code in CUBE else values, colours, changes)
     except FieldError:
-        return Translation("", ((SETTINGS, code),)) if kind is Resolution else None
+        return Translation("", ((SETTINGS, code),)) if kind in (Resolution, FurtherCamera) else None
     if spelled is None:
         unread = MISSING if kind in SHAPES else LIGHTS if kind in LAMPS else SETTINGS
         return Translation("", ((unread, code),)) if values and kind not in (Ambient, Camera) else None
@@ -343,6 +340,16 @@ def are_readable(files: Iterable[PictureFile], folder: Path) -> bool:
     return True
 
 
+def promote_camera(items: list[Any], seen: dict[str, int], log: Log) -> None:
+    """Let the first further camera be the camera of a file that has none, as the older subject means it."""
+    index = next((index for index, item in enumerate(items) if isinstance(item, FurtherCamera)), None)
+    if index is not None and Camera.code not in seen:
+        first = items[index]
+        items[index] = first.as_kind(Camera).replace(source=first.source)
+        seen[Camera.code] = seen[first.code]
+        log.change(line_from(seen[first.code], first.source), RENAMED, first.code)
+
+
 def check_shapes_left(items: list[Any], log: Log) -> None:
     """Report that a file has no shape that can be read, but others."""
     if MISSING in log.changes and not any(isinstance(item, SHAPES) for item in items):
@@ -353,6 +360,6 @@ def check_shapes_left(items: list[Any], log: Log) -> None:
 def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
     """Yield what the first of the lines that a strict reader refuses may mean."""
     for number, text in list(dict.fromkeys((each.line, each.text) for each in problems))[:MOST_SUGGESTED]:
-        meant = translated(line_from(number, text), has_camera=False, colours={}, folder=None)
+        meant = translated(line_from(number, text), colours={}, folder=None)
         if meant and meant.text:
             yield f"line {number}: did you mean '{printable(meant.text)}'?"

@@ -15,7 +15,8 @@ from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real,
 from minirt.records import record
 
 # The public names, for type checkers: those of `PUBLIC`, which `minirt` offers when it runs.
-__all__ = "Ambient", "Background", "Camera", "FurtherLight", "Lamp", "Light", "ParallelLight", "Resolution", "SpotLight"
+__all__ = ["Ambient", "Background", "Camera", "FurtherCamera", "FurtherLight", "Lamp", "Light", "ParallelLight"]
+__all__ += ["Resolution", "SpotLight"]
 
 ENDS = "renders as the nearest angle that can be drawn"
 FieldOfView = partial(Real, unit="degree", low=0.0, high=180.0, step=2.0, ends=ENDS)
@@ -92,6 +93,16 @@ class Camera(Element):
         if not any((x, y, z)):
             raise ValueError("camera eye and target must be two different points")
         return cls(eye, unit((x, y, z)), fov, roll)
+
+
+@record()
+class FurtherCamera(Camera):
+    """`c x,y,z dx,dy,dz fov ...`: any number of further cameras, with the attributes of the first.
+
+    `Scene.seen_by` chooses the one that pictures show.
+    """
+
+    code, title, plural, once, required = "c", "further camera", "further_cameras", False, False
 
 
 @record()
@@ -210,7 +221,7 @@ class SpotLight(Lamp):
 
 
 LAMPS = (Light, FurtherLight, ParallelLight, SpotLight)
-PUBLIC = {kind.__name__: kind for kind in (Resolution, Ambient, Camera, Background, Lamp, *LAMPS)}
+PUBLIC = {kind.__name__: kind for kind in (Resolution, Ambient, Camera, FurtherCamera, Background, Lamp, *LAMPS)}
 
 
 def linear_combination(a: float, u: Triple, b: float, v: Triple) -> Triple:

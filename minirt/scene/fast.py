@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from functools import cache
 
 from minirt.element import Element, cached_per_kind, positional_fields
+from minirt.scene.elements import FurtherCamera
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS
 
@@ -21,11 +22,11 @@ FEW_LINES = 100  # of a file: the diagnosing reader reads them before the patter
 
 @cache
 def frequent_kinds() -> dict[str, type[Element]]:
-    """Return the kinds that a scene may have many of, by identifier: for the others the fast path does not pay."""
+    """Return the kinds that a scene may have thousands of, by identifier: for others the fast path does not pay."""
     return {
         code: kind
         for code, kind in ELEMENTS.items()
-        if not kind.once and all(field.plain for field in positional_fields(kind))
+        if not kind.once and kind is not FurtherCamera and all(field.plain for field in positional_fields(kind))
     }
 
 

@@ -13,7 +13,7 @@ from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
-from minirt.scene.elements import Ambient, FurtherLight, Light
+from minirt.scene.elements import Ambient, Camera, FurtherCamera, FurtherLight, Light
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
@@ -22,6 +22,7 @@ from minirt.shapes.mesh import Mesh
 
 NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
 BLOCK = 4096  # lines that the fast path reads at once
+FURTHER: dict[type[Element], type[Element]] = {Light: FurtherLight, Camera: FurtherCamera}  # repeatable kinds
 
 
 class Reading(NamedTuple):
@@ -40,9 +41,7 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
     if new and not data.strip():
         data = NEW
     scene, notices = parse(data, path, lenient, files.picture_folder(path) if files.is_picture(path) else None)
-    if left_handed:
-        scene = scene.replace(scene.camera, left_handed=True)
-    return Reading(scene, notices)
+    return Reading(scene.mirrored() if left_handed else scene, notices)
 
 
 def parse(
@@ -97,6 +96,8 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
                 log.error(line, "too many errors: the rest of the file is not read", 1)
                 return items
         items += [item for item in block if item is not None]
+    if log.lenient:
+        dialects.promote_camera(items, seen, log)
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
     if log.lenient:
@@ -113,7 +114,7 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
 
     known, before, notices = dict(seen), len(log.errors), len(log.notices)
     item = read_line(line, seen, log)
-    translation = None if item else dialects.translated(line, dialects.Camera.code in known, colours, log.folder)
+    translation = None if item else dialects.translated(line, colours, log.folder)
     if translation is None:
         return item
     errors = log.errors[before:]
@@ -148,10 +149,11 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     errors = len(log.errors)
     if kind.once and first != line.number:
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
-        if kind is not Light:
+        further = FURTHER.get(kind)
+        if further is None:
             log.error(line, message, *words[0].span(None))
-        elif log.tolerate(line, message, f"reads it as '{FurtherLight.code}'", *words[0].span(None)):
-            kind = FurtherLight
+        elif log.tolerate(line, message, f"reads it as '{further.code}'", *words[0].span(None)):
+            kind = further
     slots = assign_words(kind, words, line, log)
     values = parse_slots(slots, line, log)
     if len(log.errors) > errors:
@@ -194,6 +196,8 @@ def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
             message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"
             if kind is Ambient:
                 log.tolerate(line, message, "renders without", 1)
+            elif kind is Camera and (further := seen.get(FurtherCamera.code)):
+                log.error(line, f"{message}; the '{FurtherCamera.code}' in line {further} is a further one", 1)
             else:
                 log.error(line, message, 1)
 

@@ -6,11 +6,11 @@ import re
 
 from minirt.element import Element
 from minirt.errors import nearest
-from minirt.scene.elements import LAMPS, Ambient, Background, Camera, Resolution
+from minirt.scene.elements import LAMPS, Ambient, Background, Camera, FurtherCamera, Resolution
 from minirt.shapes import ALL_KINDS
 
 SHAPES = tuple(kind.element for kind in ALL_KINDS)
-KNOWN: tuple[type[Element], ...] = (Resolution, Ambient, Background, Camera, *LAMPS, *SHAPES)
+KNOWN: tuple[type[Element], ...] = (Resolution, Ambient, Background, Camera, FurtherCamera, *LAMPS, *SHAPES)
 
 ELEMENTS = {element.code: element for element in KNOWN}
 

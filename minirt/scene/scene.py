@@ -16,7 +16,17 @@ from minirt.errors import check_whole
 from minirt.helpers import file_io
 from minirt.records import Immutable
 from minirt.scene import writer
-from minirt.scene.elements import Ambient, Background, Camera, FurtherLight, Lamp, ParallelLight, Resolution, SpotLight
+from minirt.scene.elements import (
+    Ambient,
+    Background,
+    Camera,
+    FurtherCamera,
+    FurtherLight,
+    Lamp,
+    ParallelLight,
+    Resolution,
+    SpotLight,
+)
 from minirt.scene.pages import Answer, Item, Page, replace_item, split_into_pages
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -48,12 +58,13 @@ MISSING = "# missing: "  # begins the comment that a lenient reader makes of a s
 class Scene(Immutable):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
-    `scene.spheres`, `scene.planes` and so on are the elements of one kind. ValueError without exactly one camera, or
-    with two elements of a kind that may be there once.
+    `scene.spheres`, `scene.planes` and so on are the elements of one kind. ValueError without exactly one camera beside
+    further cameras, or with two elements of a kind that may be there once.
     """
 
     file: Path | None  # from which it was read
     pages: tuple[Page, ...]
+    shown: int = 0  # index in `cameras` of the one that pictures show
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
         self._set_pages(tuple(split_into_pages(tuple(items))), file)
@@ -68,7 +79,7 @@ class Scene(Immutable):
                 raise ValueError(f"a scene has {number} one {kind.title}, got {count}")
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Scene) or self.file != other.file:
+        if not isinstance(other, Scene) or (self.file, self.shown) != (other.file, other.shown):
             return False
         return self.pages == other.pages or self.items == other.items
 
@@ -81,7 +92,11 @@ class Scene(Immutable):
     elements = every(Element, "All elements, without comments and blank lines, in the order of the file.")
     shapes = every(Shape, "All shapes, in the order of the file.")  # type: ignore[type-abstract]
     lights = every(Lamp, "All light sources, in the order of the file.")
-    camera: cached_property[Camera] = cached(lambda scene: scene.of(Camera)[0], "The camera.")
+    cameras: cached_property[tuple[Camera, ...]] = cached(
+        lambda scene: tuple(sorted(scene.of(Camera), key=lambda camera: isinstance(camera, FurtherCamera))),
+        "The camera, and then the further cameras in the order of the file.",
+    )
+    camera: cached_property[Camera] = cached(lambda scene: scene.cameras[scene.shown], "The camera of pictures.")
     ambient = first(Ambient, "The ambient light, if the file has one.")
     background = first(Background, "The background of rays that hit nothing; None is black.")
     missing: cached_property[tuple[str, ...]] = cached(
@@ -111,7 +126,7 @@ class Scene(Immutable):
         resolutions: tuple[Resolution, ...]
         ambients: tuple[Ambient, ...]
         backgrounds: tuple[Background, ...]
-        cameras: tuple[Camera, ...]
+        further_cameras: tuple[FurtherCamera, ...]
         further_lights: tuple[FurtherLight, ...]
         parallel_lights: tuple[ParallelLight, ...]
         spot_lights: tuple[SpotLight, ...]
@@ -146,7 +161,10 @@ class Scene(Immutable):
 
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
         """Return the scene with `old` replaced by `new`, or with some of its fields changed; ValueError without it."""
-        return self._edited(self.index(old), object, old.replace(**changes) if new is None else new)
+        new = old.replace(**changes) if new is None else new
+        if isinstance(old, Camera) and isinstance(new, Camera) and type(new) is not type(old):
+            new = new.as_kind(type(old))
+        return self._edited(self.index(old), object, new)
 
     def add(self, *elements: Element) -> Scene:
         """Return the scene with further elements at its end; ValueError where a kind may be there only once.
@@ -155,7 +173,25 @@ class Scene(Immutable):
         """
         items = self.items
         end = len(items) - (items[-1:] == ("",))  # before the blank line that is the end of a file
-        return Scene((*items[:end], *elements, *items[end:]), self.file)
+        return Scene((*items[:end], *elements, *items[end:]), self.file).seen_by(self.shown + 1)
+
+    def seen_by(self, number: int) -> Scene:
+        """Return the scene as camera `number` of the file sees it, from 1; ValueError where there is none.
+
+        minirt.render(scene.seen_by(2), 640, 480)
+        """
+        if not 1 <= number <= len(self.cameras):
+            raise ValueError(f"the scene has {len(self.cameras)} cameras, got the number {number}")
+        scene = object.__new__(Scene)
+        vars(scene).update(vars(self), shown=number - 1, camera=self.cameras[number - 1])
+        return scene
+
+    def mirrored(self) -> Scene:
+        """Return the scene with pictures as of left-handed coordinates."""
+        scene = self
+        for camera in self.cameras:
+            scene = scene.replace(camera, left_handed=True)
+        return scene
 
     def remove(self, *elements: Element) -> Scene:
         """Return the scene without some elements; ValueError when one is not in the scene, or is its camera."""
@@ -195,6 +231,10 @@ class Scene(Immutable):
         index = [place for place, item in enumerate(page.items) if isinstance(item, sort)][index]
         scene = object.__new__(Scene)
         scene._set_pages((*self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]), self.file)
+        if self.shown:  # the same camera, or what replaces it, or the first one
+            kept = [number for number, camera in enumerate(scene.cameras, 1) if camera is self.camera]
+            replaced = self.shown + 1 if len(scene.cameras) == len(self.cameras) else 1
+            scene = scene.seen_by(kept[0] if kept else replaced)
         if "shapes" in vars(self) and not any(isinstance(item, Shape) for item in (page.items[index], *new)):
             vars(scene)["shapes"] = self.shapes
         return scene

@@ -37,12 +37,15 @@ def line_of(element: Element) -> str:
     log = Log("", lenient=True)
     words = split_line(line, log) if not {"\n", "\0"} & set(line.source) else None
     written = identify(words[0], line, log) if words else None
-    # A lenient reader makes a FurtherLight, a subclass of Light, of a second `L`.
-    slots = assign_words(kind, words, line, log) if words and written and issubclass(kind, written) else []
+    # A lenient reader makes a FurtherLight of a second `L`, and a Camera of the first `c`.
+    is_alike = written and fields_of(written) == fields_of(kind)
+    slots = assign_words(kind, words, line, log) if words and is_alike else []
     values = parse_slots(slots, line, log)
     if not words or not values or log.errors:
         return describe(element)
-    if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
+    if written is kind and all(
+        getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)
+    ):
         return line.source
     before, _, after = line.source.partition(line.text)
     return before + rewrite(line.text, element, words, slots, values) + after

@@ -83,6 +83,18 @@ def test_a_picture_is_rendered_again_from_itself(run: Run, folder: Path, setting
     assert len(minirt.load("first.png").shapes) == 2
 
 
+def test_a_picture_shows_one_of_several_cameras_and_carries_its_number(run: Run, folder: Path) -> None:
+    (folder / "two.rt").write_text(f"{SCENE}c 5,0,0 -1,0,0 50\n")
+    assert run("two.rt", "-o", "first.png", "--size", "40x30", "--camera", "2").status == 0
+    expected = minirt.render(minirt.load("two.rt").seen_by(2), 40, 30).array
+    assert not np.array_equal(expected, minirt.render(minirt.load("two.rt"), 40, 30).array)
+    assert run("first.png", "-o", "again.png").status == 0
+    for name in ("first.png", "again.png"):
+        assert np.array_equal(np.asarray(pillow.open(name)), expected)
+    ended = run("two.rt", "--check", "--camera", "3")
+    assert (ended.status, "two.rt has 2 cameras: there is no --camera 3" in ended.err) == (1, True)
+
+
 def test_options_win_over_the_settings_of_a_picture(run: Run, folder: Path) -> None:
     assert run("ball.rt", "-o", "first.png", "--size", "40x30", "--samples", "3").status == 0
     assert run("first.png", "-o", "other.png", "--size", "20x10").status == 0

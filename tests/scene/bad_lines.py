@@ -13,14 +13,13 @@ Case = tuple[str, int, str]  # a line, the column of its error, a part of the me
 IDENTIFIERS: list[Case] = [
     ("Sp 0,0,20 5 255,0,0", 1, "unknown element 'Sp', did you mean 'sp'?"),
     ("a 0.2 255,255,255", 1, "unknown element 'a', did you mean 'A'?"),
-    ("c 0,0,0 0,0,1 70", 1, "did you mean 'C'?"),
     ("sphere 0,0,20 5 255,0,0", 1, "did you mean 'sp'?"),
     ("  xx 0,0,0", 3, "unknown element 'xx'"),
     ("sp: 0,0,20 5 255,0,0", 1, "unknown element 'sp:', did you mean 'sp'?"),
     ("ｓｐ 0,0,20 5 255,0,0", 1, "unknown element 'ｓｐ'"),
     ("sр 0,0,20 5 255,0,0", 1, "unknown element 'sр'"),  # the second letter is Cyrillic
     ("sp0,0,20 5 255,0,0", 3, "a blank is missing after 'sp'"),
-    ("0,0,20 5 255,0,0", 1, "a line begins with one of R, A, bg, C, L, l, dl, sl"),
+    ("0,0,20 5 255,0,0", 1, "a line begins with one of R, A, bg, C, c, L, l, dl, sl"),
     ("// a comment", 1, "a comment begins with '#', got '//'"),
     ("sp 0,0,20 5 255,0,0 // red", 21, "a comment begins with '#', got '//'"),
 ]
@@ -33,8 +32,16 @@ COUNTS: list[Case] = [
     ("sp 0,0,20 5 255,0,0 7", 21, "sphere has no further field '7': expected 'sp x,y,z diameter R,G,B'"),
     ("sp 0,0,20 5 255,0,0 ,", 20, "no blanks may stand around a comma"),
     (f"{SPHERE} {PLANE}", 25, "sphere has no further field 'pl' (one element a line)"),
-    ("L 0,0,20 0.5 roll:5", 14, "light has no attribute 'roll': it belongs to camera, shapes with an axis or a normal"),
-    ("tr 0,0,0 1,0,0 0,1,0 9,9,9 roll:5", 28, "triangle has no attribute 'roll': it belongs to camera, shapes with an"),
+    (
+        "L 0,0,20 0.5 roll:5",
+        14,
+        "light has no attribute 'roll': it belongs to camera, further camera, shapes with an axis or a normal",
+    ),
+    (
+        "tr 0,0,0 1,0,0 0,1,0 9,9,9 roll:5",
+        28,
+        "triangle has no attribute 'roll': it belongs to camera, further camera, shapes with an",
+    ),
     ("bo 0,0,0 0,1,0 1,1,1 9,9,9 axis:1,0,0", 28, "box has no attribute 'axis': it belongs to spheres and meshes"),
     ("sp 0,0,20 5 255,0,0 axis:0,2,0", 28, "sphere axis y must be in [-1, 1], got 2"),
     ("sp 0,0,20 5 255,0,0 uv:2", 24, "sphere uv must be su,sv[,ou[,ov[,degrees]]], got '2'"),

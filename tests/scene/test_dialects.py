@@ -51,7 +51,8 @@ CASES = [
     ("cu 0,1,0 1,0,0 2,3,4 9,8,7", "bo 0,1,0 1,0,0 2,3,4 9,8,7", [dialects.RENAMED]),
     ("ci 0,1,0 0,1,0 2 9,8,7", "di 0,1,0 0,1,0 2 9,8,7", [dialects.RENAMED]),
     ("SP 0,0,20 12.6 10,0,255", BALL, [dialects.RENAMED]),
-    ("c 0,0,0 0,0,1 70", "", [dialects.CAMERAS]),
+    ("cam 0,0,0 0,0,1 70 9", "c 0,0,0 0,0,1 70", [dialects.LEFT_OUT, dialects.RENAMED]),
+    ("camera 0,1,0 10", "", [dialects.SETTINGS]),
     ("max_depth 8", "", [dialects.SETTINGS]),
     ("R 4 0", "", [dialects.SETTINGS]),
     ("sl 0,9,0 1.0 0,1,0 80 9,8,7", "", [dialects.LIGHTS]),
@@ -111,8 +112,13 @@ def test_errors_in_ambient_light_and_camera_and_hidden_characters_stay_errors(li
 def test_the_camera_of_the_older_subject_is_the_first_one() -> None:
     text = f"{AMBIENT}\nc 0,0,-9 0,0,1 60\nc 0,0,9 0,0,-1 60\nl 0,9,0 0.5 255,255,255\n{SPHERE}\n"
     scene, notices = parse(text, lenient=True)
-    assert scene.camera.position == (0, 0, -9)
-    assert [each.message for each in notices] == [f"{dialects.RENAMED}: c", f"{dialects.CAMERAS}: c"]
+    assert [each.position for each in scene.cameras] == [(0, 0, -9), (0, 0, 9)]
+    assert [each.message for each in notices] == [f"{dialects.RENAMED}: c"]
+    assert dump(scene) == text.replace("c", "C", 1)
+    with pytest.raises(SceneError, match=r"no camera: .*; the 'c' in line 2 is a further one"):
+        parse(text)
+    late = text.replace("c 0,0,9", "C 0,0,9")
+    assert [each.position for each in parse(late, lenient=True).scene.cameras] == [(0, 0, 9), (0, 0, -9)]
 
 
 def test_pictures_are_found_beside_the_file(tmp_path: Path) -> None:

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from minirt.element import Element
-from minirt.scene import Ambient, Camera, FurtherLight, Item, Light, Scene, dump, pages, parse, writer
+from minirt.rendering.packing.features import features
+from minirt.scene import Ambient, Camera, FurtherCamera, FurtherLight, Item, Light, Scene, dump, pages, parse, writer
 from minirt.scene.pages import PAGE_LENGTH, Page
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -20,6 +21,27 @@ from tests.scene.examples import SPHERE, scene_with
 CAMERA = Camera((0, 0, 0), (0, 0, 1), 70)
 BALL = Sphere((0, 0, 0), 1, (1, 2, 3))
 OTHERS: list[Element] = [BALL, Plane((0, 0, 0), (0, 1, 0), (1, 2, 3)), FurtherLight((0, 0, 0), 1)]
+
+
+def test_a_scene_is_seen_by_each_of_its_cameras() -> None:
+    further = FurtherCamera((9, 0, 0), (-1, 0, 0), 50, lens=0.5)
+    scene = Scene([further, BALL, CAMERA])
+    assert scene.cameras == (CAMERA, further)
+    seen = scene.seen_by(2)
+    assert (scene.camera, seen.camera) == (CAMERA, further)
+    assert (seen == scene, seen.items == scene.items, seen.seen_by(1) == scene) == (False, True, True)
+    for edited in (seen.add(BALL), seen.replace(BALL, diameter=2), seen.remove(BALL), pickle.loads(pickle.dumps(seen))):
+        assert edited.camera is further or edited.camera == further
+    assert seen.remove(further).camera is CAMERA
+    moved = seen.replace(further, Camera((1, 2, 3), (0, 0, 1), 40))
+    assert dump(moved).splitlines()[0] == "c 1,2,3 0,0,1 40"
+    assert moved.camera.position == (1, 2, 3)
+    assert [each.left_handed for each in seen.mirrored().cameras] == [True, True]
+    assert "lens" in features(seen)
+    assert "lens" not in features(scene)
+    for number in (0, 3):
+        with pytest.raises(ValueError, match=f"the scene has 2 cameras, got the number {number}"):
+            scene.seen_by(number)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from minirt.errors import SceneError
-from minirt.scene import FurtherLight, Light, dump, load, parse
+from minirt.scene import Camera, FurtherCamera, FurtherLight, Light, dump, load, parse
 from minirt.scene.lines import MAX_NOTICES
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
 
@@ -75,9 +75,20 @@ def test_later_lights_become_further_lights() -> None:
     scene, notices = parse(scene_with(*lines), "test.rt", lenient=True)
     assert [each.message for each in notices] == [f"{first.message} (2 places)"]
     assert [type(light) for light in scene.lights] == [Light, FurtherLight, FurtherLight, FurtherLight]
-    assert dump(scene) == scene_with(*lines)
+    strict = scene_with(LIGHT, *(line.replace("L", "l") for line in lines[1:]))
+    assert dump(scene) == strict
     moved = scene.replace(scene.lights[1], brightness=0.25)
-    assert dump(moved) == scene_with(*lines).replace("L 0,0,0 0.5", "l 0,0,0 0.25")
+    assert dump(moved) == strict.replace("l 0,0,0 0.5", "l 0,0,0 0.25")
+
+
+def test_later_cameras_become_further_cameras() -> None:
+    lines = (CAMERA, SPHERE, "C 0,0,9 0,0,-1 50 roll:9  # behind")
+    with pytest.raises(SceneError, match="a second camera: the first is in line 2, and there may be one"):
+        parse("\n".join((AMBIENT, *lines)))
+    scene, notices = parse("\n".join((AMBIENT, *lines)), lenient=True)
+    assert [each.message.endswith("(--lenient reads it as 'c')") for each in notices] == [True]
+    assert [(type(each), each.roll) for each in scene.cameras] == [(Camera, 0.0), (FurtherCamera, 9.0)]
+    assert dump(scene) == "\n".join((AMBIENT, CAMERA, SPHERE, "c 0,0,9 0,0,-1 50 roll:9  # behind"))
 
 
 def test_a_scene_without_ambient_light_is_tolerated() -> None:

@@ -40,8 +40,9 @@ lamps: list[minirt.Lamp] = [
     minirt.SpotLight((0, 9, 0), (0, -1, 0), 40, 0.5, rim=0.2),
 ]
 camera = minirt.Camera((0, 0, -10), (0, 0, 1), 60, tone="filmic", exposure=0.5)
+further = minirt.FurtherCamera((9, 0, 0), (-1, 0, 0), 50)
 made = minirt.Scene(
-    [minirt.Ambient(0.2, WHITE), camera, minirt.Background(RED), minirt.Resolution(16, 9), *lamps, ball]
+    [minirt.Ambient(0.2, WHITE), camera, further, minirt.Background(RED), minirt.Resolution(16, 9), *lamps, ball]
 )
 made = made.add(minirt.Plane((0, -2, 0), UP, WHITE)).remove(ball).add(ball)
 made = made.replace(ball, diameter=3).replace(made.camera, minirt.Camera.look_at((0, 1, -9), (0, 0, 5), fov=40))

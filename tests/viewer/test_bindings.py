@@ -201,6 +201,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "select previous": (("press Tab",), lambda _, after: after.state.selected == 1),
     "select at pointer": ((), lambda _, after: isinstance(after.state.element, Sphere)),
     "select camera": (SPHERE, lambda _, after: isinstance(after.state.element, Camera)),
+    "next camera": (("press Ctrl+D",), lambda _, after: after.state.scene.shown == 1),
     "select light": (SPHERE, lambda _, after: after.state.element.title == "light"),
     "left": (SPHERE, moved((-1, 0, 0))),
     "right": (SPHERE, moved((1, 0, 0))),

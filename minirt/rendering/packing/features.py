@@ -12,7 +12,7 @@ import numpy as np
 from minirt.element import Element, fields_of
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
-from minirt.scene import Background, Camera, Lamp, Scene
+from minirt.scene import Background, Lamp, Scene
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
@@ -75,7 +75,8 @@ def features(scene: Scene) -> frozenset[Hashable]:
     Of these "parallel", "transparent", "fades" and "smooth" are parts: parallel light, glass, fading reflections, and
     smooth meshes.
     """
-    return frozenset().union(*examples(scene), *(page.cached(features_beside_shapes) for page in scene.pages))
+    beside_shapes = (page.cached(features_beside_shapes) for page in scene.pages)
+    return frozenset({"lens"} if scene.camera.lens else ()).union(*examples(scene), *beside_shapes)
 
 
 def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
@@ -94,16 +95,14 @@ def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shap
 
 
 def features_beside_shapes(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    """The features that some elements use, but for shapes."""
+    """The features that some elements use, but for shapes and cameras."""
     return frozenset().union(*(features_of(item) for item in items if not isinstance(item, Shape)))
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:
-    """The features that an element uses, but for a shape."""
+    """The features that a light or a background uses."""
     if isinstance(item, Lamp) and item.brightness and any(item.colour):
         return item.features()
-    if isinstance(item, Camera) and item.lens:
-        return ("lens",)
     if isinstance(item, Background):
         return (("environment",) if isinstance(item.paint, str) else ("background",)) if any(item.paint) else ()
     return ()

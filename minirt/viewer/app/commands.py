@@ -146,7 +146,7 @@ def take_found(session: Session, found: FoundChanges) -> None:
     session.found_changes, session.screen.banner = None, ""
     scene = parse(found.text, session.path, session.lenient).scene
     if session.state.scene.camera.left_handed:
-        scene = scene.replace(scene.camera, left_handed=True)
+        scene = scene.mirrored()
     scene = with_edited_cameras(session.saved, scene, "value")
     session.show_file(state_after_reading(session.state, scene, None), session.saved)
     session.say(f"{found.title}: {named('Ctrl+S')} saves them, {named('Ctrl+Z')} takes them back")

@@ -13,7 +13,7 @@ from minirt.viewer.bindings import Binding
 from minirt.viewer.display.marks import SIZE, visible_icons
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart
-from minirt.viewer.editing.projection import AHEAD, Aim, aim, aim_at_top, extent
+from minirt.viewer.editing.projection import AHEAD, Aim, aim, aim_at_top, position_of
 from minirt.viewer.editing.state import index_of
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
@@ -94,8 +94,8 @@ class Mouse:
             icon = under[-1]  # which is drawn on top
             if selecting:
                 session.show(state.with_message("").select(icon.owner))
-            around = extent(state.scene.elements[icon.owner])
-            return around[0] if around else None
+            element = state.scene.elements[icon.owner]
+            return None if element is state.scene.camera else position_of(element)
         shape, point = session.surface_at(x, y)
         if selecting:
             state = state.with_message("" if shape else "there is nothing")

@@ -18,7 +18,7 @@ from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Mesh, Shape
 from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.motion import WORLD_AXES
-from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, projection_of, subtract
+from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, position_of, projection_of, subtract
 from minirt.viewer.editing.state import Frame, State, can_edit
 
 GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
@@ -111,18 +111,19 @@ def visible_icons(scene: Scene, selected: int | None, view: Projection, scale: f
     owners = []
     if every:
         owners = sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
-    elif selected is not None and not isinstance(scene.elements[selected], (Shape, Camera)):
-        owners = [selected]
+    elif selected is not None:
+        element = scene.elements[selected]
+        owners = [] if isinstance(element, Shape) or element is scene.camera else [selected]
     size = round(SIZE * scale)
     corner = view.width - size
     placed: list[Icon] = []
     for index in owners:
-        element = scene.elements[index]
-        around = extent(element)
-        at: Pixel | None = view.pixel(around[0]) if around else (corner, size)
-        corner -= 0 if around else round(1.5 * size)
+        owner = scene.elements[index]
+        place = None if owner is scene.camera else position_of(owner)
+        at: Pixel | None = view.pixel(place) if place else (corner, size)
+        corner -= 0 if place else round(1.5 * size)
         if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:
-            placed.append(Icon(index, round(at[0]), round(at[1]), element.code, colour_of(element)))
+            placed.append(Icon(index, round(at[0]), round(at[1]), owner.code, colour_of(owner)))
     return placed
 
 

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
-from minirt.scene import Camera
 from minirt.scene.writer import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
@@ -143,7 +142,7 @@ def hints(state: State, every: bool) -> str:
     """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
     active, title = state.active, state.element.title
     groups = [f"{title}: + - {active.name} {value_text(state, active)}" if active else title]
-    if isinstance(state.element, Camera):
+    if state.element is state.scene.camera:
         groups.append("wheel: nearer")
     if every or state.frame is not Frame.VIEW:
         groups.append(f"X: move {'in the ' if state.frame is Frame.VIEW else 'along the '}{state.frame.value}")

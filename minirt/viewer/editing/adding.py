@@ -9,7 +9,7 @@ from minirt.element import Element, Record, fields_of
 from minirt.fields import Direction, Field, Length, Lengths, MeshField, Picture, Point, Real, Triple, clamp_length
 from minirt.materials import Compound
 from minirt.rendering.packing.camera import camera_frame
-from minirt.scene import Light, Scene
+from minirt.scene import Camera, Light, Scene
 from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -40,6 +40,8 @@ def default_element(kind: type[Element], state: State) -> Element:
 
     LookupError if it needs a picture or mesh file and there is none beside the scene.
     """
+    if issubclass(kind, Camera):  # which sees what is seen now
+        return state.scene.camera.as_kind(kind)
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     made = default_record(kind, state, one_digit(aim.size))
     return settled(made, aim, state.scene, state.stride) if isinstance(made, Shape) else made

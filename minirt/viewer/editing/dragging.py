@@ -42,7 +42,7 @@ class DragStart(NamedTuple):
     @property
     def moves_camera(self) -> bool:
         """Whether there is no element to move or turn, so that the camera turns instead."""
-        return self.point is None or isinstance(self.element, Camera)
+        return self.point is None or self.element is self.camera
 
 
 def move(state: State, start: DragStart, x: int, y: int) -> State:
@@ -101,7 +101,7 @@ def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
 
 def turn(state: State, start: DragStart, x: int, y: int) -> State:
     """Turn the element about the picture's vertical and horizontal axes, or about an axis of the scene."""
-    if isinstance(start.element, Camera):
+    if start.element is start.camera:
         return look(state, start, x, y)
     right, down = drag_angles(start, x, y)
     turns = [(UPWARD, right), (RIGHT, -down)]

@@ -84,7 +84,7 @@ def move(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
     element = state.element
     if not field_names(type(element), Point):
         return state.with_message(f"{element.title} has no position to move")
-    frame = Frame.VIEW if isinstance(element, Camera) else state.frame
+    frame = Frame.VIEW if element is state.scene.camera else state.frame
     direction = WORLD_AXES.get(frame) or camera_frame(state.scene.camera)[axis]
     return motion.move(state, element, direction, sign * amount * state.stride, "move", now)
 
@@ -127,7 +127,7 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
 
 def turn_wheel(sign: float, state: State, amount: float, now: float) -> State:
     """Move the camera nearer to what it shows, or change the active value of any other element."""
-    if isinstance(state.element, Camera):
+    if state.element is state.scene.camera:
         return motion.approach(state, sign * amount, now)
     return change_value(sign, state, amount, now)
 
@@ -150,6 +150,7 @@ EDITS: dict[str, Edit] = {
     "select next": partial(states.select_neighbour, 1),
     "select previous": partial(states.select_neighbour, -1),
     "select camera": states.select_camera,
+    "next camera": states.see_by_next_camera,
     "select light": states.select_next_light,
     "left": partial(move, RIGHT, -1.0),
     "right": partial(move, RIGHT, 1.0),

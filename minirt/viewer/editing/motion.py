@@ -212,6 +212,6 @@ def focus(state: State, point: Triple | None, now: float) -> State:
 
 def reset_camera(state: State, _amount: float, now: float) -> State:
     """Reset the camera to that of the file."""
-    if state.scene.camera == state.file_camera:
-        return state
-    return state.change(state.scene.replace(state.scene.camera, state.file_camera), "", now)
+    scene = state.scene
+    in_file = state.file_cameras[scene.shown] if scene.shown < len(state.file_cameras) else scene.camera
+    return state if scene.camera == in_file else state.change(scene.replace(scene.camera, in_file), "", now)

@@ -42,7 +42,7 @@ class State:
 
     scene: Scene
     selected: int  # index into scene.elements
-    file_camera: Camera  # the camera as it is in the file
+    file_cameras: tuple[Camera, ...]  # the cameras as they are in the file
     size: float  # of the scene, in scene units; movements are proportional to it
     value_index: int = 0  # of the active value in `values` of the selected element
     frame: Frame = Frame.VIEW
@@ -117,14 +117,17 @@ class State:
 
     def edit_camera(self, camera: Camera, kind: str, now: float) -> State:
         """Replace the scene's camera by `camera`, whose changed numbers are rounded."""
-        return self.edit_element(camera, kind, now, next(self.scene.indices_of(Camera)))
+        return self.edit_element(camera, kind, now, index_of(self.scene, self.scene.camera))
 
 
 def with_edited_cameras(old: Scene, new: Scene, kind: str) -> Scene:
     """Note the values of cameras that were changed by a value, or in more than where they are and look."""
     for before, after in zip(old.of(Camera), new.of(Camera), strict=False):
         if before is not after and before.edited == after.edited:
-            looked = before.replace(position=after.position, direction=after.direction, roll=after.roll) == after
+            looked = (
+                before is old.camera
+                and before.replace(position=after.position, direction=after.direction, roll=after.roll) == after
+            )
             if not looked or kind.startswith(GIVEN):
                 given = tuple(getattr(after, each.name) for each in fields_of(Camera))
                 new = new.replace(after, after.replace(edited=given))
@@ -133,7 +136,7 @@ def with_edited_cameras(old: Scene, new: Scene, kind: str) -> Scene:
 
 def initial_state(scene: Scene) -> State:
     """State of the editor for a scene that was just opened."""
-    return State(scene, index_of(scene, scene.camera), scene.camera, scene_size(scene))
+    return State(scene, index_of(scene, scene.camera), scene.cameras, scene_size(scene))
 
 
 def index_of(scene: Scene, element: Element) -> int:
@@ -156,6 +159,16 @@ def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float 
 def select_camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """Select the camera."""
     return state.select(index_of(state.scene, state.scene.camera))
+
+
+def see_by_next_camera(state: State, _amount: float, now: float) -> State:
+    """Look through the next camera of the scene, cyclically, and select it."""
+    count = len(state.scene.cameras)
+    if count == 1:
+        return state.with_message("there is one camera: N adds further ones")
+    scene = state.scene.seen_by((state.scene.shown + 1) % count + 1)
+    state = state.select(state.selected).change(scene, "", now, index_of(scene, scene.camera))
+    return state.with_message(f"camera {scene.shown + 1} of {count}")
 
 
 def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
@@ -200,10 +213,11 @@ def stack_after_reading(state: State) -> tuple[Snapshot, ...]:
 def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
     """Return the state for the new scene of the file, with selection and undo history of the old state.
 
-    The current camera stays if the file has the same camera as `saved`, the scene that the file held before.
+    The current camera stays if the file has the same cameras as `saved`, the scene that the file held before.
     """
     new = initial_state(scene)
-    if saved and scene.camera == saved.camera:
+    if saved and scene.cameras == saved.cameras:
+        scene = scene.seen_by(old.scene.shown + 1)
         kept = old.scene.camera.replace(source=scene.camera.source, edited=scene.camera.edited)
         new = replace(new, scene=scene.replace(scene.camera, kept))
     same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)

@@ -28,7 +28,7 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
     if not repeatable:
         return state.with_message(f"a scene has one {element.title}")
-    copy = repeatable[0](**{each.name: getattr(element, each.name) for each in fields_of(type(element))})
+    copy = element.as_kind(repeatable[0])
     scene = state.scene.edit(state.selected, element, copy)
     state = replace(state.change(scene, "", now, state.selected + 1), value_index=0)
     return state.with_message(f"a copy of the {element.title}, at the same position")

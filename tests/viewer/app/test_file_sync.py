@@ -87,7 +87,7 @@ def test_the_camera_stays_unless_the_file_changes_it_and_is_saved_in_its_own_lin
     write(path, OTHER.replace("# looks along -z", "# elsewhere"))
     notify(harness)
     assert harness.session.state.scene.camera == moved
-    assert harness.session.state.file_camera == scene().camera
+    assert harness.session.state.file_cameras == scene().cameras
     harness.play(SAVE)
     assert "# elsewhere" in path.read_text()
     assert load(path).scene.camera.position[0] > 0

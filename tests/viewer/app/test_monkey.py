@@ -29,7 +29,7 @@ def test_random_input_in_memory_loses_nothing(seed: int, tmp_path) -> None:
         watch=lambda session: states.append(session.state),
     ).state
     scene = states[-1].scene  # before anything was undone
-    assert sum(isinstance(each, Camera) for each in scene.elements) == 1
+    assert sum(type(each) is Camera for each in scene.elements) == 1
     assert parse(dump(scene)).scene.items == scene.items
     parse(path.read_bytes(), path)
     assert undone.undo_stack == ()

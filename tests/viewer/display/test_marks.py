@@ -169,6 +169,25 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     assert seen.pixel(moved.lights[0].position) == pytest.approx((light.x - 20, light.y), abs=1)
 
 
+def test_a_further_camera_has_an_icon_that_can_be_dragged_unless_it_is_in_view() -> None:
+    text = TEXT + "c 2,2,5 0,0,-1 50\n"
+    state = played("resize 300x200", text=text).state
+    for seen, codes in ((state.scene, ["A", "C", "c"]), (state.scene.seen_by(2), ["A", "c"])):
+        view = projection_of(seen.camera, 300, 200)
+        placed = visible_icons(seen, None, view, 1.0, every=True)
+        assert sorted(icon.code for icon in placed) == codes
+    (icon,) = [
+        icon
+        for icon in visible_icons(state.scene, None, projection_of(state.scene.camera, 300, 200), 1.0, True)
+        if icon.code == "c"
+    ]
+    drag = f"drag {icon.x},{icon.y} {icon.x - 20},{icon.y}"
+    moved = played("resize 300x200", "press G", drag, text=text).state.scene
+    assert moved.camera == state.scene.camera
+    seen = projection_of(moved.camera, 300, 200)
+    assert seen.pixel(moved.cameras[1].position) == pytest.approx((icon.x - 20, icon.y), abs=1)
+
+
 def test_an_icon_has_the_colour_of_its_light() -> None:
     assert marks.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFFFF8001
     assert marks.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFFFF

@@ -41,7 +41,7 @@ def aiming(state: State, x: int, y: int) -> State:
     """The state that aims through the centre of a pixel of a window of SIZE."""
     camera = state.scene.camera
     found = aim(projection_of(camera, *SIZE), state.size, x + 0.5, y + 0.5, *pick(state.scene, *SIZE, x, y))
-    return State(state.scene, state.selected, state.file_camera, state.size, aim=found)
+    return State(state.scene, state.selected, state.file_cameras, state.size, aim=found)
 
 
 def added(text: str, x: int, y: int, kind: str = "sp") -> tuple[State, Shape]:

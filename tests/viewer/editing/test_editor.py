@@ -10,7 +10,7 @@ from minirt.element import Element
 from minirt.fields import FARTHEST, unit
 from minirt.fields.scalars import LEAST_LENGTH
 from minirt.records import record
-from minirt.scene import Camera, FurtherLight, Light, Scene
+from minirt.scene import Camera, FurtherCamera, FurtherLight, Light, Scene, dump
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -29,7 +29,7 @@ def selecting(kind: type, text: str | None = None) -> State:
     """The state with the first element of a kind selected, in which a step of a movement has length 1."""
     state = initial_state(scene(text) if text else scene())
     index = next(index for index, each in enumerate(state.scene.elements) if type(each) is kind)
-    return State(state.scene, index, state.file_camera, 1 / STEP_SHARE)
+    return State(state.scene, index, state.file_cameras, 1 / STEP_SHARE)
 
 
 def after(state: State, *actions: str, amount: float = 1.0) -> State:
@@ -211,6 +211,49 @@ class TestSelection:
         assert "no light" in after(selecting(Camera, "A 0 0,0,0\nC 0,0,0 0,0,1 60\n"), "select light").message
 
 
+CAMERAS = """\
+A 0 0,0,0
+C 0,0,10 0,0,-1 60
+c 10,0,0 -1,0,0 50
+c 0,10,0 0,-1,0 40  # from above
+sp 0,0,0 2 255,0,0
+"""
+
+
+class TestCameras:
+    def test_a_key_goes_through_them_without_an_edit_of_the_file(self):
+        state, seen = initial_state(scene(CAMERAS)), []
+        for _ in range(4):
+            state = apply(state, "next camera")
+            seen.append((state.scene.camera.fov, state.message))
+            assert state.element is state.scene.camera
+            assert dump(state.scene) == CAMERAS
+        assert [fov for fov, _ in seen] == [50, 40, 60, 50]
+        assert seen[0][1] == "camera 2 of 3"
+        assert after(state, "undo").scene.camera.fov == 60
+        assert "one camera" in after(selecting(Camera), "next camera").message
+
+    def test_the_one_in_view_is_moved_and_reset(self):
+        state = after(initial_state(scene(CAMERAS)), "next camera", "next camera")
+        moved = after(state, "forward")
+        assert dump(moved.scene).splitlines()[3].split()[1] == "0,9.8,0"
+        assert moved.scene.cameras[:2] == state.scene.cameras[:2]
+        assert dump(after(moved, "reset camera").scene) == CAMERAS
+
+    def test_another_one_moves_as_a_light_does(self):
+        state = initial_state(scene(CAMERAS)).select(2)
+        assert after(with_frame(state, "X"), "right").scene.cameras[1].position == (10.2, 0, 0)
+        assert after(state, "right").scene.camera is state.scene.camera
+        assert after(state, "nearer").scene.cameras[1].fov > 50
+
+    @pytest.mark.parametrize(("deleted", "fov"), [(2, 40), (3, 60)])
+    def test_the_one_in_view_stays_when_another_is_deleted(self, deleted, fov):
+        state = after(initial_state(scene(CAMERAS)), "next camera", "next camera")
+        state = after(state.select(deleted), "delete")
+        assert (len(state.scene.cameras), state.scene.camera.fov) == (2, fov)
+        assert state.element is state.scene.camera
+
+
 class TestStructure:
     def test_a_copy_follows_its_original_and_is_selected(self):
         state = after(selecting(Sphere), "duplicate")
@@ -219,16 +262,18 @@ class TestStructure:
         moved = after(state, "right")
         assert [each.centre for each in moved.scene.spheres] == [(0, 0, 0), (1, 0, 0)]
 
-    def test_the_copy_of_the_light_is_a_further_light(self):
-        state = after(selecting(Light), "duplicate")
-        assert type(state.element) is FurtherLight
-        assert state.element.position == (5, 5, 5)
-
-    @pytest.mark.parametrize("kind", [Camera, type(scene().ambient)])
-    def test_a_unique_element_is_neither_copied_nor_deleted(self, kind):
+    @pytest.mark.parametrize(("kind", "further"), [(Light, FurtherLight), (Camera, FurtherCamera)])
+    def test_the_copy_of_a_light_or_camera_is_a_further_one(self, kind, further):
         state = selecting(kind)
+        copy = after(state, "duplicate").element
+        assert type(copy) is further
+        assert copy.position == state.element.position
+
+    def test_a_unique_element_is_neither_copied_nor_deleted(self):
+        state = selecting(type(scene().ambient))
         assert after(state, "duplicate").scene is state.scene
         assert after(state, "delete").scene is state.scene
+        assert "needs its camera" in after(selecting(Camera), "delete").message
 
     def test_comments_are_kept(self):
         state = after(selecting(Sphere), "duplicate", "delete")
@@ -240,6 +285,6 @@ def test_every_action_gives_a_scene_for_every_element():
         start = initial_state(scene(text) if text else scene())
         for index in range(len(start.scene.elements)):
             for action in EDITS:
-                state = after(State(start.scene, index, start.file_camera, start.size), action, action)
+                state = after(State(start.scene, index, start.file_cameras, start.size), action, action)
                 assert isinstance(state.scene, Scene)
                 assert 0 <= state.selected < len(state.scene.elements)

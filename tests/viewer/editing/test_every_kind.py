@@ -141,7 +141,7 @@ def test_an_element_moves_and_turns(kind: type[Element], path: Path) -> None:
 def turn_is_seen(element: Element, action: str, points: int) -> bool:
     """Whether a turn of a new element, which stands upright, changes the picture."""
     if action == "turn right":  # about the vertical
-        return points > 1 or type(element) is Camera or isinstance(element, (Box, Square, Ellipsoid, Mesh))
+        return points > 1 or isinstance(element, (Camera, Box, Square, Ellipsoid, Mesh))
     return points > 1 or (bool(field_names(type(element), Direction)) and not isinstance(element, Sphere))
 
 
