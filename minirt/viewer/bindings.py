@@ -103,8 +103,9 @@ BINDINGS = (
     on_press(SELECT, "select next", "select the next element", "Tab"),
     on_press(SELECT, "select previous", "select the previous element", "Shift+Tab"),
     on_press(SELECT, "select at pointer", "select the element under the pointer", "left click"),
-    on_press(SELECT, "select camera", "select the camera", "C", "Backspace", "right click"),
-    on_press(SELECT, "next camera", "look through the next camera", "Shift+C"),
+    on_press(
+        SELECT, "select camera", "select the camera; again: look through the next one", "C", "Backspace", "right click"
+    ),
     on_press(SELECT, "select light", "select the next light", "L"),
     on_press(LOOK, "orbit", "orbit the camera around the selected element", "right drag"),
     on_press(LOOK, "pan", "slide the camera", "middle drag"),

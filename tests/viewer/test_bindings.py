@@ -200,8 +200,10 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "select next": ((), lambda _, after: after.state.selected == 2),
     "select previous": (("press Tab",), lambda _, after: after.state.selected == 1),
     "select at pointer": ((), lambda _, after: isinstance(after.state.element, Sphere)),
-    "select camera": (SPHERE, lambda _, after: isinstance(after.state.element, Camera)),
-    "next camera": (("press Ctrl+D",), lambda _, after: after.state.scene.shown == 1),
+    "select camera": (
+        ("press Ctrl+D", *SPHERE),
+        lambda _, after: isinstance(after.state.element, Camera) and after.state.scene.shown == 0,
+    ),
     "select light": (SPHERE, lambda _, after: after.state.element.title == "light"),
     "left": (SPHERE, moved((-1, 0, 0))),
     "right": (SPHERE, moved((1, 0, 0))),

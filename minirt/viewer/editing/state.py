@@ -156,16 +156,11 @@ def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float 
     return state.select(next(index for index in indices if can_edit(type(state.scene.elements[index]))))
 
 
-def select_camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Select the camera."""
-    return state.select(index_of(state.scene, state.scene.camera))
-
-
-def see_by_next_camera(state: State, _amount: float, now: float) -> State:
-    """Look through the next camera of the scene, cyclically, and select it."""
+def select_camera(state: State, _amount: float = 1.0, now: float = 0.0) -> State:
+    """Select the camera in view, or where it is selected look through the next one, cyclically."""
     count = len(state.scene.cameras)
-    if count == 1:
-        return state.with_message("there is one camera: N adds further ones")
+    if state.element is not state.scene.camera or count == 1:
+        return state.select(index_of(state.scene, state.scene.camera))
     scene = state.scene.seen_by((state.scene.shown + 1) % count + 1)
     state = state.select(state.selected).change(scene, "", now, index_of(scene, scene.camera))
     return state.with_message(f"camera {scene.shown + 1} of {count}")
