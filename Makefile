@@ -35,7 +35,7 @@ $(NAME): pyproject.toml
 .DELETE_ON_ERROR:
 
 further-packages:
-	$(call INSTALL,'.[report]')
+	$(call INSTALL,'.[report,panel]')
 
 # They draw the first picture of any scene at once. Where a change of the sources makes them useless, a program compiles
 # what its scene needs, in seconds: so `make run` does not wait for them.

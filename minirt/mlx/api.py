@@ -150,6 +150,16 @@ class Mlx(Calls):
         """Call callback(text, param) for typed text, in the keyboard's layout; repeats while a key is held."""
         return set_hook(win_ptr.hooks, "text", callback, param)
 
+    def mlx_overlay_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
+        """Call callback(painter, param) whenever the canvas is brought to the screen, to draw triangles over it.
+
+        `painter` is a `minirt.mlx.on_pyglet.triangles.Triangles`; without a graphics card there is none, and no call.
+        A vertex is x, y, u, v as float32 and RGBA as bytes, an index two bytes. Triangles of one texture are a run:
+        texture, clipping rectangle (left, top, right, bottom), count of indices, first index, vertex of index 0.
+        """
+        win_ptr.stale = True
+        return set_hook(win_ptr.hooks, "overlay", callback, param)
+
     def mlx_drop_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(file, param) for each file that is dropped on the window."""
         return set_hook(win_ptr.hooks, "drop", callback, param)

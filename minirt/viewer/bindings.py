@@ -158,6 +158,7 @@ BINDINGS = (
     on_press(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
     on_press(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
     on_press(WINDOW, "toggle help", "this help, or the picture", "H", "?"),
+    on_press(WINDOW, "toggle panel", "panel of elements, values, history and pictures, or no panel", "F1"),
     on_press(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),
     on_press(WINDOW, "smaller text", "smaller text and icons", "Ctrl+-"),
     on_press(WINDOW, "usual text", "text of the usual size", "Ctrl+0"),

@@ -17,6 +17,7 @@ from minirt.scene import Camera, describe, dump, load
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.commands import COMMANDS
+from minirt.viewer.app.events import PANEL
 from minirt.viewer.app.panels import LISTS, TYPE
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import (
@@ -48,7 +49,7 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, "select at pointer", TYPE}
+    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, "select at pointer", TYPE, PANEL}
     assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)
@@ -260,6 +261,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "copy camera": ((), lambda _, after: memory(after).clipboard == describe(scene().camera)),
     "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
     "toggle icons": ((), lambda before, after: (before.screen.icons, after.screen.icons) == (False, True)),
+    "toggle panel": ((), lambda _, after: "overlay" in after.window.hooks or "minirt[panel]" in after.state.message),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
     "larger text": ((), lambda before, after: after.screen.text_scale > before.screen.text_scale),
     "smaller text": ((), lambda before, after: after.screen.text_scale < before.screen.text_scale),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from functools import partial
+from typing import Any
 
 from pyglet.window import key as pyglet_key
 from pyglet.window import mouse as pyglet_mouse
@@ -47,6 +48,7 @@ class NativeWindow(Window):
         super().__post_init__()
         self._wheel = [0.0, 0.0]  # fractions of steps, which touch pads send
         self._is_reported = False  # the key event that pyglet handles now
+        self._triangles: Any = None  # draw the overlay, since there was one
         try:
             self.pyglet = PygletWindow(
                 self.display.request_turn,
@@ -103,7 +105,14 @@ class NativeWindow(Window):
     # --- pyglet's events; `on_text` is that of Window ---
 
     def on_draw(self) -> None:
-        self._texture.draw(self.shown, *self._framebuffer_size())
+        size = self._framebuffer_size()
+        self._texture.draw(self.shown, *size)
+        if "overlay" in self.hooks:
+            from minirt.mlx.on_pyglet.triangles import Triangles
+
+            self._triangles = self._triangles or Triangles()
+            self._triangles.resize((self.width, self.height), size)
+            self.display.call(self.hooks, "overlay", self._triangles)
 
     def on_key_press(self, symbol: int, modifiers: int) -> bool:
         if not self._is_reported:

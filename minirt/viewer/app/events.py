@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from minirt.mlx.events import MODIFIER_KEYS, Event
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
@@ -16,6 +17,11 @@ from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
 from minirt.viewer.editing.state import State
 
+if TYPE_CHECKING:
+    from minirt.viewer.panel.panel import Panel
+
+PANEL = "toggle panel"  # the action that opens the panel
+NO_PANEL = "the panel needs slimgui: pip install 'minirt[panel]'"
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
 
@@ -28,6 +34,7 @@ class EventDispatcher:
         self.typing = Typing(session)
         self.choosing = Choosing(session)
         self.help = Help(session)
+        self.panel: Panel | None = None  # once it was opened
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
         self._tick_hook = self.as_hook(self.on_tick)
 
@@ -44,15 +51,21 @@ class EventDispatcher:
             Event.MOTION_NOTIFY: self.mouse.on_motion,
             Event.ENTER_NOTIFY: partial(setattr, self.mouse, "inside", True),
             Event.LEAVE_NOTIFY: partial(setattr, self.mouse, "inside", False),
+            Event.FOCUS_IN: lambda: None,
             Event.FOCUS_OUT: session.release_button,
             Event.DESTROY_NOTIFY: session.quit,
         }
         for event, handler in handlers.items():
-            mlx.mlx_hook(window, event, 0, self.as_hook(handler), None)
-        mlx.mlx_text_hook(window, self.as_hook(self.on_press))
+            mlx.mlx_hook(window, event, 0, self.as_hook(partial(self.offer, event, handler)), None)
+        mlx.mlx_text_hook(window, self.as_hook(partial(self.offer, "text", self.on_press)))
         mlx.mlx_drop_hook(window, self.as_hook(self.on_drop))
         mlx.mlx_resize_hook(window, self.as_hook(self.on_resize))
         mlx.mlx_wake_hook(session.display, self.as_hook(self.on_wake))
+
+    def offer(self, event: Event | str, handler: Callable[..., object], *arguments: Any) -> None:
+        """Offer an event to the panel, and handle it if the panel does not take it."""
+        if not (self.panel and self.panel.takes(event, *arguments)):
+            handler(*arguments)
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -120,6 +133,8 @@ class EventDispatcher:
         self.continue_with(state)
         if waited:
             session.draw_late_words()
+        if self.panel and self.panel.is_busy:
+            self.panel.frame()
 
     def on_wake(self) -> None:
         """Another thread woke the event loop: the painter has a result, or the file has changed."""
@@ -152,8 +167,8 @@ class EventDispatcher:
         """Perform the action of a key binding: an edit of the scene, or a command."""
         session, action = self.session, binding.action
         session.release_button()
-        if action == TYPE:
-            self.typing.begin("=")
+        if action in (TYPE, PANEL):
+            self.typing.begin("=") if action == TYPE else self.toggle_panel()
             return
         if action in LISTS:
             aim = self.mouse.aim() if action in ADDING else session.state.aim
@@ -165,6 +180,17 @@ class EventDispatcher:
             session.say("")
             session.attempt(COMMANDS[action])
         session.show(session.state)
+
+    def toggle_panel(self) -> None:
+        """Open the panel, or close it; slimgui is imported when it opens first."""
+        try:
+            from minirt.viewer.panel.panel import Panel
+        except ImportError:
+            self.session.say(NO_PANEL)
+            self.session.refresh()
+            return
+        self.panel = self.panel or Panel(self.session, self.toggle_panel)
+        self.panel.open(not self.panel.is_open)
 
     def hold(self, binding: Binding, key: int, is_typed: bool = False) -> None:
         """Begin the action of a key that goes on while the key is held."""
@@ -186,8 +212,10 @@ class EventDispatcher:
 
         def hook(*arguments: object) -> None:
             handler(*arguments[:-1])
-            session = self.session
-            ticks = session.held_keys or session.words_wait
+            session, panel = self.session, self.panel
+            if panel:
+                panel.follow()
+            ticks = session.held_keys or session.words_wait or (panel and panel.is_busy)
             session.mlx.mlx_loop_hook(session.display, self._tick_hook if ticks else None, None)
 
         return hook

@@ -24,7 +24,7 @@ from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
 from minirt.viewer.editing.projection import Projection, projection_of
-from minirt.viewer.editing.state import State, initial_state
+from minirt.viewer.editing.state import State, initial_state, without_hidden
 from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
@@ -84,6 +84,7 @@ class Session:
         self.window = mlx.mlx_new_window(display, *size, title_of(path, scene), resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), self.window, samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
+        self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
         self._drawn_at = -inf
@@ -101,7 +102,7 @@ class Session:
         """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
         if self.recovery:
             self.recovery.keep(Version(self.state.scene, self.saved, self.path))
-        self.refinement.request_missing(self.state.scene, moving=bool(self.held_keys))
+        self.refinement.request_missing(self.shown_scene, moving=bool(self.held_keys))
 
     def refresh(self) -> None:
         """Draw the window, unless words wait for their picture and it has not come."""
@@ -176,7 +177,7 @@ class Session:
 
     def surface_at(self, x: int, y: int) -> Picked:
         """Return the shape at a pixel of the window, and the point on it."""
-        return self.pick(self.state.scene, self.window.width, self.window.height, x, y)
+        return self.pick(self.shown_scene, self.window.width, self.window.height, x, y)
 
     def release_button(self) -> None:
         """Forget the mouse button that is down; the edits of a drag are then one undo step."""
@@ -194,6 +195,18 @@ class Session:
     def quit(self) -> None:
         """End the event loop."""
         self.mlx.mlx_loop_exit(self.display)
+
+    @property
+    def shown_scene(self) -> Scene:
+        """The scene without hidden elements, made once for each version of the scene."""
+        scene, hidden = self.state.scene, self.state.hidden
+        if not hidden:
+            return scene
+        of, without, shown = self._without_hidden
+        if of is not scene or without != hidden:
+            shown = without_hidden(scene, hidden)
+            self._without_hidden = scene, hidden, shown
+        return shown
 
     @property
     def words_wait(self) -> bool:

@@ -12,7 +12,7 @@ from minirt.element import Element, fields_of
 from minirt.fields import Whole
 from minirt.scene import Camera, Lamp, Scene
 from minirt.viewer.editing.projection import STEP_SHARE, Aim, scene_size
-from minirt.viewer.editing.values import Value, is_editable, nice_number, round_changes, values
+from minirt.viewer.editing.values import Value, nice_number, round_changes, values
 
 MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
 GIVEN = ("typed", "value")  # how the kinds of changes begin that give an element a value
@@ -48,6 +48,7 @@ class State:
     frame: Frame = Frame.VIEW
     message: str = ""
     added_kind: type[Element] | None = None  # of the last added element
+    hidden: frozenset[int] = frozenset()  # indices of elements that the window does not show; no file has them
     aim: Aim | None = field(default=None, repr=False)  # where the next element goes; None: straight ahead
     undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
     redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # the next is the last
@@ -83,6 +84,13 @@ class State:
         except ValueError:
             return None
 
+    def hidden_in(self, scene: Scene) -> frozenset[int]:
+        """Indices of the hidden elements in an older or newer version of the scene."""
+        if not self.hidden or len(scene.elements) == len(self.scene.elements):
+            return self.hidden
+        identities = {id(self.scene.elements[index]) for index in self.hidden}
+        return frozenset(index for index, element in enumerate(scene.elements) if id(element) in identities)
+
     def with_message(self, message: str) -> State:
         """This state with a message to the user."""
         return replace(self, message=message)
@@ -106,7 +114,8 @@ class State:
         past = self.undo_stack if merged else (*self.undo_stack[1 - MAX_UNDO :], self.snapshot)
         selected = self.selected if selected is None else selected
         scene = with_edited_cameras(self.scene, scene, kind)
-        return replace(self, scene=scene, selected=selected, undo_stack=past, redo_stack=(), last_change=(kind, now))
+        changes: dict[str, Any] = {"undo_stack": past, "redo_stack": (), "last_change": (kind, now)}
+        return replace(self, scene=scene, selected=selected, hidden=self.hidden_in(scene), **changes)
 
     def edit_element(self, element: Element, kind: str, now: float, index: int | None = None) -> State:
         """Replace the selected element, or another one, by `element`, whose changed numbers are rounded."""
@@ -139,6 +148,19 @@ def initial_state(scene: Scene) -> State:
     return State(scene, index_of(scene, scene.camera), scene.cameras, scene_size(scene))
 
 
+class Hidden(Element):
+    """Stands for an element that the window does not show, so that all others keep their indices."""
+
+    code, title, plural = "", "hidden element", "hidden elements"
+
+
+def without_hidden(scene: Scene, hidden: frozenset[int]) -> Scene:
+    """The scene that the window shows."""
+    for index in hidden:
+        scene = scene.edit(index, Hidden())
+    return scene
+
+
 def index_of(scene: Scene, element: Element) -> int:
     """Index in `scene.elements` of this very object."""
     return indexOf(map(id, scene.elements), id(element))
@@ -146,7 +168,7 @@ def index_of(scene: Scene, element: Element) -> int:
 
 def can_edit(kind: type[Element]) -> bool:
     """Whether elements of the kind are seen in the picture, so that keys go to them; a resolution is not."""
-    return any((is_editable(each) and not isinstance(each, Whole)) or each.width > 1 for each in fields_of(kind))
+    return any(not isinstance(each, Whole) for each in fields_of(kind))
 
 
 def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
@@ -187,6 +209,7 @@ def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: flo
         f"{taken}_stack": stack[:-1],
         f"{given}_stack": (*getattr(state, f"{given}_stack"), state.snapshot),
     }
+    stacks["hidden"] = state.hidden_in(scene)
     state = state if selected == state.selected else state.select(selected)
     return replace(state, scene=scene, last_change=None, **stacks)
 

@@ -39,8 +39,8 @@ def set_typed(state: State, value: Value | None, text: str, now: float) -> State
     try:
         return with_value(state, value, typed(value, value.get(state.element), value.current(state.element), text), now)
     except (FieldError, ValueError) as error:
-        reason = str(error)
-        return state.with_message(reason if reason.startswith(state.element.title) else f"{value.name} {reason}")
+        reason, title = str(error), state.element.title
+        return state.with_message(reason if reason.startswith(title) else f"{title} {value.name} {reason}")
 
 
 def with_value(state: State, value: Value, new: Any, now: float) -> State:

@@ -22,7 +22,6 @@ from minirt.fields import (
     Length,
     Lengths,
     MeshField,
-    Picture,
     Point,
     Real,
     Three,
@@ -146,16 +145,13 @@ def with_part(triple: Triple, channel: int, new: Any) -> Triple:
 
 def values(element: Element) -> tuple[Value, ...]:
     """All values of an element; parts of triples come last, positions and directions after the others."""
-    unsplit = [
-        value for field in seen_fields(element) for value in values_of_field(field, getattr(element, field.name))
-    ]
+    every = [each for field in seen_fields(element) for each in values_of_field(field, getattr(element, field.name))]
+    unsplit = [each for each in every if not isinstance(each.leaf, Point | Direction)]
     unsplit.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
-    triples = [each for each in unsplit if not isinstance(each.get(element), str)]
-    placed = [Value(field) for field in seen_fields(element) if isinstance(field, Point | Direction)]
     sorts: tuple[type[Field], ...] = (Colour, Lengths, Point, Direction)
-    whole = [each for sort in sorts for each in (*triples, *placed) if isinstance(each.leaf, sort)]
-    parts = (value._replace(channel=part) for value in whole for part in range(len(part_names(value.leaf))))
-    return (*unsplit, *parts)
+    triples = [each for each in every if not isinstance(each.get(element), str)]
+    whole = (each for sort in sorts for each in triples if isinstance(each.leaf, sort))
+    return (*unsplit, *(each._replace(channel=part) for each in whole for part in range(len(part_names(each.leaf)))))
 
 
 def seen_fields(element: Element) -> Iterator[Field]:
@@ -170,16 +166,10 @@ def values_of_field(field: Field, value: Any) -> Iterator[Value]:
     if isinstance(value, Record):
         start = 0
         for inner in fields_of(type(value)):
-            if is_editable(inner):
-                yield Value(field, inner, start=start)
+            yield Value(field, inner, start=start)
             start += inner.width
-    elif is_editable(field) and value is not None:
+    elif value is not None:
         yield Value(field)
-
-
-def is_editable(field: Field) -> bool:
-    """Whether keys can change the value of the field."""
-    return type(field).nudge is not Field.nudge or isinstance(field, Picture | MeshField)
 
 
 def shows_roll(element: Element) -> bool:

@@ -1,0 +1,190 @@
+"""Elements: the list of all elements of the scene, and the attributes of the selected one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+
+from slimgui import imgui
+
+from minirt.element import Element, fields_of
+from minirt.errors import ElementError
+from minirt.fields import Colour, Field
+from minirt.scene import Scene
+from minirt.scene.pages import Item
+from minirt.viewer.app.session import Session
+from minirt.viewer.editing import structure
+from minirt.viewer.editing.editor import apply
+from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import values
+from minirt.viewer.panel.gui import Rgba
+from minirt.viewer.panel.rows import Rows
+
+AROUND = 3  # rows above and below those that are seen: the arrow keys go on to them
+LISTED = 0.35  # of the height: the list of elements
+PLAIN = (128, 128, 128)  # the square of an element without a colour
+
+
+class Elements:
+    """The page of the list and of the selected element."""
+
+    def __init__(self, session: Session, rows: Rows) -> None:
+        self.session = session
+        self.rows = rows
+        self._wanted = ""  # what is searched for
+        self._followed = -1  # the selected element that the list was scrolled to
+        self._named: Scene | None = None  # the scene of the next two
+        self._names: list[str] = []
+        self._found: dict[str, list[int]] = {}  # indices by what was searched for
+        self._asked: tuple[Scene | None, int] = None, -1  # scene and index of the element whose reasons are known
+        self._reasons: dict[str, str] = {}  # why attributes cannot be had, by their names
+
+    def show(self) -> None:
+        """Show the list, and below it the rows of the selected element."""
+        imgui.set_next_item_width(-1.0)
+        self._wanted = imgui.input_text_with_hint("###search", "search", self._wanted)[1]
+        self.rows.note("search")
+        height = imgui.get_content_region_avail()[1]
+        self.list(LISTED * height)
+        if imgui.begin_child("values", (0.0, 0.0), imgui.ChildFlags.NAV_FLATTENED):
+            state = self.session.state
+            imgui.separator_text(state.element.title)
+            self.rows.show(state.selected)
+            self.attributes()
+        imgui.end_child()
+
+    def list(self, height: float) -> None:
+        """Show the rows of the elements that are found, as far as they are in sight."""
+        state = self.session.state
+        if self._named is not state.scene:
+            self._named, self._names, self._found = state.scene, names(state.scene), {}
+        indices = self.found(state.scene)
+        if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
+            if state.selected != self._followed and state.selected in indices:
+                self._followed = state.selected
+                place = indices.index(state.selected) * imgui.get_frame_height_with_spacing()
+                imgui.set_scroll_y(max(0.0, place - height / 2))
+            for place in seen(len(indices)):
+                self.row(indices[place])
+        imgui.end_child()
+
+    def row(self, index: int) -> None:
+        """Show an element: a box that hides it, its colour, kind and name. A click selects, two bring it into view."""
+        session, state = self.session, self.session.state
+        element = state.scene.elements[index]
+        imgui.push_id(index)
+        changed, _ = imgui.checkbox("###shown", index not in state.hidden)
+        self.rows.note(f"shown {index}")
+        imgui.set_item_tooltip("shown while you edit; the file keeps it")
+        if changed:
+            session.show(replace(state, hidden=state.hidden ^ {index}))
+        imgui.same_line()
+        side = imgui.get_frame_height() * 0.7
+        imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side))
+        imgui.same_line()
+        flags = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK | imgui.SelectableFlags.SELECT_ON_NAV
+        title = f"{element.title} {self._names[index]}"
+        if imgui.selectable(f"{title}###element", index == state.selected, flags)[0] and index != state.selected:
+            self._followed = index
+            session.show(state.with_message("").select(index))
+        self.rows.note(f"element {index}")
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
+            session.show(apply(session.state, "look at", 1.0, session.now))
+        imgui.pop_id()
+
+    def found(self, scene: Scene) -> Sequence[int]:
+        """Indices of the elements whose kind, name or code has what is searched for."""
+        if not self._wanted:
+            return range(len(scene.elements))
+        word = self._wanted.lower()
+        if word not in self._found:
+            named = enumerate(zip(scene.elements, self._names, strict=True))
+            titles = ((index, f"{each.title} {each.code} {name}") for index, (each, name) in named)
+            self._found[word] = [index for index, title in titles if word in title.lower()]
+        return self._found[word]
+
+    # --- attributes ---
+
+    def attributes(self) -> None:
+        """Show a section for each attribute that may be absent, which a box switches on and off."""
+        for field in optional_fields(self.session.state.element):
+            self.attribute(field)
+
+    def attribute(self, field: Field) -> None:
+        """Show the box of an attribute, with its rows or the reason why it cannot be had."""
+        state = self.session.state
+        there = getattr(state.element, field.name) is not None
+        reason = "" if there else self.reasons().get(field.name, "")
+        imgui.begin_disabled(bool(reason))
+        changed, _ = imgui.checkbox(f"{field.title}###{field.name} on", there)
+        self.rows.note(f"{field.name} on")
+        imgui.end_disabled()
+        imgui.set_item_tooltip(field.doc)
+        if reason:
+            imgui.text_disabled(reason)
+        if changed:
+            switch = partial(without, field=field) if there else partial(structure.with_attribute, field=field)
+            self.rows.apply(lambda state: switch(state).end_merging(), field.title)
+        elif there:
+            imgui.indent()
+            self.rows.show_field(field)
+            imgui.unindent()
+
+    def reasons(self) -> dict[str, str]:
+        """Why attributes cannot be had, by their names; as it was at the press while a number is dragged."""
+        state = self.session.state
+        scene, index = state.scene, state.selected
+        if (self._asked[0] is not scene or self._asked[1] != index) and not self.rows.is_sliding:
+            self._asked = scene, index
+            self._reasons = {field.name: refusal(state, field) for field in optional_fields(state.element)}
+        return self._reasons
+
+
+def optional_fields(element: Element) -> list[Field]:
+    """The attributes that an element may have or not."""
+    return [field for field in fields_of(type(element)) if field.keyed and field.default is None]
+
+
+def refusal(state: State, field: Field) -> str:
+    """Why the selected element cannot have an attribute that it lacks; empty if it can."""
+    try:
+        structure.with_attribute(state, field)
+    except (LookupError, ElementError) as error:
+        return str(error)
+    return ""
+
+
+def without(state: State, field: Field) -> State:
+    """The state whose selected element has lost an attribute."""
+    index = [value.field.name for value in values(state.element)].index(field.name)
+    return structure.remove_attribute(replace(state, value_index=index), 1.0, 0.0)
+
+
+def names(scene: Scene) -> list[str]:
+    """Names of all elements: the comments on the lines before them."""
+    pairs = pairwise(("", *scene.items))
+    return [comment_text(before) for before, item in pairs if isinstance(item, Element)]
+
+
+def comment_text(item: Item) -> str:
+    """The words of a comment; empty for any other line."""
+    return item.lstrip("# ").strip() if isinstance(item, str) and item.lstrip().startswith("#") else ""
+
+
+def colour_of(element: Element) -> Rgba:
+    """The first colour of an element, for the square in its row."""
+    found = (getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour))
+    red, green, blue = next((each for each in found if isinstance(each, tuple)), PLAIN)
+    return red / 255, green / 255, blue / 255, 1.0
+
+
+def seen(count: int) -> Iterator[int]:
+    """Yield the numbers of the rows in sight, between empty space in place of the others."""
+    top, scrolled, height = imgui.get_cursor_pos_y(), imgui.get_scroll_y(), imgui.get_frame_height_with_spacing()
+    first = max(0, int(scrolled / height) - AROUND)
+    imgui.set_cursor_pos_y(top + first * height)
+    yield from range(first, min(count, int((scrolled + imgui.get_window_height()) / height) + 1 + AROUND))
+    imgui.set_cursor_pos_y(top + count * height)
+    imgui.dummy((0.0, 0.0))

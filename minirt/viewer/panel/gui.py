@@ -1,0 +1,222 @@
+"""Gui: Dear ImGui in a window of MiniLibX: its font and colours, events in, frames, and triangles out.
+
+Only this package imports `slimgui`, and it is imported when the panel first opens. Frames are made after events alone.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+from PIL import ImageFont
+from slimgui import imgui
+
+from minirt.mlx.events import Button, Event, Key, Modifier
+from minirt.viewer.app.session import Session
+
+ARROWS = {key: f"KEY_{key.name}_ARROW" for key in (Key.LEFT, Key.RIGHT, Key.UP, Key.DOWN)}
+ENTER = {Key.RETURN: "KEY_ENTER", Key.KEYPAD_ENTER: "KEY_ENTER"}
+NAMED = {each: f"KEY_{each.name}" for each in Key if f"KEY_{each.name}" in imgui.Key.__members__}
+KEYS: dict[int, Any] = {key: imgui.Key[name] for key, name in (NAMED | ARROWS | ENTER).items()}
+SHORTCUTS = range(Key.F1, Key.F12 + 1)  # keys of the window even while the panel has the keys
+MODIFIERS = {
+    Modifier.CTRL: imgui.Key.MOD_CTRL,
+    Modifier.SHIFT: imgui.Key.MOD_SHIFT,
+    Modifier.ALT: imgui.Key.MOD_ALT,
+    Modifier.COMMAND: imgui.Key.MOD_SUPER,
+}
+BUTTONS = {Button.LEFT: 0, Button.MIDDLE: 2, Button.RIGHT: 1}
+WHEEL = {Button.WHEEL_UP: 1.0, Button.WHEEL_DOWN: -1.0}
+NOWHERE = -3.4028234663852886e38  # where the pointer is when it has left the window
+SETTLING = 2  # frames after an event: the second one shows what the first one has changed
+SHORTEST = 1e-3  # seconds between two frames
+Rgba = tuple[float, float, float, float]
+# Blue and yellow, which people with any kind of colour blindness tell apart; nothing is told by red and green.
+GOLD: Rgba = (1.0, 0.84, 0.37, 1.0)
+COLOURS: dict[Rgba, tuple[str, ...]] = {
+    (0.95, 0.95, 0.95, 1.0): ("TEXT", "CHECK_MARK"),
+    (0.09, 0.10, 0.12, 0.94): ("WINDOW_BG", "POPUP_BG"),
+    (0.22, 0.24, 0.28, 1.0): ("BUTTON", "FRAME_BG", "TAB", "TAB_DIMMED"),
+    (0.16, 0.38, 0.66, 1.0): ("HEADER", "TAB_SELECTED", "TAB_DIMMED_SELECTED", "BUTTON_ACTIVE", "TEXT_SELECTED_BG"),
+    (0.24, 0.46, 0.74, 1.0): ("BUTTON_HOVERED", "FRAME_BG_HOVERED", "HEADER_HOVERED", "TAB_HOVERED"),
+    GOLD: ("NAV_CURSOR", "TAB_SELECTED_OVERLINE", "PLOT_HISTOGRAM"),
+}
+
+
+class Gui(ABC):
+    """A context of Dear ImGui for the window of a session."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.is_open = False
+        self.io = imgui.create_context().io
+        self.size = 0  # of text, in pixels
+        self.typed = ""  # characters since the last frame
+        self.has_popup = False  # whether a list or a picker is open
+        self.unsettled = 0  # frames that have to follow
+        self.is_left = False  # by Escape
+        self._held: set[int] = set()  # keys that are down in the panel
+        self._context = imgui.get_current_context()
+        self._time = session.now
+        self._is_building = False
+        self.io.ini_filename = self.io.log_filename = None
+        self.io.config_input_text_cursor_blink = False
+        self.io.config_nav_escape_clear_focus_window = True
+        self.io.config_flags |= imgui.ConfigFlags.NAV_ENABLE_KEYBOARD
+        self.io.backend_flags |= imgui.BackendFlags.RENDERER_HAS_VTX_OFFSET
+        self.io.backend_flags |= imgui.BackendFlags.RENDERER_HAS_TEXTURES
+        font: Any = ImageFont.load_default(16)  # that of the window's own texts
+        self.io.fonts.add_font_from_memory_ttf(font.font_bytes)
+        for colour, names in COLOURS.items():
+            for name in names:
+                imgui.get_style().colors[imgui.Col[name]] = colour
+
+    @abstractmethod
+    def build(self) -> None:
+        """Declare the widgets of a frame."""
+
+    @abstractmethod
+    def is_near(self, x: int) -> bool:
+        """Whether a motion of the pointer to a column concerns the panel."""
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether frames follow each other: a key is held in the panel, which repeats with time."""
+        return self.is_open and bool(self._held)
+
+    @property
+    def has_keys(self) -> bool:
+        """Whether keys go to the panel: after it was opened or clicked, until Escape or a click on the picture."""
+        return bool(self.io.want_capture_keyboard) and not self.is_left
+
+    @property
+    def types(self) -> bool:
+        """Whether a text is being edited."""
+        return bool(self.io.want_text_input)
+
+    def takes(self, event: Event | str, *arguments: Any) -> bool:
+        """Show an event to the panel; return whether it takes it, so that it is not one of the picture.
+
+        A button that goes down on the picture takes the keys from the panel.
+        """
+        taken = False
+        match event, arguments:
+            case _ if not self.is_open:
+                pass
+            case Event.MOTION_NOTIFY, (x, y):
+                if not self.session.pressed and (self.is_near(x) or self.io.want_capture_mouse):
+                    self.point(x, y)
+                    taken = bool(self.io.want_capture_mouse)
+            case ((Event.BUTTON_PRESS | Event.BUTTON_RELEASE), (button, x, y)):
+                taken = self.on_button(button, event == Event.BUTTON_PRESS, x, y)
+            case ((Event.KEY_PRESS | Event.KEY_RELEASE), (code,)):
+                taken = self.on_key(code, event == Event.KEY_PRESS)
+            case "text", (text,) if self.has_keys:
+                self.typed = text
+                self.io.add_input_characters_utf8(text)
+                self.settle()
+                taken = True
+            case (Event.LEAVE_NOTIFY, ()):
+                self.point(NOWHERE, NOWHERE)
+            case ((Event.FOCUS_IN | Event.FOCUS_OUT), ()):
+                self._held.clear()
+                self.io.add_focus_event(event == Event.FOCUS_IN)
+                self.settle()
+        return taken
+
+    def point(self, x: float, y: float) -> None:
+        """Move the pointer to a pixel."""
+        self.io.add_mouse_pos_event(x, y)
+        self.settle()
+
+    def on_button(self, button: int, down: bool, x: int, y: int) -> bool:
+        """A mouse button goes down or up, or the wheel turns."""
+        self.point(x, y)
+        taken = bool(self.io.want_capture_mouse)
+        self.is_left &= not taken
+        if button in BUTTONS:
+            self.io.add_mouse_button_event(BUTTONS[Button(button)], down)
+        elif button in WHEEL and taken and down:
+            self.io.add_mouse_wheel_event(0.0, WHEEL[Button(button)])
+        self.settle()
+        return taken
+
+    def on_key(self, code: int, down: bool) -> bool:
+        """A key goes down or up; function keys and shortcuts are those of the window, unless a text is edited."""
+        if down:
+            is_shortcut = code in SHORTCUTS or (Modifier.ACCEL in self.session.modifiers and not self.types)
+            taken = self.has_keys and not is_shortcut
+            self.is_left |= taken and code == Key.ESCAPE and not self.types and not self.has_popup
+        else:
+            taken = code in self._held
+        if taken:
+            (self._held.add if down else self._held.discard)(code)
+            self.io.add_key_event(KEYS.get(code, imgui.Key.KEY_NONE), down)
+            self.settle()
+        return taken
+
+    def settle(self) -> None:
+        """Make the frames that follow an event."""
+        imgui.set_current_context(self._context)
+        for modifier, key in MODIFIERS.items():
+            self.io.add_key_event(key, modifier in self.session.modifiers)
+        self.unsettled = SETTLING
+        while self.unsettled:
+            self.unsettled -= 1
+            self.frame()
+
+    def frame(self) -> None:
+        """Make a frame, unless one is being made."""
+        if self._is_building:
+            return
+        self._is_building = True
+        try:
+            imgui.set_current_context(self._context)
+            now, window = self.session.now, self.session.window
+            self.io.delta_time, self._time = max(now - self._time, SHORTEST), now
+            self.io.display_size = window.width, window.height
+            imgui.new_frame()
+            imgui.push_font(None, float(self.size))
+            self.build()
+            imgui.pop_font()
+            imgui.render()
+            self.typed = ""
+            window.stale = True
+        finally:
+            self._is_building = False
+
+    def resize_text(self, size: int) -> None:
+        """Set the size of text, and of all spaces with it, from the next frame on."""
+        if size != self.size:
+            self.size = size
+            style = imgui.get_style()
+            style.window_padding = style.item_spacing = 0.4 * size, 0.25 * size
+            style.frame_padding = style.item_inner_spacing = 0.3 * size, 0.15 * size
+            style.indent_spacing, style.scrollbar_size, style.grab_min_size = 0.5 * size, 0.7 * size, 0.7 * size
+            style.frame_rounding = style.tab_rounding = 0.15 * size
+
+    def paint(self, painter: Any) -> None:
+        """Draw the last frame over the canvas: see `Mlx.mlx_overlay_hook`."""
+        imgui.set_current_context(self._context)
+        data = imgui.get_draw_data()
+        for texture in data.textures or ():
+            update(texture, painter)
+        for each in data.commands_lists:
+            runs = [
+                (run.tex_ref.get_tex_id(), run.clip_rect, run.elem_count, run.idx_offset, run.vtx_offset)
+                for run in each.commands
+            ]
+            painter.draw(each.vtx_buffer_data, each.vtx_buffer_size, each.idx_buffer_data, each.idx_buffer_size, runs)
+
+
+def update(texture: Any, painter: Any) -> None:
+    """Copy a texture of letters to the graphics card, if it is new or has new letters; free one that is not used."""
+    status = imgui.TextureStatus
+    if texture.status in (status.WANT_CREATE, status.WANT_UPDATES):
+        pixels = texture.get_pixels().ctypes.data
+        texture.set_tex_id(painter.upload(texture.get_tex_id(), texture.width, texture.height, pixels))
+        texture.set_status(status.OK)
+    elif texture.status == status.WANT_DESTROY and texture.unused_frames > 0:
+        painter.delete(texture.get_tex_id())
+        texture.set_tex_id(0)
+        texture.set_status(status.DESTROYED)

@@ -1,0 +1,88 @@
+"""Panel: what F1 opens at the right of the window: elements and their values, the scene, the history, pictures.
+
+It is a client of the session as keys are: it edits by the same functions. It takes keys only while it has the focus,
+and the pointer only while that is over it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from slimgui import imgui
+
+from minirt.viewer.app.session import Session
+from minirt.viewer.editing.state import State
+from minirt.viewer.panel.elements import Elements
+from minirt.viewer.panel.gui import Gui
+from minirt.viewer.panel.rows import Rows
+
+WIDTH, SHARE = 21.0, 0.55  # of the panel: in sizes of text, and of a narrow window
+LETTERS, READABLE = 30, 12  # in a narrow window text becomes smaller, so that so many fit, but not below so many pixels
+FRAME = imgui.WindowFlags.NO_DECORATION | imgui.WindowFlags.NO_MOVE | imgui.WindowFlags.NO_SAVED_SETTINGS
+ANY_POPUP = imgui.PopupFlags.ANY_POPUP_ID | imgui.PopupFlags.ANY_POPUP_LEVEL
+
+
+class Panel(Gui):
+    """The panel of a session. It is closed at first."""
+
+    def __init__(self, session: Session, close: Callable[[], None]) -> None:
+        super().__init__(session)
+        self.rows = Rows(session, self)
+        self._close = close
+        self._wants_focus = False
+        self._state: State | None = None  # that the last frame shows
+        self._sizes: tuple[float, ...] = ()  # of the window then, and its scale
+        self._pages = {"Elements": Elements(session, self.rows).show}
+
+    def open(self, is_open: bool) -> None:
+        """Open the panel, which then has the keys, or close it."""
+        self.is_open = self._wants_focus = is_open
+        self.is_left = False
+        paint = (lambda painter, _: self.paint(painter)) if is_open else None
+        self.session.mlx.mlx_overlay_hook(self.session.window, paint)
+        if is_open:
+            self.settle()
+
+    def follow(self) -> None:
+        """Make a frame if the session shows something else than the last one."""
+        if self.is_open and (self._state is not self.session.state or self._sizes != self.sizes):
+            self.frame()
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Size of the window, and the scale of its texts."""
+        return self.session.window.width, self.session.window.height, self.session.screen.scale
+
+    @property
+    def left(self) -> float:
+        """The left border, in pixels."""
+        width = self.session.window.width
+        return width - min(WIDTH * self.size, SHARE * width)
+
+    def is_near(self, x: int) -> bool:
+        return x >= self.left or self.has_popup
+
+    def build(self) -> None:
+        window = self.session.window
+        self._state, self._sizes = self.session.state, self.sizes
+        self.resize_text(max(READABLE, min(self.session.screen.text_size, window.width // LETTERS)))
+        self.rows.begin_frame()
+        imgui.set_next_window_pos((self.left, 0.0))
+        imgui.set_next_window_size((window.width - self.left, float(window.height)))
+        if self._wants_focus:
+            imgui.set_next_window_focus()
+            self._wants_focus = False
+        imgui.begin("panel", False, FRAME)
+        if imgui.begin_tab_bar("pages"):
+            for name, show in self._pages.items():
+                visible, _ = imgui.begin_tab_item(name)
+                self.rows.note(name)
+                if visible:
+                    show()
+                    imgui.end_tab_item()
+            if imgui.tab_item_button(">", imgui.TabItemFlags.TRAILING):
+                self._close()
+            self.rows.note("close")
+            imgui.end_tab_bar()
+        self.has_popup = imgui.is_popup_open("", ANY_POPUP)
+        imgui.end()

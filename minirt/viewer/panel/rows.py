@@ -1,0 +1,268 @@
+"""Rows: widgets for the values of an element, chosen by the types of its declared fields alone.
+
+A number is dragged to slide it (Shift: finer), clicked to type it, or changed by + and - while it has the focus; a
+digit begins to type. One drag is one step of undo.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+from slimgui import imgui
+
+from minirt.element import Element
+from minirt.errors import MiniRTError
+from minirt.fields import Choice, Colour, Field, Flag, MeshField, MeshFile, Paint, Picture, Three
+from minirt.fields.scalars import spelled
+from minirt.viewer.app.session import FINE_STEP, Session
+from minirt.viewer.editing.placing import keep_standing
+from minirt.viewer.editing.state import State
+from minirt.viewer.editing.typed import CHARACTERS, set_typed, with_value
+from minirt.viewer.editing.values import CHANNELS, Value, part_names, seen_fields, values_of_field
+from minirt.viewer.files import next_file, usable_files
+from minirt.viewer.panel.gui import GOLD, Gui
+
+PIXELS = 6  # of a drag to the right or upwards, for one step
+SLIDE = ("value slide", 0.0)  # kind and time of the changes of a drag: the constant time merges them for undo
+LABEL = 0.3  # of the width: the name of a value
+SIGNS = {"+": 1.0, "-": -1.0}  # steps of a typed character
+COLOUR_OR = "colour"  # what stands for a colour among the pictures
+TO_TYPE = 3  # frames until a text has the focus, and what began it
+TYPING = imgui.InputTextFlags.ENTER_RETURNS_TRUE | imgui.InputTextFlags.AUTO_SELECT_ALL
+SQUARE = imgui.ColorEditFlags.NO_INPUTS | imgui.ColorEditFlags.NO_LABEL | imgui.ColorEditFlags.NO_OPTIONS
+
+
+class Rows:
+    """The rows of values. What the user does is applied at once to the element, which is selected by that."""
+
+    def __init__(self, session: Session, gui: Gui) -> None:
+        self.session = session
+        self.gui = gui
+        self.places: dict[str, tuple[float, float]] = {}  # centres of the widgets of the last frame, by their names
+        self.focused = ""  # name of the widget that has the focus
+        self.error = ("", "")  # name of the value that was refused, and why
+        self._index = 0  # of the element whose rows are shown
+        self._typing: Value | None = None  # the number that is typed
+        self._text, self._first = "", ""  # what is typed, and the character that began it
+        self._pressed = ""  # name of the number under the button that is down
+        self._start: Element | None = None  # the element when the button went down
+        self._slid = 0.0  # steps since
+        self._files: list[str | MeshFile] = []  # those of the list that is open
+
+    @property
+    def element(self) -> Element:
+        """The element whose rows are shown, as it is now."""
+        return self.session.state.scene.elements[self._index]
+
+    @property
+    def is_sliding(self) -> bool:
+        """Whether the button is down on a number."""
+        return bool(self._pressed)
+
+    def begin_frame(self) -> None:
+        """Forget what the last frame had; a number that is not shown any more is not typed any more."""
+        if self._typing and not self._first and self._typing.name not in self.places:
+            self._typing = None
+        self.places.clear()
+
+    def note(self, name: str) -> None:
+        """Note where the last widget is."""
+        (left, top), (right, bottom) = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        self.places[name] = (left + right) / 2, (top + bottom) / 2
+        if imgui.is_item_focused():
+            self.focused = name
+
+    def show(self, index: int) -> None:
+        """Show the rows of the values that an element always has."""
+        self._index = index
+        for field in seen_fields(self.element):
+            if not field.keyed or field.default is not None:
+                self.show_field(field)
+
+    def show_field(self, field: Field) -> None:
+        """Show the rows of a field: one for each field of the record that is its value."""
+        for value in values_of_field(field, getattr(self.element, field.name)):
+            self.show_value(value)
+
+    def show_value(self, value: Value) -> None:
+        """Show the name of a value and its widgets."""
+        leaf, old = value.leaf, value.get(self.element)
+        left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
+        imgui.push_id(value.name)
+        imgui.align_text_to_frame_padding()
+        imgui.text(leaf.title)
+        imgui.set_item_tooltip(leaf.doc + (f", in {leaf.range}" if leaf.range else ""))
+        imgui.same_line(left + LABEL * width)
+        room = (1 - LABEL) * width
+        if isinstance(leaf, Picture | MeshField | Paint):
+            self.choose_file(value, room if not isinstance(leaf, Paint) or isinstance(old, str) else 0.3 * room)
+            old = value.get(self.element)
+        if isinstance(leaf, Paint) and not isinstance(old, str):
+            imgui.same_line()
+            room *= 0.66
+        if isinstance(leaf, Flag):
+            changed, new = imgui.checkbox("###flag", old)
+            self.note(value.name)
+            if changed:
+                self.set(value, new)
+        elif isinstance(leaf, Choice):
+            self.choose(value, leaf.words, old, room)
+        elif isinstance(leaf, Three) and not isinstance(old, str):
+            self.show_triple(value, room)
+        elif isinstance(old, int | float):
+            self.number(value, room)
+        if self.error[0].startswith(value.name):
+            imgui.push_style_color(imgui.Col.TEXT, GOLD)
+            imgui.text_wrapped(f"! {self.error[1]}")
+            imgui.pop_style_color()
+        imgui.pop_id()
+
+    def show_triple(self, value: Value, room: float) -> None:
+        """Show the parts of a colour, a position or sizes beside each other, the angles of a direction below."""
+        left, gap = imgui.get_cursor_pos_x(), imgui.get_style().item_inner_spacing[0]
+        if isinstance(value.leaf, Colour):
+            self.pick_colour(value)
+            imgui.same_line(0.0, gap)
+        room -= imgui.get_cursor_pos_x() - left
+        for part, name in enumerate(part_names(value.leaf)):
+            columns = Three.width if part < Three.width else 2
+            if part == Three.width:
+                imgui.set_cursor_pos_x(left)
+            elif part:
+                imgui.same_line(0.0, gap)
+            prefix = name[:1].upper() if name in CHANNELS else name[:4]
+            self.number(value._replace(channel=part), (room - (columns - 1) * gap) / columns, prefix)
+
+    def pick_colour(self, value: Value) -> None:
+        """Show a colour as a square, which opens a picker."""
+        shown = tuple(part / 255 for part in value.get(self.element))
+        changed, new = imgui.color_edit3(f"###{value.name}", shown, SQUARE)
+        self.note(f"{value.name} picker")
+        if changed:
+            self.change(value, self.element, tuple(round(255 * part) for part in new))
+        if imgui.is_item_deactivated():
+            self.session.state = self.session.state.end_merging()
+
+    def choose(self, value: Value, options: Iterable[str], shown: str, room: float) -> None:
+        """Show a list of words."""
+        imgui.set_next_item_width(room)
+        if imgui.begin_combo(f"###{value.name}", shown):
+            for option in options:
+                if imgui.selectable(option, option == shown)[0]:
+                    self.set(value, option)
+                self.note(f"{value.name} {option}")
+            imgui.end_combo()
+        else:
+            self.note(value.name)
+
+    def choose_file(self, value: Value, room: float) -> None:
+        """Show the list of the pictures, or meshes, beside the scene; in place of a picture there may be a colour."""
+        leaf, old = value.leaf, value.get(self.element)
+        name = f"{value.name} file"
+        imgui.set_next_item_width(room)
+        if not imgui.begin_combo(f"###{name}", file_title(old)):
+            self.note(name)
+            return
+        if imgui.is_window_appearing():
+            self._files = list(usable_files(self.session.state.scene, isinstance(leaf, MeshField)))
+        for file in [*([leaf.initial] if isinstance(leaf, Paint) else []), *self._files]:
+            if imgui.selectable(file_title(file), file == old)[0]:
+                self.set(value, file)
+            self.note(f"{value.name} {file_title(file)}")
+        imgui.end_combo()
+
+    def number(self, value: Value, width: float, prefix: str = "") -> None:
+        """Show a number, which is dragged, typed or stepped."""
+        if self._typing == value:
+            self.type(value, width)
+            return
+        entered = imgui.button(f"{prefix} {value.current(self.element):.6g}###{value.name}".strip(), (width, 0.0))
+        self.note(value.name)
+        imgui.set_item_tooltip(f"{value.name}: drag it, click to type it, or + and -; Shift: finer")
+        if imgui.is_item_activated():
+            self._pressed, self._start, self._slid = value.name, self.element, 0.0
+            self.session.state = self.session.state.end_merging()
+        if self._pressed == value.name:
+            self.drag(value)
+        if entered and not self._slid:
+            self.begin_typing(value, "")
+        elif imgui.is_item_focused() and self.gui.typed and not self.gui.types:
+            self.on_character(value, self.gui.typed)
+        if self._pressed == value.name and not imgui.is_item_active():
+            self._pressed = ""
+            self.session.state = self.session.state.end_merging()
+
+    def drag(self, value: Value) -> None:
+        """Slide the number under the button that is down, to the right or upwards to increase it."""
+        right, down = self.gui.io.mouse_delta
+        if self._start and (right or down) and imgui.is_mouse_dragging(imgui.MouseButton.LEFT):
+            self._slid += (right - down) / PIXELS * (FINE_STEP if self.gui.io.key_shift else 1.0)
+            self.change(value, self._start, self.stepped(value, self._start, self._slid), is_field=True)
+
+    def on_character(self, value: Value, text: str) -> None:
+        """A character was typed while a number has the focus: it steps the number, or begins to type it."""
+        if text in SIGNS:
+            steps = SIGNS[text] * (FINE_STEP if self.gui.io.key_shift and text == "-" else 1.0)
+            self.change(value, self.element, self.stepped(value, self.element, steps), is_field=True)
+        elif text in CHARACTERS:
+            self.begin_typing(value, text)
+
+    def begin_typing(self, value: Value, first: str) -> None:
+        """Turn a number into a text, all of it selected; `first` replaces it."""
+        self._typing, self._text, self._first = value, spelled(value.current(self.element)), first or " "
+        self.gui.unsettled = TO_TYPE
+
+    def type(self, value: Value, width: float) -> None:
+        """Show the text of the number that is typed; Enter, and the focus of another widget, set it."""
+        if self._first:
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(width)
+        entered, self._text = imgui.input_text(f"###{value.name} text", self._text, TYPING)
+        self.note(value.name)
+        if self._first and imgui.is_item_active():
+            self.gui.io.add_input_characters_utf8(self._first.strip())
+            self._first = ""
+        left = imgui.is_item_deactivated_after_edit() and not imgui.is_key_down(imgui.Key.KEY_ESCAPE)
+        if entered or left:
+            self.apply(lambda state: set_typed(state, value, self._text.strip(), self.session.now), value.name)
+        if entered or (not self._first and not imgui.is_item_active()):
+            self._typing = None
+
+    # --- changes of the scene ---
+
+    def stepped(self, value: Value, element: Element, steps: float) -> Any:
+        """The value's field of an element after a number of steps."""
+        state = self.session.state
+        return value.stepped(element, steps, partial(next_file, state.scene), state.stride)
+
+    def change(self, value: Value, start: Element, new: Any, is_field: bool = False) -> None:
+        """Change a value of an element that was `start`; changes that follow each other are undone together.
+
+        `is_field`: `new` is the value of the whole field.
+        """
+        field = new if is_field else value.replaced(start, new)
+        changed = start.replace(**{value.field.name: field})
+        self.apply(lambda state: state.edit_element(keep_standing(state, changed), *SLIDE), value.name)
+
+    def set(self, value: Value, new: Any) -> None:
+        """Set a value at once, as one step of undo."""
+        self.apply(lambda state: with_value(state, value, new, self.session.now), value.name)
+
+    def apply(self, edit: Callable[[State], State], name: str = "") -> None:
+        """Select the element and edit it; a change that is refused is told below the row of the value `name`."""
+        state = self.session.state.with_message("")
+        if state.selected != self._index:
+            state = state.select(self._index)
+        try:
+            after = edit(state)
+        except (MiniRTError, ValueError, LookupError) as error:
+            after = state.with_message(str(error))
+        self.error = (name, after.message) if after.message and after.scene is state.scene else ("", "")
+        self.session.show(after)
+
+
+def file_title(file: Any) -> str:
+    """What a file, or a colour in its place, is called in a list."""
+    return file.name if isinstance(file, MeshFile) else file if isinstance(file, str) else COLOUR_OR
