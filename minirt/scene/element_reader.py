@@ -210,7 +210,8 @@ def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: S
         path = file_io.located(folder, file.name)
         content = read(path)
         if path != folder / file.name:
-            log.notice(line, f"{slot.title} is read from {quoted(str(path))}, above the scene", *slot.span(file.part))
+            above = quoted(os.path.relpath(path, folder))
+            log.notice(line, f"{slot.title} is not beside the scene, and is read from {above}", *slot.span(file.part))
         if os.path.abspath(path) in pictures.transparent:  # noqa: PTH100
             log.notice(line, f"{slot.title} has transparent parts, which are drawn opaque", *slot.span(file.part))
         return content

@@ -15,7 +15,7 @@ from minirt.fields.triples import file_name
 from minirt.helpers import file_io
 from minirt.helpers.file_io import reason
 from minirt.materials.pictures import picture
-from minirt.meshes import load_mesh
+from minirt.meshes import BY_TRIMESH, load_mesh
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX
 from minirt.scene.pages import Item
@@ -23,7 +23,7 @@ from minirt.scene.pages import Item
 INTERVAL = 0.25  # seconds between two checks of the file
 Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
 PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
-MESH_SUFFIXES = {".obj"}
+MESH_SUFFIXES = {".obj", *BY_TRIMESH}
 
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from PIL import Image
 
 import minirt
 from minirt.cluster.worker import packed, unpacked
+from minirt.errors import FileError
 from minirt.materials import Bump, Glass, Mirror, Specular
 from minirt.meshes import load_mesh
 from minirt.meshes.mtl import MeshMaterial
@@ -98,12 +100,12 @@ STATEMENTS = (
 
 
 def scenes(folder: Path) -> tuple[Scene, Scene]:
-    """Return a scene of a mesh with several materials, in a random order, and of a mesh for each of them."""
+    """Return a scene of a mesh with several materials, glass first, and of a mesh for each of them."""
     corners = (
         "".join(f"v {x} {y} {z}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)) + "vt 0 0\nvt 1 0\nvt 1 1\n"
     )
     faces = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "2 6 8 4"]  # open in front
-    order = random.sample(range(5), 5)
+    order = [2, *random.sample((0, 1, 3, 4), 4)]  # glass is first
     lines, one = [], [corners, "mtllib cube.mtl"]
     for number, (index, face) in enumerate(zip(order, faces, strict=True)):
         text = "f " + " ".join(f"{each}/{1 + place % 3}" for place, each in enumerate(face.split()))
@@ -148,3 +150,40 @@ def test_workers_get_the_pictures_of_materials(folder: Path) -> None:
     sent = unpacked(packed(one, with_files=True))
     names = [look.texture for look in sent.meshes[0].looks if look.texture]
     assert [sent.beside(name).read_bytes() for name in names] == [(folder / "maps/my relief.png").read_bytes()]
+
+
+@pytest.mark.parametrize("suffix", ["stl", "ply", "glb"])
+def test_other_files_are_read_by_trimesh(folder: Path, suffix: str) -> None:
+    trimesh = pytest.importorskip("trimesh", reason="pip install trimesh scipy")
+    trimesh.creation.box((1, 2, 4)).export(folder / f"box.{suffix}")
+    mesh = load_mesh(folder / f"box.{suffix}")
+    assert (len(mesh), mesh.closed, mesh.normals is not None) == (12, True, suffix == "glb")
+    assert mesh.box.tolist() == [[-0.5, -1, -2], [0.5, 1, 2]]
+
+
+def test_parts_of_a_file_of_gltf_keep_colours_and_pictures(folder: Path) -> None:
+    trimesh = pytest.importorskip("trimesh", reason="pip install trimesh scipy")
+    visual, scene = trimesh.visual, trimesh.Scene()
+    image = Image.open(folder / "maps" / "my relief.png")
+    for colour, uv, picture in (([255, 0, 0], None, None), ([255, 255, 255], np.eye(8, 2), image)):
+        box = trimesh.creation.box()
+        look = visual.material.PBRMaterial(baseColorFactor=[*colour, 255], baseColorTexture=picture)
+        box.visual = visual.TextureVisuals(uv=uv, material=look)
+        scene.add_geometry(box)
+    scene.export(folder / "two.glb")
+    mesh = load_mesh(folder / "two.glb")
+    assert mesh.material_of is not None
+    assert mesh.uvs is not None
+    looks = {mesh.materials[number] for number in mesh.material_of}
+    assert {(look.colour, look.specular, bool(look.texture)) for look in looks} == {
+        ((255, 0, 0), None, False),
+        ((255, 255, 255), None, True),
+    }
+    assert {np.ptp(mesh.uvs[mesh.material_of == number]) for number in mesh.material_of} == {0, 1}
+
+
+def test_the_extra_that_reads_other_files_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    (folder / "a.stl").write_bytes(b"solid")
+    with pytest.raises(FileError, match=r"needs trimesh, .*pip install 'minirt\[meshes\]'"):
+        load_mesh(folder / "a.stl")

@@ -5,11 +5,13 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from minirt.cli import main
 from minirt.errors import SceneError
-from minirt.materials import Mirror
+from minirt.materials import Bump, Mirror, pictures
 from minirt.meshes import obj_lines
 from minirt.scene import describe, dump, load, parse
 from minirt.shapes.mesh import Mesh
@@ -105,6 +107,69 @@ def test_a_changed_mesh_file_is_read_again(folder: Path) -> None:
     assert before != after
     assert (before.parts, after.parts) == (1, 2)
     assert load(path).scene.meshes[0] == after
+
+
+def told(path: Path) -> list[str]:
+    """Return the messages of the notices about a scene."""
+    return [each.message for each in load(path).notices]
+
+
+def test_names_with_blanks_stand_within_quotes(folder: Path) -> None:
+    (folder / "my map.ppm").write_bytes(PLAIN)
+    (folder / "meshes" / "one two.obj").write_text(ONE)
+    line = 'ob "meshes/one two.obj" 0,0,0 1 9,9,9 texture:"my map.ppm" bump:"my map.ppm",0.5  # \'quoted"'
+    path = scene(folder, line, 'bg "my map.ppm"')
+    for lenient in (False, True):
+        read = load(path, lenient).scene
+        assert (read.meshes[0].texture, read.meshes[0].bump) == ("my map.ppm", Bump("my map.ppm", 0.5))
+        assert (read.meshes[0].file.name, read.background and read.background.paint) == (
+            "meshes/one two.obj",
+            "my map.ppm",
+        )
+        assert dump(read) == path.read_text()
+        moved = read.replace(read.meshes[0], scale=2.0, texture="my other.ppm")
+        assert dump(moved).splitlines()[2] == line.replace(" 1 ", " 2 ").replace("my map", "my other", 1)
+        assert describe(read.meshes[0]) == line.partition("  #")[0]
+
+
+def test_files_are_looked_for_above_the_scene_up_to_the_working_folder(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "a" / "b").mkdir(parents=True)
+    (folder / "map.ppm").write_bytes(PLAIN)
+    path = scene(folder / "a" / "b", "ob meshes/one.obj 0,0,0 1 9,9,9 texture:map.ppm")
+    monkeypatch.chdir(folder)
+    assert told(path) == [
+        "mesh file is not beside the scene, and is read from '../../meshes/one.obj'",
+        "mesh texture is not beside the scene, and is read from '../../map.ppm'",
+    ]
+    assert load(path).scene.beside("map.ppm") == folder / "map.ppm"
+    monkeypatch.chdir(folder / "a")
+    with pytest.raises(SceneError, match="no such file"):
+        load(path)
+
+
+def test_pointers_of_git_lfs_are_named(folder: Path) -> None:
+    (folder / "a.png").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n")
+    with pytest.raises(SceneError, match="is a pointer of Git LFS in place of the file: 'git lfs pull' fetches it"):
+        load(scene(folder, "sp 0,0,9 1 9,9,9 texture:a.png"))
+
+
+def test_transparent_parts_are_told_and_pictures_are_turned_by_their_exif_data(folder: Path) -> None:
+    pixels = np.arange(24, dtype=np.uint8).reshape(2, 3, 4)
+    pixels[..., 3] = 255
+    line = "sp 0,0,9 1 9,9,9 texture:a.png"
+    turned = Image.Exif()
+    turned[0x0112] = 6  # to be turned clockwise
+    Image.fromarray(pixels).save(folder / "a.png", exif=turned)
+    path = scene(folder, line)
+    assert told(path) == []
+    assert np.array_equal(pictures.picture(folder / "a.png"), np.rot90(pixels[..., :3], -1))
+    pixels[1, 1, 3] = 254
+    Image.fromarray(pixels).save(folder / "a.png")
+    assert told(path) == ["sphere texture has transparent parts, which are drawn opaque"]
+    (folder / "a.png").write_text('/* XPM */ "1 2 2 1", "a c None", "b c #F00", "a", "b"')
+    assert told(path) == ["sphere texture has transparent parts, which are drawn opaque"]
 
 
 SECRET, NUMBER = b"qzjxkvwqzv", b"9182736450"
