@@ -6,6 +6,7 @@ threads; `fill_bins` then sorts their rectangles by depth into lists. The caller
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any, NamedTuple
 
 from minirt.kernel.pixels import fetch_add
@@ -33,6 +34,7 @@ class Projection(NamedTuple):
     origin: Any  # (3,) the point
     grid: Grid
     radius: float
+    reach: float  # from the point, beyond which shapes are in no list
     lean: float
     balls: Any  # (b, 4) centre and radius
     first_ball: Any  # (n + 1,)
@@ -83,7 +85,9 @@ def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
         seen.extents[shape, 3] = extent_from(seen.origin, seen.boxes, shape)
     if start == end:
         return at
-    for face in range(grid.frames.shape[0]):
+    if seen.reach < inf:
+        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
+    for face in range(grid.frames.shape[0] if seen.cones[shape, 4] <= seen.reach else 0):
         column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
         if columns > 0 and rows > 0:
             at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
@@ -130,7 +134,7 @@ def project_planes(seen: Projection, slack: float, at: int) -> int:
         cone = seen.cones[shape]
         cone[0], cone[1], cone[2], cone[3], cone[4] = 0.0, 0.0, 0.0, -2.0, abs(height)
         quantise_distance(seen, shape)
-        if seen.shown[number]:
+        if seen.shown[number] and abs(height) <= seen.reach:
             for row in range(seen.grid.frames.shape[0] * seen.grid.down):
                 column, columns = cells_of_plane(seen.grid, row, -side * vector(plane, 0), seen.lean)
                 if columns > 0:

@@ -59,6 +59,7 @@ class SceneArrays(NamedTuple):
     # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows means that
     # the kernel has the feature and the scene lacks it.
     spots: Any = None  # (m, 7) spot, parallel and fading lights, see `minirt.kernel.shading.lights`
+    light_grid: Any = None  # `minirt.kernel.shading.lights.LightGrid`, where there are `spots`
     soft: Any = None  # (m, 4) light sources with a size, see `minirt.kernel.shading.lights`
     lens: Any = None  # (7,) half axes of the camera's lens, and one over the distance at which it is sharp
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.lights`

@@ -14,6 +14,7 @@ from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code import functions
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.shading.lights import LightGrid
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
 from minirt.rendering.packing.bvh import build_bvh, pack_trees, without_boxes
@@ -25,6 +26,7 @@ from minirt.rendering.packing.view import Rounding, View, in_single
 from minirt.rendering.packing.visibility import BinnedShapes, Run
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 
 NO_MEMBERS = np.zeros(0, np.int32)
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
@@ -62,7 +64,8 @@ class Packing:
     def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
         """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
         if self.shape_arrays.update(shapes):
-            self.cache, self.last, self.cells_that_fit, self.bvh = {}, None, {}, None
+            kept = {key: each for key, each in self.cache.items() if isinstance(each, LightGrid)}
+            self.cache, self.last, self.cells_that_fit, self.bvh = kept, None, {}, None
         return self.shape_arrays
 
     def bvh_of(self, shapes: tuple[Shape, ...]) -> Tree:
@@ -105,8 +108,7 @@ class Packing:
             return self.cache[key]
 
         numbers, sources = camera.camera_numbers(scene.camera, crop.width, crop.height), lights.emitting_lights(scene)
-        used = features(scene) - (set() if self.depth else SECONDARY)
-        colours = lights.colours_of(scene.camera)
+        used, colours = features(scene) - (set() if self.depth else SECONDARY), lights.colours_of(scene.camera)
         lens = None
         if "lens" in used:
             key = "middle", numbers.tobytes()
@@ -115,6 +117,7 @@ class Packing:
         radius, _ = camera.radius_and_focus(lens)
         usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes))
         cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
+        spots = lights.spot_parameters(sources) if "spots" in used else None
         while True:
             try:
                 binned, keys = self.seen_by_lights(sources, numbers[:3], cells, cached, radius)
@@ -135,16 +138,17 @@ class Packing:
         else:
             self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, extents)
             square, (eye, seen) = self.view.square, self.view.look(scene.camera, self.run)
+        emitted = lights.positions_and_intensities(sources, colours)
+        shining = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
         needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
         trees = cached("trees", pack_trees, shapes, self.kernel)
         paint: Any = scene.background and scene.background.paint
-        environment = None
-        if "environment" in used:
-            environment = cached(("environment", paint, colours), materials.pack_environment, scene, paint)
+        sky = "environment", paint, colours
+        environment = cached(sky, materials.pack_environment, scene, paint) if "environment" in used else None
         arrays = SceneArrays(
             camera=np.append(camera.pixel_rays(numbers, crop.width, crop.height), (crop.left, crop.top)),
             ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
-            lights=lights.positions_and_intensities(sources, colours),
+            lights=emitted,
             colours_and_extents=cached(
                 ("colours", colours.decodes), colours.surface_colours, shapes.colours_and_extents
             ),
@@ -155,7 +159,8 @@ class Packing:
             light_buffer_cells=cells,
             **light_buffers,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count(), trees)),
-            spots=lights.spot_parameters(sources) if "spots" in used else None,
+            spots=spots,
+            light_grid=cached(shining, lights.light_grid, emitted, spots),
             soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,
             eye_medium=materials.medium_at(numbers[:3], scene.shapes, colours) if "media" in used else None,
@@ -184,6 +189,7 @@ class Packing:
         if LIGHT_BUFFERS in self.without:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
         shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
+        has_meshes = Mesh in shapes.group_numbers  # from whose facets rays may be moved out of reach
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for light in sources:
@@ -193,9 +199,10 @@ class Packing:
                 binned.append(cached(keys[-1], visibility.seen_by_parallel_light, shapes, cells, skipped))
             else:
                 position, size = lights.light_position(light), lights.radius_of(light)
-                keys.append((cells, position.tobytes(), skipped.tobytes(), size))
+                reach = (not has_meshes and light.fade) or np.inf
+                keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
-                at = position, cells, skipped, size, alike
+                at = position, cells, skipped, size, reach, alike
                 binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at, self.run))
         return binned, tuple(keys)
 

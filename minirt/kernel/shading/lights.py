@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
 from minirt.lanes import (
@@ -13,6 +13,7 @@ from minirt.lanes import (
     any,
     copysign,
     dot,
+    greatest,
     inverse_root,
     load,
     load_vec,
@@ -49,6 +50,49 @@ def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[V
     rim = clamp_to_unit((-dot(to_light, axis) - spots[light, 3]) * spots[light, 4])
     strength = where(parallel, 1.0, smoothstep(rim) * maximum(1.0 - distance * spots[light, 5], 0.0))
     return to_light, distance, strength
+
+
+FARTHER = 0.125  # of a cell of a grid: how much farther its list holds, for rounding
+
+
+class LightGrid(NamedTuple):
+    """Grids of cubic cells, the finest first, with lists of the light sources that reach what is in a cell or, along
+    any axis, up to an edge above it.
+
+    List c is `sources[starts[c]:starts[c + 1]]`, in the order of the scene. The last list has all light sources.
+    """
+
+    grids: Any  # (g, 8) least corner; cells along a scene unit, and along each edge; the list of its first cell
+    starts: Any  # int32
+    sources: Any  # int32
+
+
+def sources_in_reach(grid: LightGrid, point: Vec, rounding: Number, hit: Mask) -> tuple[int, int]:
+    """Return the range in `LightGrid.sources` of all that reach some of the points of `hit`, known up to `rounding`."""
+    cell, number = -1, grid.starts.shape[0] - 2
+    low_x, low_y, low_z = least(point.x, hit), least(point.y, hit), least(point.z, hit)
+    high_x, high_y, high_z = -least(-point.x, hit), -least(-point.y, hit), -least(-point.z, hit)
+    inexact = -least(-rounding, hit)
+    for level in range(grid.grids.shape[0]):
+        box = grid.grids[level]
+        x = cell_along(low_x, high_x, box[0], box[3], box[4])
+        y = cell_along(low_y, high_y, box[1], box[3], box[5])
+        z = cell_along(low_z, high_z, box[2], box[3], box[6])
+        if cell < 0 and min(x, y, z) >= 0.0 and 4.0 * inexact * box[3] < FARTHER:
+            cell = int((z * box[5] + y) * box[4] + x)
+            number = int(box[7]) + cell
+    return int(grid.starts[number]), int(grid.starts[number + 1])
+
+
+def least(x: Number, rays: Mask) -> float:
+    """Return the least number of some rays."""
+    return -greatest(where(rays, -x, -inf))
+
+
+def cell_along(low: float, high: float, corner: float, scale: float, cells: float) -> float:
+    """Return the number of a cell, on an axis, whose list holds from `low` to `high`; -1 if there is none."""
+    cell = float(int(min(max((low - corner) * scale, 0.0), cells - 1.0)))
+    return cell if min((high - corner) * scale, cells) <= cell + 2.0 else -1.0
 
 
 def clamp_to_unit(x: Number) -> Number:

@@ -6,7 +6,7 @@ from typing import Any
 
 from minirt.kernel import bvh_traversal
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
-from minirt.kernel.shading.lights import incident_light, sampled_position, specular
+from minirt.kernel.shading.lights import incident_light, sampled_position, sources_in_reach, specular
 from minirt.kernel.shading.shadows import bump_fading, has_bumps, light_through_glass, smooth_points
 from minirt.kernel.shading.surfaces import MIN_WEIGHT, Surface, clearance, tint
 from minirt.kernel.shadow_rays import ShadowRays, unoccluded
@@ -37,7 +37,13 @@ def direct_light(
     total = where(hit, vector(scene.ambient, 0), Vec(0.0, 0.0, 0.0))
     zero = splat(0.0, extent)
     highlight = Vec(zero, zero, zero)
-    for i in range(scene.lights.shape[0]):
+    first, end = 0, scene.lights.shape[0]
+    if scene.light_grid is not None and has_rows(scene.light_grid.grids):
+        first, end = sources_in_reach(scene.light_grid, surface.point, rounding, hit)
+    for number in range(first, end):
+        i = number
+        if scene.light_grid is not None and has_rows(scene.light_grid.grids):
+            i = int(scene.light_grid.sources[number])
         intensity = vector(scene.lights[i], 3)
         rays, strength = aim(scene, memory, i, start)
         to_light = rays.direction

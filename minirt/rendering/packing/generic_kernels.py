@@ -16,6 +16,7 @@ from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_nodes import WIDTH, Tree
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays, row_type
+from minirt.kernel.shading.lights import LightGrid
 from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.rendering.packing.bvh import block_type
@@ -38,7 +39,7 @@ OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() i
 ROWS = tuple(name for name in OPTIONAL if name in FEATURES and name not in ("patterns", "environment"))
 PLAIN = frozenset({"smooth"})  # as meshes are among all kinds of shapes
 FULL = frozenset(OPTIONAL + MAPS)
-FULL_SINGLE = PLAIN | {"surface_maps"} | {name for name, feature in FEATURES.items() if feature.single}
+FULL_SINGLE = PLAIN | {"surface_maps", "light_grid"} | {name for name, feature in FEATURES.items() if feature.single}
 
 FULL_DOUBLE = GenericKernel("full", "double", FULL)
 # The most specialised first.
@@ -116,6 +117,7 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
             Group(each, indices, indices.reshape(0, 0), ABSENT, trees if kind is MESH else None)
             for kind, each in zip(ALL_KINDS, rows, strict=True)
         ),
+        light_grid=LightGrid(numbers((0, 8)), indices, indices),
         eye_medium=numbers(3),
         patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
         smooth=integers(0),

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.kernel.projection import MARGIN
+from minirt.kernel.shading.lights import FARTHER, LightGrid
 from minirt.materials import pictures
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import signed_heights
@@ -116,6 +117,57 @@ def spot_parameters(lights: list[Lamp]) -> np.ndarray:
     """A row for each of m lights, (m, 7): cone, fading, and 1 if it is parallel, else 0."""
     rows = [(*light.cone(), light.fading(), not light.place) for light in lights]
     return np.array(rows, np.float64).reshape(len(lights), 7)
+
+
+# Light sources that fade have lists where there are so many. Cells along the usual reach, by how much the cells of one
+# grid are longer than those of the last, and entries of all lists of a grid, at most.
+MANY, CELLS_IN_REACH, COARSER, MOST_ENTRIES = 8, 3, 4, 2**19
+
+
+def light_grid(sources: np.ndarray, spots: np.ndarray | None) -> LightGrid | None:
+    """List which of m light sources, rows (m, 6) and of `spot_parameters`, reach each cell of grids around all that
+    fade; without grids where few do."""
+    if spots is None:
+        return None
+    with np.errstate(divide="ignore"):
+        reach, centres = 1 / spots[:, 5:6], sources[:, :3]
+    fades = np.isfinite(reach[:, 0])
+    grids, sizes, members = np.zeros((0, 8)), [np.zeros(1, np.int64)], [np.zeros(0, np.int64)]
+    if fades.sum() >= MANY:
+        low, high = (centres - reach)[fades].min(axis=0), (centres + reach)[fades].max(axis=0)
+        edge, counts = float(np.median(reach[fades])) / CELLS_IN_REACH, np.full(3, np.inf)
+        while counts.max() > COARSER:
+            counts = np.ceil((high - low) / edge)
+            lists = sources_of_cells((centres - low) / edge, reach / edge, counts)
+            if lists:
+                grids = np.vstack([grids, [*low, 1 / edge, *counts, sum(map(len, sizes)) - 1]])
+                sizes.append(lists[0])
+                members.append(lists[1])
+            edge *= COARSER
+    starts = np.cumsum(np.concatenate([*sizes, [len(reach)]]))
+    return LightGrid(grids, starts.astype(np.int32), np.concatenate([*members, np.arange(len(reach))]).astype(np.int32))
+
+
+def sources_of_cells(
+    centres: np.ndarray, reach: np.ndarray, counts: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the lengths of the lists of all cells, and their members one after the other; None where they are too
+    long. Centres (m, 3) and reach (m, 1) are in edges of a cell; the list of a cell holds up to an edge above it."""
+    ends = centres - reach - 1 - FARTHER, centres + reach + FARTHER
+    first, last = (np.clip(end, 0, counts - 1).astype(np.int64) for end in ends)
+    spans = last - first + 1
+    entries = spans.prod(axis=1)
+    if max(counts.prod(), entries.sum()) > MOST_ENTRIES:
+        return None
+    source = np.repeat(np.arange(len(reach)), entries)
+    number = np.arange(len(source)) - np.repeat(np.cumsum(entries) - entries, entries)
+    x, xy = spans[source, 0], spans[source, 0] * spans[source, 1]
+    cell = first[source] + np.stack([number % x, number % xy // x, number // xy], axis=1)
+    apart = np.clip(centres[source], cell, cell + 2) - centres[source]
+    meets = (apart * apart).sum(axis=1) <= (reach[source, 0] + FARTHER) ** 2
+    place = (cell @ [1, counts[0], counts[0] * counts[1]]).astype(np.int64)[meets]
+    lengths = np.bincount(place, minlength=int(counts.prod()))
+    return lengths, source[meets][np.argsort(place, kind="stable")]
 
 
 def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radius: float = 0.0) -> np.ndarray:

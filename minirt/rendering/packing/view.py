@@ -96,6 +96,7 @@ def blurred_balls(balls: np.ndarray, camera: np.ndarray, radius: float, per_focu
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
 POINT, OTHER, COSINE = (0, 1, 2), 3, 4  # the place, in `Rounding.shifts`, of what is subtracted from a column
 PLACE = (*(OTHER,) * CENTRE, *POINT, OTHER, OTHER)  # of `MeshTrees.places`
+GRID = *POINT, *(OTHER,) * 5  # of `LightGrid.grids`
 CONE = OTHER, OTHER, OTHER, COSINE, OTHER  # a distance needs no margin: it was rounded down to 13 bits
 
 
@@ -141,6 +142,9 @@ def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> S
         columns[ORIGIN : ORIGIN + 3] = POINT
         rows = rounding.rounded(arrays.patterns.rows, tuple(columns))
         arrays = arrays._replace(patterns=arrays.patterns._replace(rows=rows))
+    if arrays.light_grid:
+        grids = rounding.rounded(arrays.light_grid.grids, GRID)
+        arrays = arrays._replace(light_grid=arrays.light_grid._replace(grids=grids))
     single: SceneArrays = as_single(
         arrays._replace(
             camera=np.concatenate([np.zeros(3), arrays.camera[3:]]),

@@ -103,15 +103,17 @@ def seen_by_light(
     cells: int,
     skipped: np.ndarray,
     radius: float = 0.0,
+    reach: float = np.inf,
     copies: int = 1,
     run: Run | None = None,
 ) -> BinnedShapes:
-    """Bin the shapes into the light buffer of a light of some radius, without the planes that are `skipped` (p,).
+    """Bin the shapes within some reach into the light buffer of a light of some radius, without the planes that are
+    `skipped` (p,).
 
     `TooLargeError` where there is no room for so many copies of its lists.
     """
     largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    bins = Bins(kernel, shape_arrays, cube_grid(cells), radius, 0.0, skipped, copies, largest)
+    bins = Bins(kernel, shape_arrays, cube_grid(cells), radius, 0.0, skipped, copies, largest, reach=reach)
     bins.see_from(light, run)
     if cells == 1:
         return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
@@ -130,7 +132,7 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 
 class Bins:
     """The shapes in the cells of a grid of directions from a point: when it moves they are binned anew, in the same
-    arrays. Radius, lean, traits and extents are those of `minirt.kernel.binning.Projection`."""
+    arrays. Radius, reach, lean, traits and extents are those of `minirt.kernel.binning.Projection`."""
 
     def __init__(
         self,
@@ -144,6 +146,7 @@ class Bins:
         largest: int = system.UNLIMITED,
         traits: np.ndarray | None = None,
         extents: np.ndarray = NO_EXTENTS,
+        reach: float = np.inf,
     ) -> None:
         """`skipped` planes (p,) are in no list. `TooLargeError` where there is no room for so many copies of the lists,
         or where they would have more than `largest` bytes."""
@@ -159,6 +162,7 @@ class Bins:
             origin=np.zeros(3),
             grid=grid,
             radius=radius,
+            reach=reach,
             lean=lean,
             **{name: getattr(shape_arrays, name) for name in BOUNDS},
             shown=np.ones(planes, np.int64) if skipped is None else 1 - skipped,
