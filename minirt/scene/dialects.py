@@ -18,7 +18,7 @@ from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, T
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
 from minirt.scene.element_reader import HEX_COLOUR
-from minirt.scene.elements import LAMPS, Ambient, Camera, FurtherCamera, Resolution
+from minirt.scene.elements import LAMPS, Ambient, Camera, FurtherCamera
 from minirt.scene.lines import Line, Log, first_unprintable, line_from
 from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
 
@@ -33,6 +33,7 @@ SCALED = "directions are scaled to length 1"
 JOINED = "three numbers with blanks between them are read as one field"
 NAMED = "names of colours and materials become their R,G,B"
 WHITE = "what has no colour is white"
+ORDER = "fields in another order become those of this format, without turns and second axes"
 RENAMED = "elements of other names become those of this format"
 EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
 REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
@@ -42,8 +43,16 @@ ABSENT = "pictures that cannot be read are left out"
 HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
 
 # What lines of other programs begin with: elements by another name, and what is no element.
-CODES = {"cam": "c", "camera": "c", "obj": "ob", "cu": "bo", "cube": "bo", "ci": "di"}
-CUBE = {"cu", "cube"}
+CODES = {
+    **dict.fromkeys(("cam", "camera"), "c"),
+    **dict.fromkeys(("cu", "cb", "bx", "cube", "cub"), "bo"),
+    **dict.fromkeys(("ci", "dk", "ds", "disk", "circle"), "di"),
+    **dict.fromkeys(("pb", "par", "para"), "pa"),
+    **dict.fromkeys(("lpt", "ptl", "pt", "lp"), "l"),
+    **dict.fromkeys(("obj", "mesh"), "ob"),
+    "hb": "hy",
+}
+LIGHT = re.compile(r"sun|spot\w*|\w*(?:light|lamp)\w*|a?rl|sl\w?", re.IGNORECASE)
 SETTING = re.compile(
     r"@?(?:ma?t|mtl|tex|txt?|xpm|bmp|img|sky|set|render|res|max|aa|alias|win|title|name|depth|sampl|thread|pat)\w*[:=]?"
     r"|[A-Z]|[a-z]_\w*|[-{}/=*+]+.*|@.*",
@@ -56,6 +65,8 @@ NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
 # Blanks may stand around the commas of three numbers, and within quotes.
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
+FRAMING = re.compile(r"[()|]+,?")  # around the numbers of a field, and between fields
+UP = "0,1,0"
 
 
 class Row(NamedTuple):
@@ -107,6 +118,26 @@ ROWS = (
     Row(N, one_number, REFLECTIVITY),
 )
 GUESSES = EXPONENT, REFLECTIVITY
+
+
+class Layout(NamedTuple):
+    """Another order of the first fields of an element."""
+
+    code: str
+    pattern: str  # of the letters of the words: v for three numbers, n for one, w for others
+    means: Callable[..., list[str]]  # the words of the format, from all words
+
+
+LAYOUTS = (
+    Layout("bo", "vn(?!n)", lambda centre, edge, *rest: [centre, UP, edges(edge), *rest]),
+    Layout("bo", "vvn(?!n)", lambda centre, axis, edge, *rest: [centre, axis, edges(edge), *rest]),
+    Layout("bo", "vnnn|vvv(?![vn])", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
+    Layout("bo", "vvv(v|nnn)v", lambda centre, _across, axis, *rest: [centre, axis, *rest]),
+    Layout("el", "vvv(?!v)", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
+    Layout("ob", "w$", lambda file: [file, "0,0,0", "1"]),
+    Layout("ob", "wvvv", lambda file, place, _turns, sizes, *rest: [file, place, first_of(sizes), *rest]),
+    Layout("ob", "vvvvw", lambda place, _turns, sizes, colour, file: [file, place, first_of(sizes), colour]),
+)
 MOST_SUGGESTED = 3  # lines
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
 
@@ -143,35 +174,59 @@ def translated(line: Line, colours: Mapping[str, str], folder: Path | None) -> T
     hex_colour = HEX_COLOUR.match(line.text, line.end)
     rest = css_colour(hex_colour[0]) + line.text[hex_colour.end() :] if hex_colour else line.text[line.end :]
     body, _, comment = (line.text[: line.end] + rest).partition("#")
-    words = ["".join(word.split()) for word in WORD.findall(body)]
+    words = ["".join(word.split()) for word in WORD.findall(FRAMING.sub(" ", body))]
     if not words or first_unprintable(line) >= 0:
         return None
     code, *values = words
-    kind = SPELLINGS.get(CODES.get(code.lower(), code)) or SPELLINGS.get(code.lower()) or SPELLINGS.get(code.upper())
+    kind = kind_of(code)
     if kind is None:
-        is_shape = any(map(TRIPLE.fullmatch, values)) and not SETTING.fullmatch(code)
-        return Translation("", ((MISSING if is_shape else SETTINGS, code),))
+        is_setting = SETTING.fullmatch(code) or len(values) < 2 or not any(map(TRIPLE.fullmatch, values))
+        return Translation("", ((SETTINGS if is_setting else LIGHTS if LIGHT.fullmatch(code) else MISSING, code),))
     changes = [] if code in SPELLINGS else [(RENAMED, code)]
     if hex_colour:
         changes.append((NAMED, hex_colour[0]))
-    try:
-        spelled = fields_of_words(kind, cube(values) if code in CUBE else values, colours, changes)
-    except FieldError:
-        return Translation("", ((SETTINGS, code),)) if kind in (Resolution, FurtherCamera) else None
+    ordered = in_order(kind.code, values)
+    if ordered != values:
+        changes.append((ORDER, code))
+    spelled = fields_of_words(kind, ordered, colours, changes)
     if spelled is None:
         unread = MISSING if kind in SHAPES else LIGHTS if kind in LAMPS else SETTINGS
-        return Translation("", ((unread, code),)) if values and kind not in (Ambient, Camera) else None
+        return Translation("", ((unread, code),)) if kind not in (Ambient, Camera) else None
     fields, others = spelled
     attributes = meanings(kind, others, folder, changes)
     return Translation(" ".join([kind.code, *fields, *attributes]) + f" #{comment}" * bool(comment), tuple(changes))
 
 
-def cube(words: list[str]) -> list[str]:
-    """Return the words of a box for those of a cube: its centre, perhaps an axis, its edge and its colour."""
-    has_axis = len(words) > 1 and bool(TRIPLE.fullmatch(words[1]))
-    centre, axis, rest = words[:1], words[1:2] if has_axis else ["0,1,0"], words[1 + has_axis :]
-    edge = rest[:1] * (1 if "," in "".join(rest[:1]) else 3)
-    return [*centre, *axis, ",".join(edge), *rest[1:]]
+def without_shape(line: Line, errors: list[Problem]) -> Translation | None:
+    """Leave out the line of a shape that is well spelled but for `errors`, such as a file that is absent."""
+    code = line.text.split()[0]
+    reason = errors[0].message.rpartition(": ")[2]
+    return Translation("", ((MISSING, f"{code} ({reason})"),)) if kind_of(code) in SHAPES else None
+
+
+def kind_of(code: str) -> type[Element] | None:
+    """Return the kind of element that a line begins with; three letters of its name are enough."""
+    lower = code.lower()
+    known = next(filter(None, map(SPELLINGS.get, (code, CODES.get(lower, ""), lower, code.upper()))), None)
+    named = (kind for kind in SPELLINGS.values() if len(code) > 2 and kind.title.startswith(lower))
+    return known or next(named, None)
+
+
+def in_order(code: str, words: list[str]) -> list[str]:
+    """Return the words of an element in the order of its fields here, where they have a known order of their own."""
+    letters = "".join("v" if TRIPLE.fullmatch(word) else "n" if re.fullmatch(NUMBER, word) else "w" for word in words)
+    rows = (row for row in LAYOUTS if row.code == code and re.match(row.pattern, letters))
+    return next((row.means(*words) for row in rows), words)
+
+
+def edges(edge: str) -> str:
+    """Return the sizes of a cube."""
+    return ",".join([edge] * 3)
+
+
+def first_of(sizes: str) -> str:
+    """Return the first of three numbers."""
+    return sizes.partition(",")[0]
 
 
 def fields_of_words(
@@ -179,7 +234,7 @@ def fields_of_words(
 ) -> tuple[list[str], list[str]] | None:
     """Spell the fields of an element by the first words, and return the others, too.
 
-    None where a field is missing, or three numbers stand in the place of one; FieldError for a malformed word.
+    None where a field is missing or has no value.
     """
     fields = []
     for field in positional_fields(kind):
@@ -188,22 +243,15 @@ def fields_of_words(
         is_absent = not (words and NUMERIC.match(words[0]) and "," in words[0])
         if spelled is None and isinstance(field, Colour) and field.required and is_absent:
             spelled = Spelling("255,255,255", 0, WHITE)
+        if spelled is None and field.required:
+            return None
         if spelled is None:
-            if field.required and words and not is_other(field, words[0]):
-                raise FieldError(f"cannot be {quoted(words[0])}")
-            if field.required:
-                return None
             break
         if spelled.sort:
             changes.append((spelled.sort, " ".join(words[: spelled.words] or [kind.code])))
         fields.append(spelled.text)
         words = words[spelled.words :]
     return fields, words
-
-
-def is_other(field: Field, word: str) -> bool:
-    """Whether a word stands for a field of another sort: a number for three of them, or three for one."""
-    return re.fullmatch(NUMBER if isinstance(field, Three) else TRIPLE, word) is not None
 
 
 def colour_first(words: list[str], colours: Mapping[str, str]) -> list[str]:

@@ -123,9 +123,11 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
     seen.update(known)
     if translation.text:
         item = read_line(line_from(line.number, translation.text), seen, log)
-        if item is None:
+        unread = log.errors[before:]
+        if item is None and (translation := dialects.without_shape(line, unread)) is None:
             log.errors[before:] = errors
             return None
+        del log.errors[before:]
     for sort, words in translation.changes:
         log.change(line, sort, words)
     is_missing = dialects.MISSING in dict(translation.changes)
