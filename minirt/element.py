@@ -42,8 +42,8 @@ def positional_fields(record: type[Record]) -> tuple[Field, ...]:
 
 @cached_per_kind
 def fields_by_key(record: type[Record]) -> dict[str, Field]:
-    """The attributes of a record by all of their keys."""
-    return {key: field for field in fields_of(record) if field.keyed for key in field.keys}
+    """The attributes of a record by their keys."""
+    return {field.keyword: field for field in fields_of(record) if field.keyed}
 
 
 @cached_per_kind

@@ -70,12 +70,11 @@ def attribute_row(field: Field) -> str:
     parts = fields_of(field.record) if isinstance(field, Compound) else ()
     entries = (f"`{part.placeholder or part.notation}` {description(part)}" for part in parts)
     text = "<br>".join([description(field), *entries])
-    alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
+    alone = f", or `{field.keyword}` for `{field.keyword}:{field.bare}`" if field.bare else ""
     for kind in ELEMENTS.values():
         own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
-        alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
-    aliases = "; also " + ", ".join(f"`{alias}:`" for alias in field.aliases) if field.aliases else ""
-    return f"| `{field.notation}`{alone}{aliases} | {field.sort} | {text} |"
+        alone += f" ({kind.plural}: `{field.keyword}:{own.bare}`)" if own else ""
+    return f"| `{field.notation}`{alone} | {field.sort} | {text} |"
 
 
 def name_and_count(kind: type[Element]) -> str:

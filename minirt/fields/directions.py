@@ -55,7 +55,7 @@ class Direction(Three):
     @property
     def notation(self) -> str:
         components = ",".join(self.name[:1] + axis for axis in "xyz")
-        return f"{self.keys[0]}:{components}" if self.keyed else components
+        return f"{self.prefix}{components}" if self.keyed else components
 
 
 def unit(vector: Triple) -> Triple:

@@ -18,6 +18,7 @@ from typing import Any, ClassVar, NamedTuple
 from minirt.errors import FieldError, quoted
 from minirt.records import Immutable, record
 
+SEPARATOR = ","  # of the parts of a value
 FORBIDDEN = '\t\r\n\0#"'  # `#` begins a comment; a name with spaces is written within quotes
 
 
@@ -53,7 +54,6 @@ class Field(Immutable):
     step: float = 1.0  # what one key press changes, in `unit`, or as a factor for a length
     keyed: bool = False  # an attribute: `key:value` behind the other fields, left out at its default
     key: str = ""  # of an attribute; the field's name if empty
-    aliases: tuple[str, ...] = ()  # keys that mean the same
     bare: str = ""  # the value that the key alone stands for, if it may stand alone
     sort: str = ""  # of an attribute that all elements of a sort have: the name of the sort
     placeholder: str = ""  # of an attribute: stands for its value in the format of a line; the unit if empty
@@ -137,14 +137,19 @@ class Field(Immutable):
         return self.name.replace("_", " ")
 
     @property
-    def keys(self) -> tuple[str, ...]:
-        """The keys of an attribute, the usual one first."""
-        return (self.key or self.name, *self.aliases)
+    def keyword(self) -> str:
+        """The key of an attribute: `mirror`, or `pattern:marble`."""
+        return self.key or self.name
+
+    @property
+    def prefix(self) -> str:
+        """What precedes the value of an attribute in a line: `mirror:`, or `pattern:marble,`."""
+        return self.keyword + (SEPARATOR if ":" in self.keyword else ":")
 
     @property
     def notation(self) -> str:
         """The field in the format of its line."""
-        return f"{self.keys[0]}:{self.placeholder or self.unit or 'value'}" if self.keyed else self.name
+        return f"{self.prefix}{self.placeholder or self.unit or 'value'}" if self.keyed else self.name
 
     @property
     def range(self) -> str:

@@ -26,7 +26,7 @@ GREATEST = 1e6  # exponent: its highlight is a tenth of a degree wide
 
 @record()
 class Specular(Material):
-    """Specular highlight: `specular:share,exponent[,blinn]`, in short `spc:`.
+    """Specular highlight: `specular:share,exponent[,blinn]`.
 
     Every light that reaches a point adds `share` of its intensity times cos(a)^`exponent`, whatever the colour of the
     surface. `a` is the angle between the mirrored direction of the light and the direction to the eye (Phong 1975,
@@ -59,39 +59,34 @@ Glow = partial(Share, initial=0.5, feature="glow", packed=lambda share, reader: 
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
 MAPPED: dict[str, Any] = {"mapped": True} | SHARED
-BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | MAPPED
+MARBLE, WOOD, CLOUDS = ({"key": f"pattern:{name}"} | MAPPED for name in ("marble", "wood", "clouds"))
+BOARD: dict[str, Any] = {"record": Checker} | MAPPED
 
 
 @record(kw_only=True)
 class Attributes(Element):
     """The materials that every shape may have; None where it has not."""
 
-    specular: Specular | None = declare(
-        Compound, "highlight", record=Specular, aliases=("spc",), default=None, shared=SHARED
-    )
-    mirror: Mirror | float | None = declare(
-        Compound, "mirrored light", record=Mirror, aliases=("mir",), default=None, shared=SHARED
-    )
-    glass: Glass | None = declare(
-        Compound, "refracted light", record=Glass, aliases=("ref",), default=None, shared=SHARED
-    )
+    specular: Specular | None = declare(Compound, "highlight", record=Specular, default=None, shared=SHARED)
+    mirror: Mirror | float | None = declare(Compound, "mirrored light", record=Mirror, default=None, shared=SHARED)
+    glass: Glass | None = declare(Compound, "refracted light", record=Glass, default=None, shared=SHARED)
     tint: Tint | None = declare(Compound, "colour that glass gives to light", record=Tint, default=None, shared=SHARED)
     fresnel: float | None = declare(Fresnel, "how far Fresnel's equations count", bare="1", default=None, shared=SHARED)
     glow: float | None = declare(Glow, "light of its own", default=None, shared=SHARED)
     checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", default=None, shared=BOARD)
-    texture: str | None = declare(
-        Texture, "picture in the place of the colour", aliases=("txm", "tx"), default=None, shared=MAPPED
-    )
-    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), default=None, shared=MAPPED)
-    normal_map: str | None = declare(
-        NormalMap, "picture of normals", key="normal", aliases=("nm",), default=None, shared=MAPPED
-    )
+    texture: str | None = declare(Texture, "picture in the place of the colour", default=None, shared=MAPPED)
+    bump: Bump | None = declare(Compound, "relief", record=Bump, default=None, shared=MAPPED)
+    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", default=None, shared=MAPPED)
     uv: Placement | None = declare(
         Compound, "scale, shift and turn of u and v", record=Placement, default=None, shared=SHARED
     )
-    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, default=None, shared=MAPPED)
-    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, default=None, shared=MAPPED)
-    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, default=None, shared=MAPPED)
+    marble: Marble | None = declare(
+        Compound, "veins of marble", key="pattern:marble", record=Marble, default=None, shared=MAPPED
+    )
+    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, default=None, shared=WOOD)
+    clouds: Clouds | None = declare(
+        Compound, "clouds", key="pattern:clouds", record=Clouds, default=None, shared=MAPPED
+    )
 
     @property
     def is_mapped(self) -> bool:

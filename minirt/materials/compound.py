@@ -106,4 +106,4 @@ class Compound(Field):
 
     @property
     def notation(self) -> str:
-        return f"{self.keys[0]}:{self.pattern}"
+        return f"{self.prefix}{self.pattern}"

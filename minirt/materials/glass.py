@@ -15,7 +15,7 @@ from minirt.records import record
 
 BLACK = 1e30  # absorption, in halvings for each scene unit, of what lets nothing of a colour through
 HIGHEST_ROOT = 1.0 - 1e-9  # of the reflectance of a varnish; that of a perfect mirror would have an infinite index
-Fade = partial(Real, low=0.0, high=FARTHEST, step=0.5, unit="scene unit, 0 for never", placeholder="fade")
+Fade = partial(Real, low=0.0, high=FARTHEST, step=0.5, unit="scene unit, 0 for never")
 
 
 class Secondary(Material):
@@ -44,10 +44,10 @@ class Secondary(Material):
 
 @record()
 class Mirror(Secondary):
-    """Mirror: `mirror:share[,fade]`, in short `mir:`.
+    """Mirror: `mirror:share[,range]`.
 
     `share` of the light seen at a point is that along the mirrored ray (Whitted 1980, An Improved Illumination Model
-    for Shaded Display). The rest is the surface's own colour; highlights are added to both. With `fade` the mirrored
+    for Shaded Display). The rest is the surface's own colour; highlights are added to both. With `range` the mirrored
     light loses strength in proportion to the distance of what is mirrored, and is gone at that distance. Rays are
     followed up to `--depth` reflections, and not where their share of a pixel is 1/1024 or less. If the shares of
     mirror and glass add up to more than 1, both are scaled down alike.
@@ -57,18 +57,19 @@ class Mirror(Secondary):
 
     title = "mirror"
     share: float = declare(Real, "share of mirrored light", low=0.0, high=1.0, step=0.05, initial=0.3)
-    fade: float = declare(Fade, "distance at which mirrored light is gone", default=0.0)
+    fade: float = declare(Fade, "distance at which mirrored light is gone", default=0.0, placeholder="range")
 
 
 @record()
 class Glass(Secondary):
-    """Glass: `glass:ior[,share[,fade]]`, in short `ref:`.
+    """Glass: `glass:ior[,share[,visibility]]`.
 
     `share` of the light seen at a point, all of it when left out, comes through the surface (Whitted 1980, An Improved
     Illumination Model for Shaded Display). It is refracted by Snell's law, with the index of refraction `ior` inside
     and 1 outside, or mirrored where the angle is too flat to leave (total internal reflection). A shape without inside,
     such as a plane, counts the side that its normal points away from as inside. Water has 1.33, glass 1.5, diamond
-    2.42; with 1 light goes straight on. With `fade` the refracted light loses strength in proportion to the distance
+    2.42; with 1 light goes straight on. `share` counts at each surface: of what lies behind a ball of share 0.9, which
+    has two in a row, 0.81 is seen. With `visibility` the refracted light loses strength in proportion to the distance
     from the surface, and is gone at that distance.
 
     Lamps shine through glass: every surface between a point and a lamp lets its `share` through, so that a ball does
@@ -81,7 +82,7 @@ class Glass(Secondary):
     title = "glass"
     ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02, initial=1.5)
     share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0)
-    fade: float = declare(Fade, "distance at which refracted light is gone", default=0.0)
+    fade: float = declare(Fade, "distance at which refracted light is gone", default=0.0, placeholder="visibility")
 
     def features(self) -> tuple[str, ...]:
         return (*super().features(), "transparent") if self.share else ()

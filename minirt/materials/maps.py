@@ -15,7 +15,7 @@ from minirt.records import record
 
 @record()
 class Checker(Material):
-    """Checkerboard: `checker:size[,R,G,B]`, in short `pat:`; `checker` alone is `checker:0.125`, on planes `checker:1`.
+    """Checkerboard: `checker:size[,R,G,B]`; `checker` alone is `checker:0.125`, on planes `checker:1`.
 
     Squares with sides of length `size` in the surface's coordinates u and v have in turn the colour of the surface (or
     its texture) and the second colour, black when left out. The square with 0 <= u < size and 0 <= v < size has the
@@ -33,7 +33,7 @@ class Checker(Material):
         return {"checks": (self.size, *reader.shares(self.colour))}
 
 
-# Texture: `texture:file`, in short `txm:`.
+# Texture: `texture:file`.
 #
 # A picture that gives the surface its colours. It lies on the surface's coordinates u, from its left to its right
 # border, and v, from its lower to its upper border, and is repeated beyond them. PNG, JPEG and other raster formats are
@@ -45,7 +45,7 @@ Texture = partial(Picture, feature="textures", packed=lambda file, reader: reade
 
 @record()
 class Bump(Material):
-    """Bump map: `bump:file[,strength]`, in short `bum:`.
+    """Bump map: `bump:file[,strength]`.
 
     Bump mapping (Blinn 1978, Simulation of Wrinkled Surfaces): the picture is a height map, and the surface is lit as
     if it were higher where the picture is lighter; its shape stays as it is. The picture lies on the surface as a
@@ -68,7 +68,7 @@ class Bump(Material):
         return {"bumps": (reader.heights(self.file), self.strength)} if self.has_effect() else {}
 
 
-# Normal map: `normal:file`, in short `nm:`.
+# Normal map: `normal:file`.
 #
 # A picture whose colours are the normals with which the surface is lit; it lies on the surface as a texture does. Red
 # is the component along u, green that along v, blue that along the surface's own normal: 1 means -1, 128 means 0, 255
@@ -113,7 +113,7 @@ MOST_OCTAVES = 12
 
 @record()
 class Pattern(Material):
-    """Base of solid textures: `marble:`, `wood:` and `clouds:` have the same values.
+    """Base of solid textures: `pattern:marble`, `pattern:wood` and `pattern:clouds` have the same values.
 
     They are formulas of space in the frame of the shape, computed by `minirt.kernel.shading.patterns`.
     """
@@ -130,7 +130,7 @@ class Pattern(Material):
 
 @record()
 class Marble(Pattern):
-    """Marble: `marble:size[,R,G,B[,octaves[,height]]]`.
+    """Marble: `pattern:marble,size[,R,G,B[,octaves[,height]]]`.
 
     Veins of a second colour, about `size` scene units apart, run through the shape and are moved by turbulence: fractal
     noise of absolute values (Perlin 1985, An Image Synthesizer). They move and turn with the shape, and have no seam.
@@ -140,7 +140,7 @@ class Marble(Pattern):
     grooves. `octaves` are levels of detail, each twice as fine as the one before; those that are finer than the
     spacing of a pixel's samples fade.
 
-        sp 0,0,20 8 235,232,225 marble:1.5,70,75,90
+        sp 0,0,20 8 235,232,225 pattern:marble,1.5,70,75,90
     """
 
     title = "marble"
@@ -150,7 +150,7 @@ class Marble(Pattern):
 
 @record()
 class Wood(Pattern):
-    """Wood: `wood:size[,R,G,B[,octaves[,height]]]`.
+    """Wood: `pattern:wood,size[,R,G,B[,octaves[,height]]]`.
 
     Rings of a second colour around the axis of the shape, `size` scene units apart, with fine grain along it. On flat
     shapes the grain runs to the right, and the middle of the rings lies behind the surface. The rings move and turn
@@ -158,7 +158,7 @@ class Wood(Pattern):
 
     `octaves` and `height` are those of marble; the grain begins with the third octave.
 
-        cy 0,0,20 0,1,0 6 9 200,150,90 wood:0.7
+        cy 0,0,20 0,1,0 6 9 200,150,90 pattern:wood,0.7
     """
 
     title = "wood"
@@ -168,14 +168,14 @@ class Wood(Pattern):
 
 @record()
 class Clouds(Pattern):
-    """Clouds: `clouds:size[,R,G,B[,octaves[,height]]]`.
+    """Clouds: `pattern:clouds,size[,R,G,B[,octaves[,height]]]`.
 
     Soft spots of a second colour, about `size` scene units wide: fractal noise (Perlin 1985, An Image Synthesizer).
     They move and turn with the shape, and have no seam. They cover its texture, checkerboard and all other patterns.
 
     `octaves` and `height` are those of marble.
 
-        sp 0,0,20 8 60,120,210 clouds:3
+        sp 0,0,20 8 60,120,210 pattern:clouds,3
     """
 
     title = "clouds"

@@ -17,7 +17,7 @@ from minirt.errors import FieldError, FileError, Problem, printable, quoted
 from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
-from minirt.scene.element_reader import HEX_COLOUR
+from minirt.scene.element_reader import HEX_COLOUR, split_key
 from minirt.scene.elements import LAMPS, Ambient, Camera, FurtherCamera
 from minirt.scene.lines import Line, Log, first_unprintable, line_from
 from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
@@ -333,15 +333,15 @@ def meanings(kind: type[Element], words: list[str], folder: Path | None, changes
     found: dict[str, str] = {}
 
     def own(word: str) -> bool:
-        key, _, value = word.partition(":")
-        return key in keyed and not hindrance(keyed[key], value or keyed[key].bare, folder)
+        key, start = split_key(word)
+        return key in keyed and not hindrance(keyed[key], word[start:] if start else keyed[key].bare, folder)
 
     while words:
         used, attributes, sort = (1, words[0], "") if own(words[0]) else meaning(words, are_guessed)
         for attribute in attributes.split():
-            key, _, value = attribute.partition(":")
+            key, start = split_key(attribute)
             field = None if key in found else keyed.get(key)
-            problem = hindrance(field, value or field.bare, folder) if field else LEFT_OUT
+            problem = hindrance(field, attribute[start:] if start else field.bare, folder) if field else LEFT_OUT
             if problem:
                 sort = problem
             else:

@@ -19,11 +19,11 @@ from minirt.helpers import file_io
 from minirt.materials import pictures
 from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
-from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, SPELLINGS, nearest_element, nearest_key
+from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_key
 
 SLASHES = re.compile(r"(?<![^ \t])//")
 COMMA_AND_BLANK = re.compile(r"[ \t],|,[ \t]")
-KEY = re.compile(r"([A-Za-z_]+):")
+KEY = re.compile(r"(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):")
 HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
 
 
@@ -53,7 +53,15 @@ class Slot(NamedTuple):
 
 def is_attribute(raw: str, keyed: dict[str, Field]) -> bool:
     """Whether a word is `key:value`, or a key that may stand alone."""
-    return bool(KEY.match(raw)) or (raw in keyed and bool(keyed[raw].bare))
+    key, start = split_key(raw)
+    return start > 0 or (key in keyed and bool(keyed[key].bare))
+
+
+def split_key(word: str) -> tuple[str, int]:
+    """Return the key of an attribute, by its present name, and where its value begins: 0 where it has none."""
+    match = KEY.match(word)
+    key = (match[1] or match[2]) if match else word
+    return OLD_NAMES.get(key, key), match.end() if match else 0
 
 
 def split_line(line: Line, log: Log) -> list[Word] | None:
@@ -139,17 +147,20 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
     keyed = fields_by_key(kind)
     slots: dict[str, Slot] = {}
     for word in attributes:
-        match = KEY.match(word.raw)
-        key = match[1] if match else word.raw
+        key, start = split_key(word.raw)
+        written = word.raw[: start - 1] if start else word.raw
         field = keyed.get(key)
         if not is_attribute(word.raw, keyed):
             log.error(line, f"only attributes 'name:value' follow an attribute, got {quoted(word.raw)}", word.column)
         elif field is None:
-            log.error(line, unknown_key_message(kind, key), word.column, len(key))
+            log.error(line, unknown_key_message(kind, key), word.column, len(written))
         elif field.name in slots:
-            log.error(line, f"{kind.title} has '{field.keys[0]}' twice", word.column, len(key))
+            log.error(line, f"{kind.title} has '{key}' twice", word.column, len(written))
         else:
-            slots[field.name] = Slot(kind, field, word, match.end() if match else 0, bare=match is None)
+            slots[field.name] = Slot(kind, field, word, start, bare=not start)
+            if not word.raw.startswith(key):
+                message = f"'{written}' is the old name of '{field.notation}': later versions will not read it"
+                log.notice(line, message, word.column, len(written))
     return list(slots.values())
 
 
@@ -161,7 +172,7 @@ def unknown_key_message(kind: type[Element], key: str) -> str:
         return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
     own = fields_by_key(kind)
     guess = nearest_key(key, list(own)) or nearest_key(key, [name for keys in keys_by_title.values() for name in keys])
-    names = dict.fromkeys(field.keys[0] for field in own.values())
+    names = list(own)
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
 
 

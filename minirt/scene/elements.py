@@ -26,6 +26,7 @@ RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
 AngularDiameter = partial(Real, unit="degree", low=0.0, high=90.0, step=0.25, initial=2.0)
 WHITE = (255, 255, 255)
 DOWN = (0.0, -1.0, 0.0)
+REACH: dict[str, Any] = {"key": "reach", "keyed": True, "placeholder": "distance", "initial": 16.0}
 FADE = "distance at which its light has faded to nothing"
 SIZE = "diameter; soft shadows"
 ALL_DIRECTIONS = (0.0, 0.0, 0.0, -2.0, 1.0)  # the cone of a light that shines in all directions
@@ -155,15 +156,15 @@ class Lamp(Element):
 class Light(Lamp):
     """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format.
 
-    With `fade` its light is multiplied by 1 - distance/fade, and by 0 beyond that distance. With `size` it is a ball of
-    that diameter, which shines as a disc that faces each point: shadows are soft.
+    With `reach` its light is multiplied by 1 - distance/reach, and by 0 beyond that distance. With `size` it is a ball
+    of that diameter, which shines as a disc that faces each point: shadows are soft.
     """
 
     code, title, plural, once = "L", "light", "lights", True
     position: Triple = declare(Point, "position of the light")
     brightness: float = declare(Real, "brightness", shared=RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
-    fade: float | None = declare(Length, FADE, keyed=True, default=None, placeholder="distance", initial=16.0)
+    fade: float | None = declare(Length, FADE, default=None, shared=REACH)
     size: float | None = declare(Length, SIZE, keyed=True, default=None, placeholder="diameter", initial=1.0)
 
 
@@ -199,7 +200,7 @@ class SpotLight(Lamp):
 
     `angle` is the full opening angle. `rim` is the outer share of the half-angle, a tenth when left out, in which the
     light grows from 0 to 1 as 3 t^2 - 2 t^3, with t from 0 to 1 linear in the cosine; a rim of 0 gives a sharp edge.
-    `fade` and `size` are as for a point light; cone and fading are those of its centre.
+    `reach` and `size` are as for a point light; cone and fading are those of its centre.
     """
 
     code, title, plural = "sl", "spot light", "spot_lights"
@@ -211,7 +212,7 @@ class SpotLight(Lamp):
     rim: float = declare(
         Real, "outer share of the half-angle in which light fades", keyed=True, default=0.1, shared=RATIO
     )
-    fade: float | None = declare(Length, FADE, keyed=True, default=None, placeholder="distance", initial=16.0)
+    fade: float | None = declare(Length, FADE, default=None, shared=REACH)
     size: float | None = declare(Length, SIZE, keyed=True, default=None, placeholder="diameter", initial=1.0)
 
     def cone(self) -> tuple[float, ...]:

@@ -17,6 +17,20 @@ ELEMENTS = {element.code: element for element in KNOWN}
 # By every identifier that a line may begin with, aliases included.
 SPELLINGS = {**ELEMENTS, **{alias: element for element in KNOWN for alias in element.aliases}}
 
+# Names that attributes had in earlier versions. Lines that have them are read, with a notice, by this version alone.
+OLD_NAMES = {
+    "spc": "specular",
+    "mir": "mirror",
+    "ref": "glass",
+    "pat": "checker",
+    "txm": "texture",
+    "tx": "texture",
+    "bum": "bump",
+    "nm": "normal",
+    "fade": "reach",
+    **{name: f"pattern:{name}" for name in ("marble", "wood", "clouds")},
+}
+
 LOOKALIKES = str.maketrans("1I0", "llo")
 GLUED = re.compile(r"([A-Za-z]++)[-+.0-9]")  # an identifier without a blank before the first number
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
@@ -29,7 +43,7 @@ FOREIGN_KEYS = {
     "texture": ("tex", "xpm", "image"),
     "bump": ("height", "bump"),
     "checker": ("chess", "chequer"),
-    "fade": ("atten",),
+    "reach": ("atten",),
 }
 
 

@@ -27,7 +27,7 @@ def describe(element: Element) -> str:
 def field_text(field: Field, element: Element) -> str:
     """Return the text of a field in a line: `value` or `key:value`."""
     value = field.format(getattr(element, field.name))
-    return f"{field.keys[0]}:{value}" if field.keyed else value
+    return f"{field.prefix}{value}" if field.keyed else value
 
 
 def line_of(element: Element) -> str:

@@ -146,7 +146,7 @@ paint = Kind(
     lambda chance: chance.choice((colour, picture)).make(chance),
 )
 
-KEY = re.compile(r"([A-Za-z_]+):(.*)", re.DOTALL)
+KEY = re.compile(r"(pattern:[a-z]+(?=,|\Z)|[A-Za-z_]+(?=:))[:,]?(.*)", re.DOTALL)
 HEX_COLOUR = re.compile(r"#([0-9A-Fa-f]{3}){1,2}([ \t]|$)")
 SURE, FLAT = 1e-13, 1e-17  # shares of the size of a triangle: higher is a triangle, lower is a line
 LARGE = 1e14  # scale and place of a mesh, all of which must be within FARTHEST
@@ -166,7 +166,7 @@ SURFACE: dict[str, Kind] = {
     "bump bum": parts(picture, HEIGHT, least=1),
     "normal nm": picture,
     "uv": parts(length, length, *[between(-1e6, 1e6)] * 2, TURN, least=2),
-    **dict.fromkeys(("marble", "wood", "clouds"), PATTERN),
+    **{f"{name} pattern:{name}": PATTERN for name in ("marble", "wood", "clouds")},
 }
 ROLL = {"roll": TURN}
 TURNED = SURFACE | ROLL
@@ -174,7 +174,7 @@ AXIS = TURNED | {"axis": direction}
 CAMERA = ROLL | {
     "tone": one_of(("plain", "srgb", "filmic")), "exposure": between(-20, 20), "lens": length, "focus": length
 }  # fmt: skip
-LAMP: dict[str, Kind] = {"fade": length, "size": length}
+LAMP: dict[str, Kind] = {"reach fade": length, "size": length}
 SOLID = [point, direction, length, length, colour]  # with an axis
 BARE = {"fresnel", "checker"}  # keys that may stand alone
 

@@ -142,7 +142,7 @@ def extreme_line(kind: type[Element], extreme: float, chance: Chance) -> str:
         keyed = [field for field in fields_of(kind) if field.keyed]
         some = chance.sample(keyed, min(len(keyed), chance.choice((0, 0, 1, 2, 4))))
         words = [word_of(field, extreme, chance) for field in positional_fields(kind)]
-        words += [f"{chance.choice(field.keys)}:{word_of(field, extreme, chance)}" for field in some]
+        words += [f"{field.prefix}{word_of(field, extreme, chance)}" for field in some]
         line = " ".join((kind.code, *words))
         if read("\n".join((line, *others)).encode()):  # its values go together
             return line

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -45,11 +46,11 @@ def attributes(shape: Any) -> dict[str, Any]:
     [
         ("", {}),
         ("specular:0.5,30", {"specular": Specular(0.5, 30.0)}),
-        ("spc:.5,3e1,blinn", {"specular": Specular(0.5, 30.0, blinn=True)}),
+        ("specular:.5,3e1,blinn", {"specular": Specular(0.5, 30.0, blinn=True)}),
         ("mirror:0.3", {"mirror": Mirror(0.3)}),
-        ("mir:1", {"mirror": Mirror(1.0)}),
+        ("mirror:1", {"mirror": Mirror(1.0)}),
         ("mirror:0", {"mirror": Mirror(0.0)}),
-        ("mir:0.25,9", {"mirror": Mirror(0.25, 9.0)}),
+        ("mirror:0.25,9", {"mirror": Mirror(0.25, 9.0)}),
         ("glass:1.5,0.5,20", {"glass": Glass(1.5, 0.5, 20.0)}),
         ("tint:250,120,60", {"tint": Tint((250, 120, 60))}),
         ("tint:0,1,2,.5", {"tint": Tint((0, 1, 2), 0.5)}),
@@ -57,17 +58,17 @@ def attributes(shape: Any) -> dict[str, Any]:
         ("fresnel:0.5", {"fresnel": 0.5}),
         ("glow:0.25", {"glow": 0.25}),
         ("glass:1.5", {"glass": Glass(1.5, 1.0)}),
-        ("ref:1,0.25", {"glass": Glass(1.0, 0.25)}),
+        ("glass:1,0.25", {"glass": Glass(1.0, 0.25)}),
         ("checker:2.5", {"checker": Checker(2.5)}),
-        ("pat:2.5,1,2,3", {"checker": Checker(2.5, (1, 2, 3))}),
-        ("marble:2", {"marble": Marble(2.0)}),
-        ("wood:0.5,1,2,3", {"wood": Wood(0.5, (1, 2, 3))}),
+        ("checker:2.5,1,2,3", {"checker": Checker(2.5, (1, 2, 3))}),
+        ("pattern:marble,2", {"marble": Marble(2.0)}),
+        ("pattern:wood,0.5,1,2,3", {"wood": Wood(0.5, (1, 2, 3))}),
         (
-            "clouds:3,1,2,3,7 marble:1,9,8,7,6,-0.5",
+            "pattern:clouds,3,1,2,3,7 pattern:marble,1,9,8,7,6,-0.5",
             {"clouds": Clouds(3.0, (1, 2, 3), 7), "marble": Marble(1.0, (9, 8, 7), 6, -0.5)},
         ),
-        ("mirror:0.3 spc:0.5,30  checker:1\tglass:2", None),
-        ("pat:1 spc:0.5,30 glass:2 mirror:0.3 # all", None),
+        ("mirror:0.3 specular:0.5,30  checker:1\tglass:2", None),
+        ("checker:1 specular:0.5,30 glass:2 mirror:0.3 # all", None),
     ],
 )
 @pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER])
@@ -78,7 +79,7 @@ def test_every_shape_takes_attributes_in_any_order(line: str, words: str, values
     assert attributes(shape) == (together if values is None else values)
     assert shape == plain.replace(**attributes(shape))
     assert hash(shape) == hash(plain.replace(**attributes(shape)))
-    assert notices(f"{line} {words}") == []
+    assert not [each for each in notices(f"{line} {words}") if "has no effect without" not in each[2]]
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
@@ -191,3 +192,24 @@ USELESS = {
 def test_an_attribute_that_has_no_effect_is_told(line: str, message: str) -> None:
     assert [each[2] for each in notices(line)] == [message]
     assert not notices(f"{line} glass:1.5 mirror:0.5 checker:2")
+
+
+OLD = {
+    "spc:0.5,30 mir:0.25 ref:1.5": "specular:0.5,30 mirror:0.25 glass:1.5",
+    "pat": "checker",
+    "pat:2,1,2,3 marble:1,2,3,4": "checker:2,1,2,3 pattern:marble,1,2,3,4",
+    "wood:0.5 clouds:2,9,9,9,3,0.1": "pattern:wood,0.5 pattern:clouds,2,9,9,9,3,0.1",
+}
+
+
+@pytest.mark.parametrize(("old", "new"), OLD.items())
+def test_old_names_are_read_with_a_notice_each(old: str, new: str) -> None:
+    assert read(f"{SPHERE} {old}").spheres == read(f"{SPHERE} {new}").spheres
+    assert not set(old.split()) & set(describe(read(f"{SPHERE} {old}").spheres[0]).split())
+    told = notices(f"{SPHERE} {old}")
+    assert [message.split("'")[1] for _, _, message in told] == [re.split("[:]", word)[0] for word in old.split()]
+    assert all("is the old name of" in message for _, _, message in told)
+    assert not notices(f"{SPHERE} {new}")
+    assert [message for _, _, message in notices("l 0,0,0 1 fade:5")] == [
+        "'fade' is the old name of 'reach:distance': later versions will not read it"
+    ]

@@ -56,7 +56,7 @@ BALL = Sphere((0.0, 0.0, 20.0), 12.6, (10, 0, 255))
         (f"{SPHERE} mirror:0.5   # b", {"mirror": None}, f"{SPHERE}   # b"),
         (f"{SPHERE} mirror:0.5 checker", {"mirror": None, "checker": None, "glass": Glass(2)}, f"{SPHERE} glass:2"),
         ("l 0,0,0 1 fade:5", {"colour": (1, 2, 3)}, "l 0,0,0 1 1,2,3 fade:5"),
-        ("l 0,0,0 1", {"fade": 7.0}, "l 0,0,0 1 fade:7"),
+        ("l 0,0,0 1", {"fade": 7.0}, "l 0,0,0 1 reach:7"),
         ("sl 0,0,0 0,-1,0 40 1", {"rim": 0.0}, "sl 0,0,0 0,-1,0 40 1 rim:0"),
         ("dl 0,-1,0 1 # sun", {"direction": (1.0, 0.0, 0.0)}, "dl 1,0,0 1 # sun"),
         ("dl 0,-1,0 1 size:0.53", {"size": 2.0}, "dl 0,-1,0 1 size:2"),
