@@ -157,6 +157,7 @@ BINDINGS = (
     on_press(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
     on_press(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
     on_press(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
+    on_press(WINDOW, "toggle handles", "handles on the selected element, on or off", "K"),
     on_press(WINDOW, "toggle help", "this help, or the picture", "H", "?"),
     on_press(WINDOW, "toggle panel", "panel of elements, values, history and pictures, or no panel", "F1"),
     on_press(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),

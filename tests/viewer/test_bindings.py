@@ -262,6 +262,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
     "toggle icons": ((), lambda before, after: (before.screen.icons, after.screen.icons) == (False, True)),
     "toggle panel": ((), lambda _, after: "overlay" in after.window.hooks or "minirt[panel]" in after.state.message),
+    "toggle handles": ((), lambda before, after: (before.screen.handles, after.screen.handles) == (True, False)),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
     "larger text": ((), lambda before, after: after.screen.text_scale > before.screen.text_scale),
     "smaller text": ((), lambda before, after: after.screen.text_scale < before.screen.text_scale),

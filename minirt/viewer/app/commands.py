@@ -61,9 +61,9 @@ def focus(session: Session) -> None:
     session.state = motion.focus(session.state, point, session.now)
 
 
-def toggle_icons(session: Session) -> None:
-    """Show or hide the icons of all lights."""
-    session.screen.icons = not session.screen.icons
+def toggle(session: Session, name: str) -> None:
+    """Show or hide the icons of all lights, or the handles of the selected element."""
+    setattr(session.screen, name, not getattr(session.screen, name))
 
 
 def toggle_hud(session: Session) -> None:
@@ -162,7 +162,8 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "copy camera": copy_camera,
     "focus": focus,
     "toggle HUD": toggle_hud,
-    "toggle icons": toggle_icons,
+    "toggle icons": partial(toggle, name="icons"),
+    "toggle handles": partial(toggle, name="handles"),
     "toggle help": lambda session: session.screen.turn_help(0),
     "larger text": partial(scale_text, factor=TEXT_STEP),
     "smaller text": partial(scale_text, factor=1 / TEXT_STEP),

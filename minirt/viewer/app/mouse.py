@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import dist
 
 from minirt.errors import MiniRTError
 from minirt.fields import Triple
-from minirt.mlx import Button, Cursor
+from minirt.mlx import Button, Cursor, Modifier
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
-from minirt.viewer.display.marks import SIZE, visible_icons
+from minirt.viewer.display.marks import LENGTH as ARROW_LENGTH
+from minirt.viewer.display.marks import SIZE, arrow_tip, arrows, visible_icons
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart
+from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, pull
+from minirt.viewer.editing.handles import handle_at, handles_of
+from minirt.viewer.editing.motion import look_at
 from minirt.viewer.editing.projection import AHEAD, Aim, aim, aim_at_top, position_of
 from minirt.viewer.editing.state import index_of
 
@@ -42,6 +46,8 @@ class Mouse:
         if drag is None:
             self.click(button)
             return
+        if button == Button.LEFT and self.grab(x, y):
+            return
         try:
             point = self.pick_point(x, y, selecting=button == Button.LEFT)
         except MiniRTError as error:  # the file of a texture may be gone meanwhile
@@ -50,6 +56,24 @@ class Mouse:
             return
         state = session.state
         session.pressed = DragStart(session.view, x, y, state.element, state.scene.camera, point, button, drag.action)
+
+    def grab(self, x: int, y: int) -> bool:
+        """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
+        session, state, screen = self.session, self.session.state, self.session.screen
+        shows = screen.level > HudLevel.NOTHING and not session.modifiers & (Modifier.SHIFT | Modifier.ALT)
+        if not shows:
+            return False
+        for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
+            tip = arrow_tip(way, session.window.width, session.window.height, screen.scale)
+            if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
+                session.show(look_at(state.select(owner), 1.0, session.now))
+                return True
+        handles = handles_of(state.element, session.view, screen.scale) if screen.handles else []
+        handle = handle_at(handles, x + PIXEL_CENTRE, y + PIXEL_CENTRE, screen.scale)
+        if handle:
+            start = DragStart(session.view, x, y, state.element, state.scene.camera, handle.centre, Button.LEFT)
+            session.pressed = start._replace(handle=handle)
+        return handle is not None
 
     def on_motion(self, x: int, y: int) -> None:
         """The pointer moves: drag, if a button is down and the pointer has left the slack of a click."""
@@ -62,7 +86,9 @@ class Mouse:
                 session.mlx.mlx_set_cursor(session.window, self.cursor(pressed))
                 session.state = session.state.end_merging()
             session.say("")
-            session.show(DRAGS[pressed.action](session.state, pressed, x, y))
+            pressed = pressed._replace(snaps=Modifier.ACCEL in session.modifiers)
+            drag = pull if pressed.handle else DRAGS[pressed.action]
+            session.show(drag(session.state, pressed, x, y))
 
     def cursor(self, pressed: DragStart) -> Cursor:
         """Return the shape of the pointer during a drag; a drag on nothing turns the camera."""

@@ -65,6 +65,7 @@ def play(
     display = mlx.mlx_init()
     session = Session(mlx, display, scene, Path(path), size, renderer, keys=keys, **options)
     EventDispatcher(session).connect()
+    session.screen.handles = True
     memory.after_tick = lambda: watch(session)
     try:
         memory.play()

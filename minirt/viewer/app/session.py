@@ -118,7 +118,7 @@ class Session:
         """Draw the latest picture and its overlay in the window, and measure how long that takes."""
         start = self.now
         self._described, self._drawn = self.state.scene, self.refinement.latest
-        if self.screen.draw(self.state, self._drawn, self.refinement.resolution.rate):
+        if self.screen.draw(self.state, self._drawn, self.refinement.resolution.rate, keys_held=bool(self.held_keys)):
             self.mlx.mlx_sync(self.display, self.mlx.SYNC_WIN_FLUSH, self.window)
             self._drawn_at = self.now
             self.refinement.resolution.display_times.append(self._drawn_at - start)

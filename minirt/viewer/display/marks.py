@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from math import ceil, hypot
 from typing import NamedTuple
 
@@ -13,19 +14,24 @@ from minirt.element import Element, fields_of
 from minirt.fields import Colour, Triple
 from minirt.mlx.text import draw_text, measure
 from minirt.rendering.queries.pick import covers
-from minirt.scene import Camera, Scene
+from minirt.scene import Camera, Lamp, Scene
+from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Mesh, Shape
 from minirt.viewer.display.painter import Pixels
+from minirt.viewer.editing.handles import MOVE, SLIDE, TURN, Handle, handles_of
+from minirt.viewer.editing.handles import SIZE as RESIZE
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, position_of, projection_of, subtract
 from minirt.viewer.editing.state import Frame, State, can_edit
 
 GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
 AXIS_COLOURS = {Frame.X: 0xFFFF5050, Frame.Y: 0xFF60E060, Frame.Z: 0xFF6090FF}
+AXIS_LENGTH = 0.6  # of the distance to the eye: what is drawn of an axis on both sides of an element
 MOVING_RAYS, STILL_RAYS = 20_000, 60_000  # rays for an outline, while something moves and when nothing does
 MARGIN = 4  # pixels around the projected bounds of a shape
 SIZE = 20  # pixels of a side, times the screen's scale
+HANDLE_SCALES = {MOVE: 0.6, RESIZE: 0.7, SLIDE: 0.4}  # of the size of icons
 MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
 KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
 LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
@@ -34,10 +40,13 @@ PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns o
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are exclusive
 
 
-def draw_marks(pixels: Pixels, state: State, scene: Scene, scale: float, *, moving: bool, icons: bool) -> None:
+def draw_marks(
+    pixels: Pixels, state: State, scene: Scene, scale: float, *, moving: bool, icons: bool, handles: bool = False
+) -> None:
     """Draw all marks over a picture of `scene`, which may be another version of the state's scene.
 
-    The marks fit the picture: an element that it does not show yet has none. `icons`: show those of all lights.
+    The marks fit the picture: an element that it does not show yet has none. `icons`: show those of all lights;
+    `handles`: show those of the selected element.
     """
     height, width = pixels.shape[:2]
     view = projection_of(scene.camera, width, height)
@@ -48,11 +57,15 @@ def draw_marks(pixels: Pixels, state: State, scene: Scene, scale: float, *, movi
             rays = MOVING_RAYS if moving else STILL_RAYS
             draw_outline(pixels, *outline_pixels(element, scene.camera, width, height, rays))
         around, axis = extent(element), WORLD_AXES.get(state.frame)
-        if around and axis and (ends := view.visible_segment(around[0], axis)):
-            draw_line(pixels, *ends, AXIS_COLOURS[state.frame])
-        outside = arrow_direction(view, *around) if around else None
-        if outside and not (isinstance(element, Shape) and element.infinite):
-            draw_arrow(pixels, outside, scale)
+        if around and axis:
+            reach = AXIS_LENGTH * view.depth(around[0])
+            start, end = (view.pixel(linear_combination(1.0, around[0], way, axis)) for way in (-reach, reach))
+            if start and end:
+                draw_line(pixels, start, end, AXIS_COLOURS[state.frame])
+        for handle in handles_of(element, view, scale) if handles else []:
+            draw_handle(pixels, handle, view.pixel(handle.centre), scale)
+    for direction in arrows(scene, selected, view, icons).values():
+        draw_arrow(pixels, direction, scale)
     for icon in visible_icons(scene, selected, view, scale, icons):
         draw_icon(pixels, icon, scale, selected=icon.owner == selected)
 
@@ -77,6 +90,19 @@ def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
     pixels[rows, columns] = bgra(colour)
     steep = abs(dy) > abs(dx)
     pixels[np.minimum(rows + (not steep), height - 1), np.minimum(columns + steep, width - 1)] = bgra(colour)
+
+
+def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: float) -> None:
+    """Draw a handle in the colour of its axis; arrows and boxes have the letter of the axis."""
+    colour, (x, y) = list(AXIS_COLOURS.values())[handle.axis], handle.points[0]
+    if handle.kind == TURN:
+        for start, end in pairwise(handle.points):
+            draw_line(pixels, start, end, colour)
+        return
+    if handle.kind == MOVE and centre:
+        draw_line(pixels, centre, (x, y), colour)
+    icon = Icon(0, round(x), round(y), "" if handle.kind == SLIDE else "XYZ"[handle.axis], colour)
+    draw_icon(pixels, icon, HANDLE_SCALES[handle.kind] * scale, selected=handle.kind == RESIZE)
 
 
 def draw_icon(pixels: Pixels, icon: Icon, scale: float, selected: bool) -> None:
@@ -150,13 +176,26 @@ def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tup
     return (across / length, -up / length) if length else (0.0, 1.0)
 
 
-def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> None:
-    """Draw an arrow whose tip is where a line from the picture's middle in this direction meets its border."""
-    height, width = pixels.shape[:2]
+def arrows(scene: Scene, selected: int | None, view: Projection, every: bool) -> dict[int, tuple[float, float]]:
+    """Directions towards elements outside of the picture, by index: the selected one, and with `every` all lights."""
+    owners = {*([] if selected is None else [selected]), *(scene.indices_of(Lamp) if every else ())}
+    found = {owner: extent(scene.elements[owner]) for owner in owners}
+    ways = {owner: arrow_direction(view, *around) for owner, around in found.items() if around}
+    return {owner: way for owner, way in ways.items() if way and not getattr(scene.elements[owner], "infinite", False)}
+
+
+def arrow_tip(direction: tuple[float, float], width: int, height: int, scale: float) -> Pixel:
+    """Where a line from the picture's middle in this direction meets its border, which has room for an arrow."""
     border, top = min(BORDER * scale, width / 4, height / 8), min(TOP * scale, height / 4)
     room = width / 2 - border, (height - border - top) / 2
     reach = min(side / abs(part) for side, part in zip(room, direction, strict=True) if part)
-    tip = width / 2 + reach * direction[0], top + room[1] + reach * direction[1]
+    return width / 2 + reach * direction[0], top + room[1] + reach * direction[1]
+
+
+def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> None:
+    """Draw an arrow in this direction, with its tip at the border of the picture."""
+    height, width = pixels.shape[:2]
+    tip = arrow_tip(direction, width, height, scale)
     size = LENGTH * scale
     y, x = np.ogrid[:height, :width]
     along = (tip[0] - x - 0.5) * direction[0] + (tip[1] - y - 0.5) * direction[1]  # back from the tip

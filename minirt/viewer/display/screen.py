@@ -21,7 +21,7 @@ from minirt.viewer.language import translated
 # Shown until the first edit; the keys are the same on all keyboards.
 TIPS = """drag an object to move it, or nothing to look around
 N adds an object where the pointer is
-H: all keys    Ctrl+S: save"""
+F1: panel    H: all keys    Ctrl+S: save"""
 
 
 class Screen:
@@ -38,6 +38,7 @@ class Screen:
         self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
         self.panel: Panel | None = None  # a value that is typed, or a list to choose from
+        self.handles = False  # whether those of the selected element are shown
         self.icons = False  # whether the icons of all lights are shown
         self.image = mlx.mlx_new_image(window.display, 1, 1)
         self._drawn: tuple[object, ...] = ()  # the contents of the window
@@ -63,16 +64,16 @@ class Screen:
         self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
         self.search = self.search if step else ""
 
-    def draw(self, state: State, picture: Outcome | None, rate: float = 0.0) -> bool:
+    def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
         The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
-        primary rays per second.
+        primary rays per second; `keys_held`: handles would be in the way.
         """
         width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        shown = self.panel, self.level, self.help, self.search, self.icons, self.tips
+        shown = self.panel, self.level, self.help, self.search, self.icons, self.tips, self.handles and not keys_held
         contents = described, picture, message, *shown, width, height, scale
         if contents == self._drawn:
             return False
@@ -84,7 +85,8 @@ class Screen:
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
-                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, icons=self.icons)
+                marks = {"icons": self.icons, "handles": self.handles and not keys_held}
+                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
             bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
         if self.panel and not self.help:
             overlay.draw_panel(self.frame, self.panel, size)

@@ -8,21 +8,35 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from math import atan2, copysign, degrees
 from typing import NamedTuple
 
 from minirt.element import Element
-from minirt.fields import Triple
+from minirt.fields import Triple, clamp_length
 from minirt.rendering.queries.pick import pick
 from minirt.scene.elements import Camera, linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
-from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, shifted
-from minirt.viewer.editing.placing import dropped, lowest_along, middle_of, settled
-from minirt.viewer.editing.projection import UP, Aim, Projection, aim, extent, scene_centre, subtract
+from minirt.viewer.editing.handles import AXES, SLIDE, TURN, Handle
+from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, rotate, shifted
+from minirt.viewer.editing.placing import dropped, keep_standing, lowest_along, middle_of, settled
+from minirt.viewer.editing.projection import (
+    PARALLEL,
+    UP,
+    Projection,
+    aim,
+    dot,
+    extent,
+    position_of,
+    scene_centre,
+    subtract,
+)
 from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels
 CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
+SNAP_ANGLE = 15.0  # degrees
 TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
 
 
@@ -38,6 +52,8 @@ class DragStart(NamedTuple):
     button: int = 0
     action: str = ""  # of DRAGS
     dragging: bool = False  # whether the pointer has moved far enough since
+    handle: Handle | None = None  # of the element, that the pointer has grabbed
+    snaps: bool = False  # whether Ctrl is down, so that a handle snaps to a grid
 
     @property
     def moves_camera(self) -> bool:
@@ -58,35 +74,24 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
     return motion.move(state, start.element, pointer_offset(start, x, y, start.point), 1.0, *CHANGE)
 
 
-def place(state: State, start: DragStart, x: int, y: int) -> State:
-    """Move a shape to the surface behind the pointer, with its middle on the grid, and drop it there."""
-    shape = start.element
-    there = aim_behind(state, start, x, y)
-    if there is None or not isinstance(shape, Shape):
+def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -> State:
+    """Move a shape to the surface behind the pointer, with its middle on the grid, and drop it there.
+
+    `turns`: it stands there as a new one would, also on walls, with its axis along the normal.
+    """
+    shape, view = start.element, start.projection
+    if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
         return move(state, start, x, y)
     others = state.scene.edit(state.selected)
+    behind = pick(others, view.width, view.height, x, y)
+    there = aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *behind)
+    if turns and there.normal is None:
+        return move(state, start, x, y)
+    if turns:
+        return replace(state.edit_element(settled(shape, there, others, state.stride), *CHANGE), aim=there)
     at = shifted(shape, subtract(there.point, middle_of(shape)[0]))
     standing = shifted(at, UP, there.point[1] - lowest_along(at, UP))
     return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)
-
-
-def slide(state: State, start: DragStart, x: int, y: int) -> State:
-    """Move a shape along the surfaces behind the pointer, where it stands as a new one would."""
-    shape = start.element
-    there = aim_behind(state, start, x, y)
-    if there is None or there.normal is None or not isinstance(shape, Shape):
-        return move(state, start, x, y)
-    at = settled(shape, there, state.scene.edit(state.selected), state.stride)
-    return replace(state.edit_element(at, *CHANGE), aim=there)
-
-
-def aim_behind(state: State, start: DragStart, x: int, y: int) -> Aim | None:
-    """Aim at what is behind the dragged shape; None if no bounded shape is dragged."""
-    shape, view = start.element, start.projection
-    if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
-        return None
-    behind = pick(state.scene.edit(state.selected), view.width, view.height, x, y)
-    return aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *behind)
 
 
 def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
@@ -97,6 +102,45 @@ def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
         for column, row in ((x, y), (start.x, start.y))
     )
     return subtract(there, here)
+
+
+def pull(state: State, start: DragStart, x: int, y: int) -> State:
+    """Move, turn or resize the element by its handle; with Ctrl on a grid, or by steps of SNAP_ANGLE."""
+    handle, view, element = start.handle, start.projection, start.element
+    assert handle
+    centre, axis, snap = handle.centre, AXES[handle.axis], state.stride if start.snaps else 0.0
+    ends = [(at + PIXEL_CENTRE, down + PIXEL_CENTRE) for at, down in ((start.x, start.y), (x, y))]
+    if handle.kind == TURN:
+        column, row = view.pixel(centre) or (0.0, 0.0)
+        first, last = (degrees(atan2(down - row, at - column)) for at, down in ends)
+        facing = copysign(motion.handedness(start.camera), dot(axis, subtract(view.eye, centre)))
+        return state.edit_element(
+            rotate(element, axis, snapped((first - last) * facing, SNAP_ANGLE * start.snaps)), *CHANGE
+        )
+    if handle.kind == SLIDE:  # in the level plane
+        depths = [(centre[1] - view.eye[1]) / (ray[1] or PARALLEL) for ray in (view.ray(*at) for at in ends)]
+        ways = [linear_combination(depth, view.ray(*at), 0.0, centre) for depth, at in zip(depths, ends, strict=True)]
+        offset = subtract(ways[1], ways[0]) if min(depths) > 0 else (0.0, 0.0, 0.0)
+    else:
+        before, after = (view.distance_along(*at, centre, axis) for at in ends)
+        if before is None or after is None:
+            return state.with_message("the view is along the axis: nothing moves")
+        if handle.value:
+            length = handle.value.current(element) * abs(after / before)
+            length = clamp_length(max(snapped(length, snap), snap))
+            changed = element.replace(**{handle.value.field.name: handle.value.replaced(element, length)})
+            return state.edit_element(keep_standing(state, changed), *CHANGE)
+        offset = linear_combination(after - before, axis, 0.0, axis)
+    x_way, y_way, z_way = (
+        snapped(part + way, snap) - part if way else 0.0
+        for part, way in zip(position_of(element) or centre, offset, strict=True)
+    )
+    return motion.move(state, element, (x_way, y_way, z_way), 1.0, *CHANGE)
+
+
+def snapped(number: float, step: float) -> float:
+    """The multiple of a step that is nearest to a number; the number itself without a step."""
+    return step * round(number / step) if step else number
 
 
 def turn(state: State, start: DragStart, x: int, y: int) -> State:
@@ -142,7 +186,7 @@ DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
     "move by hand": move,
     "turn by hand": turn,
     "place by hand": place,
-    "slide by hand": slide,
+    "slide by hand": partial(place, turns=True),
     "orbit": orbit,
     "pan": pan,
 }

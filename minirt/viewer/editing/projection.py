@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 from math import copysign, dist, hypot, inf
 from statistics import median
 from typing import Any, NamedTuple
@@ -20,7 +19,6 @@ from minirt.viewer.editing.values import nice_number
 Pixel = tuple[float, float]
 
 MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in front of the eye are on no picture
-FAR = 1e3  # times the distance to the eye: length to which a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
 Extent = tuple[Triple, float]  # centre and radius
 UP: Triple = (0.0, 1.0, 0.0)
@@ -83,26 +81,6 @@ class Projection(NamedTuple):
         slant = dot(ray, axis)
         across = 1 - slant * slant
         return (slant * dot(offset, ray) - dot(offset, axis)) / across if across > PARALLEL else None
-
-    def visible_segment(self, point: Triple, axis: Triple) -> tuple[Pixel, Pixel] | None:
-        """Project what the picture shows of the line through `point` along the unit vector `axis` to its two ends.
-
-        None if that is nothing. The line is clipped at the planes through the eye and the borders of the picture, by
-        the algorithm of Liang and Barsky (1984).
-        """
-        offset = subtract(point, self.eye)
-        low, high = -FAR * hypot(*offset), FAR * hypot(*offset)
-        for side, sign in product((self.right, self.up), (1.0, -1.0)):
-            inward = linear_combination(1.0, self.forward, -sign / dot(side, side), side)
-            inside, slope = dot(offset, inward), dot(axis, inward)
-            if slope > 0:
-                low = max(low, -inside / slope)
-            elif slope < 0:
-                high = min(high, -inside / slope)
-            elif inside < 0:
-                return None
-        start, end = (self.pixel(linear_combination(1.0, point, reach, axis)) for reach in (low, high))
-        return (start, end) if low < high and start and end else None
 
 
 def projection_of(camera: Camera, width: int, height: int) -> Projection:

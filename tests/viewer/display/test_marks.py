@@ -124,17 +124,6 @@ def test_the_movement_axis_passes_through_the_element(presses: int, frame: Frame
 
 
 @pytest.mark.parametrize(
-    ("point", "axis", "ends"),
-    [((0, 0, 0), (1, 0, 0), ((0, 90), (320, 90))), ((99, 5, 0), (1, 0, 0), ((0, 10), (320, 10))),
-     ((0, -99, 0), (0, 1, 0), ((160, 180), (160, 0))), ((5, 0, 99), (0, 0, 1), ((160, 90), (320, 90))),
-     ((0, 6, 0), (1, 0, 0), None), ((0, 0, 20), (0, 1, 0), None), ((0, 0, 0), (0, 0, 1), None)],
-)  # fmt: skip
-def test_lines_are_clipped_to_the_picture(point, axis, ends) -> None:
-    found = VIEW.visible_segment(point, axis)
-    assert found == (None if ends is None else tuple(pytest.approx(each, abs=0.1) for each in ends))
-
-
-@pytest.mark.parametrize(
     ("start", "end", "rows", "columns"),
     [
         ((2, 0), (9, 0), (0, 2), (2, 10)),

@@ -1,0 +1,160 @@
+"""Handles on the selected element: what a drag of each does, and when they are there."""
+
+from __future__ import annotations
+
+from math import degrees, dist, hypot
+
+import numpy as np
+import pytest
+
+from minirt.scene import Camera
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.marks import AXIS_COLOURS, arrow_tip, arrows, bgra
+from minirt.viewer.editing.handles import MOVE, SIZE, SLIDE, TURN, Handle, handles_of
+from minirt.viewer.editing.projection import projection_of, subtract
+from tests.viewer.fake import played
+
+WIDTH, HEIGHT = 640, 480
+TEXT = """A 0.2 255,255,255
+C 4,3,9 -0.37,-0.28,-0.885 60
+bo 0.3,0.2,0.1 0,1,0 2,1,1.5 9,9,9
+cy 30,0,0 0,1,0 1 4 0,0,255
+L 5,5,-40 0.5 255,255,255
+"""
+OPEN = (f"resize {WIDTH}x{HEIGHT}", "press Tab")
+CENTRE = (0.3, 0.2, 0.1)
+
+
+def handle(kind: str, axis: int, session: Session | None = None) -> Handle:
+    """Return a handle of the selected element of a session, or of the box."""
+    state = (session or played(*OPEN, text=TEXT)).state
+    view = projection_of(state.scene.camera, WIDTH, HEIGHT)
+    (found,) = [each for each in handles_of(state.element, view, 1.0) if (each.kind, each.axis) == (kind, axis)]
+    return found
+
+
+def spelled(pixel: tuple[float, float]) -> str:
+    """Return the pixel of a place in the picture, as recordings spell it."""
+    return f"{int(pixel[0])},{int(pixel[1])}"
+
+
+def pulled(kind: str, axis: int, to: tuple[float, float], *, snap: bool = False, corner: int = 0) -> Session:
+    """Return the session after a drag of a handle of the box by an offset in pixels."""
+    x, y = handle(kind, axis).points[corner]
+    held = ("down Ctrl", "up Ctrl") if snap else ("wait 0.1", "wait 0.1")
+    drag = f"drag {spelled((x, y))} {spelled((x + to[0], y + to[1]))}"
+    session = played(*OPEN, held[0], drag, held[1], text=TEXT)
+    assert len(session.state.undo_stack) == 1
+    assert session.state.element.title == "box"
+    return session
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_an_arrow_moves_along_its_axis_and_follows_the_pointer(axis: int) -> None:
+    tip = handle(MOVE, axis).points[0]
+    view = projection_of(played(text=TEXT).state.scene.camera, WIDTH, HEIGHT)
+    middle = view.pixel(CENTRE)
+    assert middle
+    way = [0.6 * (a - b) for a, b in zip(tip, middle, strict=True)]
+    centre = pulled(MOVE, axis, (way[0], way[1])).state.element.centre
+    assert [i for i in range(3) if centre[i] != CENTRE[i]] == [axis]
+    assert centre[axis] > CENTRE[axis]
+    there, wanted = view.pixel(centre), (middle[0] + way[0], middle[1] + way[1])
+    assert there
+    assert dist(there, wanted) < 5  # pixels of 40: the middle moved as the tip did, but for perspective
+    snapped = pulled(MOVE, axis, (way[0], way[1]), snap=True).state
+    steps = snapped.element.centre[axis] / snapped.stride
+    assert steps == pytest.approx(round(steps), abs=1e-6)
+    assert [i for i in range(3) if snapped.element.centre[i] != CENTRE[i]] == [axis]
+
+
+def test_the_square_moves_in_the_level_plane_under_the_pointer() -> None:
+    centre = pulled(SLIDE, 1, (60, -25)).state.element.centre
+    view = projection_of(played(text=TEXT).state.scene.camera, WIDTH, HEIGHT)
+    start = handle(SLIDE, 1).points[0]
+    assert centre[1] == CENTRE[1]
+    offset = subtract(centre, CENTRE)
+    ray = view.ray(int(start[0]) + 0.5, int(start[1]) + 0.5)
+    depth = (CENTRE[1] - view.eye[1]) / ray[1]
+    moved = [eye + depth * part + way for eye, part, way in zip(view.eye, ray, offset, strict=True)]
+    pixel = view.pixel((moved[0], moved[1], moved[2]))
+    assert pixel
+    assert dist(pixel, (int(start[0] + 60) + 0.5, int(start[1] - 25) + 0.5)) < 0.1
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_ring_turns_about_its_axis_as_the_pointer_goes_around(axis: int) -> None:
+    """By as much as the corner of the ring that the pointer goes to is from the one where it began."""
+    ring = handle(TURN, axis).points
+    corners = 3, 6  # of 48
+    offset = ring[corners[1]][0] - ring[corners[0]][0], ring[corners[1]][1] - ring[corners[0]][1]
+    state = pulled(TURN, axis, offset, corner=corners[0], snap=True).state
+    before = played(*OPEN, text=TEXT).state.element.frame()
+    after = state.element.frame()
+    trace = sum(a.x * b.x + a.y * b.y + a.z * b.z for a, b in zip(before, after, strict=True))
+    angle = degrees(np.arccos((trace - 1) / 2))
+    assert angle / 15 == pytest.approx(round(angle / 15), abs=1e-3)
+    assert 0 < angle <= 75
+    turned = pulled(TURN, axis, offset, corner=corners[0]).state.element
+    vectors = [np.array([(v.x, v.y, v.z) for v in frame]).T for frame in (before, turned.frame())]
+    rotation = vectors[1] @ vectors[0].T
+    skew = (rotation - rotation.T)[(axis + 2) % 3, (axis + 1) % 3]  # positive: counter-clockwise, as the corners go
+    assert skew > 0
+
+
+@pytest.mark.parametrize(("axis", "old"), [(0, 2.0), (1, 1.0), (2, 1.5)])
+def test_a_box_handle_changes_one_size_in_proportion(axis: int, old: float) -> None:
+    start = handle(SIZE, axis).points[0]
+    view = projection_of(played(text=TEXT).state.scene.camera, WIDTH, HEIGHT)
+    middle = view.pixel(CENTRE)
+    assert middle
+    way = start[0] - middle[0], start[1] - middle[1]
+    element = pulled(SIZE, axis, (0.5 * way[0], 0.5 * way[1])).state.element
+    ratios = [new / before for new, before in zip(element.sizes, (2.0, 1.0, 1.5), strict=True)]
+    assert ratios.pop(axis) == pytest.approx(1.5, rel=0.1)  # perspective
+    assert ratios == [1.0, 1.0]
+    snapped = pulled(SIZE, axis, (0.5 * way[0], 0.5 * way[1]), snap=True).state
+    assert snapped.element.sizes[axis] / snapped.stride % 1 == pytest.approx(0, abs=1e-6)
+    through = pulled(SIZE, axis, (-way[0], -way[1])).state.element.sizes[axis]
+    assert through > 0
+
+
+def coloured(session: Session) -> bool:
+    """Whether the window shows something in the colours of all axes."""
+    frame = session.screen.frame
+    return all((frame == np.array(bgra(colour), np.uint8)).all(axis=2).any() for colour in AXIS_COLOURS.values())
+
+
+def test_handles_are_shown_while_no_key_is_held_and_go_with_a_key() -> None:
+    seen: list[bool] = []
+    assert coloured(played(*OPEN, text=TEXT))
+    played(
+        *OPEN, "hold d 0.3", text=TEXT, watch=lambda session: seen.append(bool(session.held_keys) and coloured(session))
+    )
+    assert not any(seen)
+    assert not coloured(played(*OPEN, "press K", text=TEXT))
+    assert not coloured(played(*OPEN, "press C", text=TEXT))
+    assert not coloured(played(*OPEN, "press I", "press I", text=TEXT))
+    assert (
+        handles_of(played(*OPEN, text=TEXT).state.element, projection_of(Camera((0, 0, 9), (0, 0, -1), 60), 64, 48), 1)
+        == []
+    )
+    off = played(*OPEN, "press K", f"drag {spelled(handle(MOVE, 0).points[0])} 500,100", text=TEXT).state
+    assert off.scene.boxes[0].sizes == (2, 1, 1.5)
+
+
+def test_a_click_on_an_arrow_at_the_edge_selects_and_frames_the_light() -> None:
+    session = played(*OPEN, "press C", "hold Left 1.2", "press L", text=TEXT)
+    state = session.state
+    view = projection_of(state.scene.camera, WIDTH, HEIGHT)
+    ((owner, way),) = arrows(state.scene, state.selected, view, every=False).items()
+    tip = arrow_tip(way, WIDTH, HEIGHT, 1.0)
+    assert owner == state.selected
+    framed = played(*OPEN, "press C", "hold Left 1.2", "press L", f"click {spelled(tip)}", text=TEXT).state
+    pixel = projection_of(framed.scene.camera, WIDTH, HEIGHT).pixel(framed.element.position)
+    assert pixel
+    assert hypot(pixel[0] - WIDTH / 2, pixel[1] - HEIGHT / 2) < 2
+    ways = arrows(state.scene, 1, view, every=True)  # with the icons of lights, another element is selected
+    tip = arrow_tip(ways[owner], WIDTH, HEIGHT, 1.0)
+    every = played(*OPEN, "press C", "hold Left 1.2", "press G", f"click {spelled(tip)}", text=TEXT).state
+    assert every.element.title == "light"
