@@ -53,11 +53,15 @@ class Triangles:
         """Indices of the points that are corners, sorted."""
         return np.unique(self.corners)
 
+    @property
+    def used_points(self) -> np.ndarray:
+        """The points that are corners, (k, 3): mostly all, which then are not copied."""
+        return self.points if len(self.used) == len(self.points) else self.points[self.used]
+
     @cached_property
     def box(self) -> np.ndarray:
         """Bounding box: least and greatest corner, (2, 3)."""
-        used = self.points[self.used]
-        return np.stack([used.min(axis=0), used.max(axis=0)])
+        return np.stack([self.used_points.min(axis=0), self.used_points.max(axis=0)])
 
     @cached_property
     def edges(self) -> np.ndarray:

@@ -42,6 +42,7 @@ from minirt.shapes.shape import Ball, Position, Shape
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
 ROUNDINGS = 1.5  # by which a ray that hits a triangle may pass beside it
 CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
+ROUNDED = 2.0**-20  # in float32, where the pyramid of a small triangle may be as narrow as its margin
 APART = 1024  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
@@ -227,9 +228,11 @@ def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active
     if start is not None:
         far = far + max_norm(apex - start)
         active = active & (depth_behind_plane(triangle, dot(triangle.normal, a), start) >= 0.0)
-    if any(active):
+    rounding, edge = APART * unit_roundoff(direction.x), maximum(max_norm(b - a), max_norm(c - a))
+    is_hopeless = rounding > ROUNDED and edge * edge < rounding * size * size
+    if not is_hopeless and any(active):
         of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
-        margin = APART * unit_roundoff(direction.x) * size * far
+        margin = rounding * size * far
         least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
         active = active & ((least >= -margin) | (most <= margin))
     return active
