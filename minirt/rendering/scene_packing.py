@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable
-from itertools import count
+from itertools import count, islice
 from typing import Any
 
 import numpy as np
@@ -23,12 +23,13 @@ from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import distance_in_the_middle
 from minirt.rendering.packing.shape_arrays import ShapeArrays, extents_from
 from minirt.rendering.packing.view import Rounding, View, in_single
-from minirt.rendering.packing.visibility import BinnedShapes, Run
+from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
 NO_MEMBERS = np.zeros(0, np.int32)
+FEW = 4  # lights whose bins are used again
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
 
 
@@ -60,10 +61,13 @@ class Packing:
         self.bvh: Tree | None = None  # of the last shapes, once it was needed
         self.last: tuple[Scene, Place, SceneArrays] | None = None
         self.view: View | None = None  # of the last scene
+        self.spare: dict[int, Bins] = {}  # of the first lights, after a change of shapes
 
     def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
         """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
         if self.shape_arrays.update(shapes):
+            bins = (each.bins for each in self.cache.values() if isinstance(each, BinnedShapes))
+            self.spare = dict(enumerate(islice((each for each in bins if each), FEW)))
             kept = {key: each for key, each in self.cache.items() if isinstance(each, LightGrid)}
             self.cache, self.last, self.cells_that_fit, self.bvh = kept, None, {}, None
         return self.shape_arrays
@@ -117,7 +121,6 @@ class Packing:
         radius, _ = camera.radius_and_focus(lens)
         usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes))
         cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
-        spots = lights.spot_parameters(sources) if "spots" in used else None
         while True:
             try:
                 binned, keys = self.seen_by_lights(sources, numbers[:3], cells, cached, radius)
@@ -131,13 +134,13 @@ class Packing:
         look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
         packed = cached(look, materials.pack_materials, scene, shapes, used)
         traits = materials.traits_of(packed, shapes)
-        extents = np.zeros((len(shapes.slots) * (self.precision == "single"), 4), np.float32)
         if TILES in self.without:
             square, eye = TILE, visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))
             seen = int(np.bitwise_or.reduce(traits))
         else:
-            self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, extents)
+            self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, self.precision, self.view)
             square, (eye, seen) = self.view.square, self.view.look(scene.camera, self.run)
+        spots = lights.spot_parameters(sources) if "spots" in used else None
         emitted = lights.positions_and_intensities(sources, colours)
         shining = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
         needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
@@ -173,6 +176,7 @@ class Packing:
         )
         if self.precision == "single" and fits_single(arrays):
             rounding = Rounding(self.kernel, numbers[:3])
+            extents = self.view.bins.seen.extents if self.view else np.zeros((len(shapes.slots), 4), np.float32)
             extents[:, 3] = extents_from(numbers[:3], shapes.boxes)
             arrays = in_single(arrays, extents, rounding)
             if self.view:
@@ -202,8 +206,9 @@ class Packing:
                 reach = (not has_meshes and light.fade) or np.inf
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
-                at = position, cells, skipped, size, reach, alike
-                binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at, self.run))
+                at = position, cells, skipped, size, reach, alike, self.run, self.spare.pop(len(binned), None)
+                binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at))
+        self.spare = {}
         return binned, tuple(keys)
 
     @property
@@ -236,13 +241,17 @@ def all_but_pose(scene: Scene) -> tuple[Any, ...]:
 
 def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
-    starts, cones = np.zeros((len(shapes.rows), 0, 1), np.int32), np.zeros((0, len(shapes.slots), 5))
-    if binned:
+    starts, cones, members = (
+        np.zeros((len(shapes.rows), 0, 1), np.int32),
+        np.zeros((0, len(shapes.slots), 5)),
+        NO_MEMBERS,
+    )
+    if len(binned) == 1:  # in the same memory: a million shapes take long to copy
+        starts, cones, members = binned[0].starts[:, None], binned[0].cones[None], binned[0].members
+    elif binned:
         offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])], dtype=np.int32)
         starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
         cones = np.stack([each.cones for each in binned])
-    return starts, {
-        "light_shapes": np.concatenate([NO_MEMBERS, *(each.members for each in binned)]),
-        "light_cones": cones,
-        "light_tolerances": np.array([each.tolerance for each in binned]),
-    }
+        members = np.concatenate([each.members for each in binned])
+    tolerances = np.array([each.tolerance for each in binned])
+    return starts, {"light_shapes": members, "light_cones": cones, "light_tolerances": tolerances}

@@ -17,9 +17,10 @@ from minirt.materials import Checker, Specular
 from minirt.rendering.packing import shape_arrays
 from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_indices, extents_from
 from minirt.rendering.packing.view import Rounding, View
+from minirt.rendering.packing.visibility import Bins
 from minirt.rendering.renderer import PRECISIONS
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Ambient, FurtherLight, Light, Scene
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -47,7 +48,9 @@ def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> None:
             end = fresh.groups[-1].tile_starts[-1]
             assert np.array_equal(arrays.tile_shapes[:end], value[:end])
         elif name != "groups":
-            assert np.array_equal(getattr(arrays, name), value), name
+            found = getattr(arrays, name)
+            pairs = zip(found, value, strict=True) if isinstance(value, tuple) else [(found, value)]
+            assert all(np.array_equal(part, right) for part, right in pairs), name
     for group, expected in zip(arrays.groups, fresh.groups, strict=True):
         pairs = zip((*group[:4], *(group.trees or ())), (*expected[:4], *(expected.trees or ())), strict=True)
         assert all(np.array_equal(part, right) for part, right in pairs)
@@ -141,6 +144,50 @@ def test_using_the_arrays_of_another_scene_does_no_harm() -> None:
         assert_same(packing.pack(other, 24, 16), other)
         packing.shape_arrays_for(scene.shapes)
         assert_same(packing.pack(other, 24, 16), other)
+
+
+def edited(seed: int) -> Iterator[Scene]:
+    """Yield a scene of some shapes and lights, and edits of it: of shapes, of lights and their order, of the lens."""
+    random = np.random.default_rng(seed)
+
+    def place() -> Any:
+        return tuple(random.uniform(-5, 5, 3).tolist())
+
+    balls = [Sphere(place(), random.uniform(0.1, 2), (9, 99, 200)) for _ in range(20)]
+    lamps = [FurtherLight(place(), 0.3, (255, 255, 255), fade=random.choice([None, 4.0])) for _ in range(3)]
+    scene = Scene((Camera(place(), (0, 0, 1), 70), *lamps, Plane((0, -5, 0), (0, 1, 0), (200, 200, 200)), *balls))
+    for _ in range(25):
+        yield scene
+        edit = random.integers(6)
+        if edit < 3:
+            scene = scene.replace(scene.spheres[random.integers(20)], centre=place(), diameter=random.uniform(0.1, 4))
+        elif edit == 3:
+            scene = scene.replace(random.choice(np.array(scene.lights, object)), position=place(), fade=3.0)
+        elif edit == 4:
+            rest = [each for each in scene.items if each not in scene.lights]
+            lamps = [scene.lights[i] for i in random.permutation(len(scene.lights))[: random.integers(1, 4)]]
+            scene = Scene((*rest, *lamps, FurtherLight(place(), 0.3, (255, 255, 255))))
+        else:
+            scene = scene.replace(scene.camera, fov=random.uniform(30, 90), lens=random.choice([None, 0.1]), focus=5.0)
+
+
+def follow_edits(seed: int, precision: str) -> None:
+    """Assert that one packing of scene after scene has the arrays of fresh ones."""
+    packing = Packing(precision=precision)
+    for scene in edited(seed):
+        assert_same(packing.pack(scene, 24, 16), scene, precision)
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_lists_in_the_memory_of_those_before_are_those_of_the_new_scene(
+    precision: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seed = SystemRandom().randrange(2**32)
+    for each in range(seed, seed + 4):
+        follow_edits(each, precision)
+    monkeypatch.setattr(Bins, "fit", lambda *_: True)
+    with pytest.raises((AssertionError, ValueError)):
+        follow_edits(1, precision)
 
 
 STEPS = 12

@@ -36,6 +36,7 @@ SPARE = 0.25  # of the lists of a camera that moves
 class View:
     """The shapes in the tiles of a picture, or of a rectangle of one, and all else that depends on the camera."""
 
+    bins: Bins
     rounding: Rounding | None = None  # of a scene in float32
 
     def __init__(
@@ -46,17 +47,24 @@ class View:
         place: Place,
         lens: np.ndarray | None,
         traits: np.ndarray,
-        extents: np.ndarray,
+        precision: str,
+        spare: View | None,
     ) -> None:
-        """Traits and extents are those of `minirt.kernel.binning.Projection`."""
+        """Traits are those of `minirt.kernel.binning.Projection`. The bins of a `spare` view are used again where they
+        fit."""
         self.size = place[2][:2]  # of the whole picture
         radius, per_focus = radius_and_focus(lens)
         if radius:
             shapes = copy(shapes)
             shapes.balls = blurred_balls(shapes.balls, camera_numbers(camera, *self.size), radius, per_focus)
+        extents = np.zeros((len(shapes.slots) * (precision == "single"), 4), np.float32)
         self.square = square_edge(shapes, width(extents if len(extents) else shapes.balls) // PACKET_HEIGHT)
         grid = screen_grid(*slopes_at_edges(camera, *self.size), place, self.square)
-        self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, traits=traits, extents=extents)
+        if spare and spare.bins.fit(shapes, grid, radius) and len(spare.bins.seen.extents) == len(extents):
+            self.bins = spare.bins
+            self.bins.seen.traits[:] = traits
+        else:
+            self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, traits=traits, extents=extents)
 
     def look(self, camera: Camera, run: Run | None) -> tuple[BinnedShapes, int]:
         """Bin the shapes that a camera sees into tiles, and return also the traits of these shapes."""

@@ -53,6 +53,7 @@ class BinnedShapes(NamedTuple):
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
     tolerance: float = 0.0  # of the lists of a light: see `minirt.kernel.shadow_rays`
+    bins: Bins | None = None  # which binned them, if any
 
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
@@ -106,19 +107,25 @@ def seen_by_light(
     reach: float = np.inf,
     copies: int = 1,
     run: Run | None = None,
+    spare: Bins | None = None,
 ) -> BinnedShapes:
     """Bin the shapes within some reach into the light buffer of a light of some radius, without the planes that are
     `skipped` (p,).
 
-    `TooLargeError` where there is no room for so many copies of its lists.
+    `spare` bins are used again where they fit. `TooLargeError` where there is no room for so many copies of its lists.
     """
-    largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    bins = Bins(kernel, shape_arrays, cube_grid(cells), radius, 0.0, skipped, copies, largest, reach=reach)
+    largest, grid = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED, cube_grid(cells)
+    bins = spare
+    if bins and bins.fit(shape_arrays, grid, radius, reach):
+        bins.seen.shown[:], bins.copies = 1 - skipped, copies
+    else:
+        bins = Bins(kernel, shape_arrays, grid, radius, 0.0, skipped, copies, largest, reach=reach)
     bins.see_from(light, run)
     if cells == 1:
         return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
     spread = 2 * np.sin(spread_of(cells) * np.pi / 4 / cells)  # distance up to which lists hold around a cell
-    return BinnedShapes(bins.starts, bins.members, bins.seen.cones, float(spread * spread))
+    members = bins.members[: bins.starts[-1, -1]]
+    return BinnedShapes(bins.starts, members, bins.seen.cones, float(spread * spread), bins)
 
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:
@@ -179,6 +186,15 @@ class Bins:
         self.starts, self.members = np.zeros((kinds, grid.cells + 1), np.int32), np.zeros(0, np.int32)
         self.project = bound(kernel.project_shapes, self.counter, self.seen)
         self.fill = self.bound_fill()
+
+    def fit(self, shape_arrays: ShapeArrays, grid: Grid, radius: float, reach: float = np.inf) -> bool:
+        """Whether these bins can be used for shapes in the same arrays, as seen in such a grid."""
+        seen = self.seen
+        return seen.balls is shape_arrays.balls and (seen.grid[1:], seen.radius, seen.reach) == (
+            grid[1:],
+            radius,
+            reach,
+        )
 
     def bound_fill(self) -> Callable[[], Any]:
         """Return the call that fills the lists."""
