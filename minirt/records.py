@@ -15,7 +15,14 @@ from inspect import Parameter, Signature, cleandoc
 from operator import attrgetter
 from typing import Any, TypeVar, cast, dataclass_transform
 
-from minirt.errors import did_you_mean
+from minirt.errors import did_you_mean, hint
+
+OTHER_NAMES = {  # of fields in other programs, and what they are called here
+    "size": ("sizes", "diameter", "side", "scale"),
+    "radius": ("diameter",),
+    "position": ("centre", "apex", "vertex", "point"),
+    "direction": ("axis", "normal"),
+}
 
 
 class FieldSignature:
@@ -107,7 +114,9 @@ class Immutable:
             or any(value is MISSING for value in complete.values())
         ):
             for name in set(named).difference(defaults):
-                raise TypeError(f"{kind.__name__} has no field {name!r}{did_you_mean(name, defaults)}")
+                meant = next((each for each in OTHER_NAMES.get(name, ()) if each in defaults), "")
+                found = hint(meant) or did_you_mean(name, defaults)
+                raise TypeError(f"{kind.__name__} has no field {name!r}{found}")
             kind.__signature__.bind(*values, **named)  # TypeError, which says what is wrong
         for name, value in complete.items():
             object.__setattr__(self, name, value)

@@ -113,6 +113,11 @@ def test_an_edit_makes_a_new_scene(scene: minirt.Scene) -> None:
     assert np.array_equal(minirt.render(scene, 32, 18).array, before)
     with pytest.raises(ValueError, match="diameter must be > 0"):
         scene.replace(scene.spheres[0], diameter=-1)
+    for name, meant in ("size", "diameter"), ("radius", "diameter"), ("position", "centre"), ("color", "colour"):
+        with pytest.raises(TypeError, match=rf"^Sphere has no field '{name}', did you mean '{meant}'\?$"):
+            minirt.Sphere((0, 0, 0), **{name: 1})  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^Box has no field 'size', did you mean 'sizes'\?$"):
+        minirt.Box((0, 0, 0), size=(1, 1, 1))  # type: ignore[call-arg]
     with pytest.raises(TypeError, match=r"^Sphere has no field 'diametre', did you mean 'diameter'\?$"):
         scene.replace(scene.spheres[0], diametre=3)
     with pytest.raises(ValueError, match="not in"):
