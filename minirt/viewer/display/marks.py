@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 from math import ceil, hypot
 from typing import NamedTuple
 
@@ -32,6 +31,7 @@ MOVING_RAYS, STILL_RAYS = 20_000, 60_000  # rays for an outline, while something
 MARGIN = 4  # pixels around the projected bounds of a shape
 SIZE = 20  # pixels of a side, times the screen's scale
 HANDLE_SCALES = {MOVE: 0.6, RESIZE: 0.7, SLIDE: 0.4}  # of the size of icons
+STEPS = 12  # points that are drawn between two corners of a ring, times the scale
 MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
 KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
 LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
@@ -96,8 +96,11 @@ def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: flo
     """Draw a handle in the colour of its axis; arrows and boxes have the letter of the axis."""
     colour, (x, y) = list(AXIS_COLOURS.values())[handle.axis], handle.points[0]
     if handle.kind == TURN:
-        for start, end in pairwise(handle.points):
-            draw_line(pixels, start, end, colour)
+        at, ring = np.arange(len(handle.points)), np.array(handle.points)  # all at once: a tenth of the time
+        places = np.linspace(0, len(at) - 1, round(STEPS * scale) * len(at))
+        down, right = (np.interp(places, at, ring[:, part]).astype(np.int64) for part in (1, 0))
+        for rows, columns in ((down, right), (down + 1, right), (down, right + 1)):
+            pixels[rows.clip(0, pixels.shape[0] - 1), columns.clip(0, pixels.shape[1] - 1)] = bgra(colour)
         return
     if handle.kind == MOVE and centre:
         draw_line(pixels, centre, (x, y), colour)
