@@ -83,16 +83,15 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
     if len(whole.colours) == len(whole.points):
         colours = np.rint(255 * np.clip(whole.colours, 0, 1)[corners].mean(axis=1)).astype(np.uint8)
         notices.append("has colours of points: each triangle has the mean of those of its corners")
-    faces = np.searchsorted(np.cumsum(whole.sizes), cut[:, 0], side="right")
-    looks = materials_of(whole, faces, folder, notices) if folder and len(whole.libraries) else (None, ())
+    looks = materials_of(whole, cut[:, 0], folder, notices) if folder and len(whole.libraries) else (None, ())
     return Triangles(whole.points, corners, normals, uvs, colours, *looks, tuple(notices))
 
 
 def materials_of(
-    whole: Block, faces: np.ndarray, folder: Path, notices: list[str]
+    whole: Block, firsts: np.ndarray, folder: Path, notices: list[str]
 ) -> tuple[np.ndarray | None, tuple[Any, ...]]:
-    """Return the index of the material of each triangle, given its face, and the materials; add what is not used of
-    them to the notices. The first material is that of the mesh, without a file."""
+    """Return the index of the material of each triangle, given its first corner, and the materials; add what is not
+    used of them to the notices. The first material is that of the mesh, without a file."""
     from minirt.meshes import mtl
 
     found, unused = mtl.read_libraries(map(decoded, whole.libraries), folder)
@@ -102,6 +101,7 @@ def materials_of(
         unused.add("materials that no file has")
     if unused:
         notices.append(f"has materials of which this is not used: {', '.join(sorted(unused))}")
+    faces = np.searchsorted(np.cumsum(whole.sizes), firsts, side="right")
     uses = np.searchsorted(whole.material_lines, whole.lines[faces])
     own = mtl.MeshMaterial()
     return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index)

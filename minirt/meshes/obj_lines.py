@@ -67,11 +67,15 @@ def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) 
         named = corner_table([word for index in places[b"f"] for word in rows[index]])
         preceding = [count + np.searchsorted(places[key], faces) for key, count in zip(NUMBERS, before, strict=True)]
         corners = np.where(named < 0, np.repeat(np.stack(preceding, axis=1), sizes, axis=0) + named, named - 1)
-        corners[(named < 0) & (corners < 0)] = NOWHERE
+        if named.min(initial=0) < 0:
+            corners[(named < 0) & (corners < 0)] = NOWHERE
         if (sizes < 3).any() or (corners[:, 0] < 0).any():
             raise ValueError
-        coloured = [row[3:6] for row in (rows[index] for index in places[b"v"]) if len(row) >= COLOURED]
-        colours = number_table(coloured, 3, 3, 3)
+        with_points = [rows[index] for index in places[b"v"]]
+        has_colours = max(map(len, with_points), default=0) >= COLOURED
+        colours = number_table(
+            [row[3:6] for row in with_points if len(row) >= COLOURED] if has_colours else [], 3, 3, 3
+        )
     except (ValueError, OverflowError):
         explain(lines, first, before)
         raise
