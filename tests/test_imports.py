@@ -34,7 +34,7 @@ MAY: dict[str, set[str]] = {
     | {"__init__", "helpers", "formats", "kernel", "meshes", "rendering", "scene"},
     "movie": {"errors", "helpers", "rendering", "formats"},
     "mlx": {"errors", "formats", "helpers"},
-    "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "rendering", "scene"},
+    "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "movie", "rendering", "scene"},
     "notebook": {"helpers", "errors", "scene", "mlx", "rendering", "viewer"},
     "report": LOW | {"__init__", "helpers", "kernel", "rendering", "scene"},
     "cli": {"__init__", "cluster", "errors", "formats", "helpers", "movie"}

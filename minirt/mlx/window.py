@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from minirt.mlx.arguments import Handle, Hooks, Host, Image, Options
 from minirt.mlx.canvas import Canvas
@@ -88,6 +89,8 @@ class Window(Handle, ABC):
     A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched
     and mouse positions are scaled back to that size.
     """
+
+    has_overlay: ClassVar[bool] = True  # whether triangles can be drawn over the canvas
 
     display: Host
     width: int  # the size of the surface for the next drawing call; the canvas follows then

@@ -32,6 +32,8 @@ Message = dict[str, Any]
 class PageWindow(Window):
     """The window in the page."""
 
+    has_overlay = False
+
     display: PageDisplay
 
     def __post_init__(self) -> None:

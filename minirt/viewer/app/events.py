@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from minirt.mlx.events import MODIFIER_KEYS, Event
+from minirt.mlx.events import MODIFIER_KEYS, Button, Event
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.panels import ADDING, HELP, LISTS, TYPE, Choosing, Help, Typing
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from minirt.viewer.panel.panel import Panel
 
 PANEL = "toggle panel"  # the action that opens the panel
-NO_PANEL = "the panel needs slimgui: pip install 'minirt[panel]'"
+NO_PANEL = "the panel needs a window of its own, and slimgui: pip install 'minirt[panel]'"
+NEAR = 3.0  # sizes of the tab of the panel: a pointer so close to it shows it
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
 
@@ -64,8 +65,23 @@ class EventDispatcher:
 
     def offer(self, event: Event | str, handler: Callable[..., object], *arguments: Any) -> None:
         """Offer an event to the panel, and handle it if the panel does not take it."""
-        if not (self.panel and self.panel.takes(event, *arguments)):
-            handler(*arguments)
+        if self.panel and self.panel.takes(event, *arguments):
+            return
+        match event, arguments:
+            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if self.session.screen.has_tab and self.is_on_tab(x, y):
+                self.toggle_panel()
+            case Event.MOTION_NOTIFY, (x, y):
+                handler(x, y)
+                near = not self.session.pressed and self.is_on_tab(x, y, NEAR)
+                if near != self.session.screen.has_tab:
+                    self.session.screen.has_tab = near
+                    self.session.refresh()
+            case _:
+                handler(*arguments)
+
+    def is_on_tab(self, x: int, y: int, reach: float = 1.0) -> bool:
+        """Whether the pointer is on, or near, the tab that opens the panel while that is closed."""
+        return not (self.panel and self.panel.is_open) and self.session.screen.is_on_tab(x, y, reach)
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -183,7 +199,10 @@ class EventDispatcher:
 
     def toggle_panel(self) -> None:
         """Open the panel, or close it; slimgui is imported when it opens first."""
+        self.session.screen.has_tab = False
         try:
+            if not self.session.window.has_overlay:
+                raise ImportError
             from minirt.viewer.panel.panel import Panel
         except ImportError:
             self.session.say(NO_PANEL)

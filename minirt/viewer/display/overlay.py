@@ -26,6 +26,7 @@ GAP = "    "  # between groups of words
 ROW_COLOUR = 0xC0C0C0  # of the rows that are not chosen
 PANEL_BACKGROUND = 0xC0000000  # with its opacity
 TOP, BOTTOM = 2, 2  # lines above and below the panel, which belong to the information and to messages
+TAB = "< F1"  # on the tab that opens the panel
 MARK = "> "  # before the chosen row
 
 
@@ -164,6 +165,14 @@ def short_numbers(text: str) -> str:
 
 
 draw_on_dark = partial(draw_text, background=PANEL_BACKGROUND, padding=PADDING)
+
+
+def draw_tab(pixels: Pixels, size: int) -> None:
+    """Draw the tab at the right edge that opens the panel."""
+    width, height = measure(TAB, size)
+    draw_on_dark(
+        pixels, pixels.shape[1] - width - PADDING, (pixels.shape[0] - height) // 2, TAB, MESSAGE_COLOUR, size=size
+    )
 
 
 class Panel(NamedTuple):

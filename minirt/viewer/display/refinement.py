@@ -25,8 +25,12 @@ class Refinement:
         self.resolution = AdaptiveResolution()
         self.latest: Outcome | None = None  # the latest picture
         self._window = window
-        self._samples = samples
+        self.samples = samples
         self._requested: Job | None = None
+
+    def restart(self, samples: int) -> None:
+        """Let the next request be that of a first picture, whose final one has so many rays per pixel."""
+        self.samples, self._requested = samples, None
 
     @property
     def complete(self) -> bool:
@@ -38,10 +42,10 @@ class Refinement:
         width, height = self._window.width, self._window.height
         last = self._requested
         if last is None:
-            self._request(Job(scene, width, height, goal=self._samples))
+            self._request(Job(scene, width, height, goal=self.samples))
         elif not last.shows(scene, width, height):
             divisor = self.resolution.divisor(width, height)
-            self._request(Job(scene, width, height, divisor, urgent=True, goal=self._samples))
+            self._request(Job(scene, width, height, divisor, urgent=True, goal=self.samples))
         elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.job.is_final:
             self._request(last.next(answer.pixels))
 

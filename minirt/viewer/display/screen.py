@@ -39,6 +39,7 @@ class Screen:
         self.banner = ""  # a message that stays until its reason is gone
         self.panel: Panel | None = None  # a value that is typed, or a list to choose from
         self.handles = False  # whether those of the selected element are shown
+        self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
         self.image = mlx.mlx_new_image(window.display, 1, 1)
         self._drawn: tuple[object, ...] = ()  # the contents of the window
@@ -64,6 +65,11 @@ class Screen:
         self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
         self.search = self.search if step else ""
 
+    def is_on_tab(self, x: int, y: int, reach: float = 1.0) -> bool:
+        """Whether a pixel is on the tab at the right edge that opens the panel, or within `reach` times its size."""
+        size = reach * self.text_size
+        return x >= self.window.width - 3 * size and abs(y - self.window.height // 2) <= size
+
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
@@ -73,7 +79,8 @@ class Screen:
         width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        shown = self.panel, self.level, self.help, self.search, self.icons, self.tips, self.handles and not keys_held
+        handles = self.handles and not keys_held
+        shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
         contents = described, picture, message, *shown, width, height, scale
         if contents == self._drawn:
             return False
@@ -85,9 +92,11 @@ class Screen:
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
-                marks = {"icons": self.icons, "handles": self.handles and not keys_held}
+                marks = {"icons": self.icons, "handles": handles}
                 draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
             bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
+        if self.has_tab and not self.help:
+            overlay.draw_tab(self.frame, size)
         if self.panel and not self.help:
             overlay.draw_panel(self.frame, self.panel, size)
         elif self.tips and self.level and not message:

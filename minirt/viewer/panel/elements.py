@@ -75,6 +75,7 @@ class Elements:
         session, state = self.session, self.session.state
         element = state.scene.elements[index]
         imgui.push_id(index)
+        imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
         self.rows.note(f"shown {index}")
         imgui.set_item_tooltip("shown while you edit; the file keeps it")
@@ -82,9 +83,11 @@ class Elements:
             session.show(replace(state, hidden=state.hidden ^ {index}))
         imgui.same_line()
         side = imgui.get_frame_height() * 0.7
+        imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
         imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side))
+        imgui.pop_item_flag()
         imgui.same_line()
-        flags = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK | imgui.SelectableFlags.SELECT_ON_NAV
+        flags = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK
         title = f"{element.title} {self._names[index]}"
         if imgui.selectable(f"{title}###element", index == state.selected, flags)[0] and index != state.selected:
             self._followed = index
@@ -92,6 +95,7 @@ class Elements:
         self.rows.note(f"element {index}")
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
             session.show(apply(session.state, "look at", 1.0, session.now))
+        imgui.pop_item_flag()
         imgui.pop_id()
 
     def found(self, scene: Scene) -> Sequence[int]:
@@ -108,14 +112,13 @@ class Elements:
     # --- attributes ---
 
     def attributes(self) -> None:
-        """Show a section for each attribute that may be absent, which a box switches on and off."""
-        for field in optional_fields(self.session.state.element):
+        """Show a section for each attribute that the element of the rows may lack, with a box that switches it."""
+        for field in optional_fields(self.rows.element):
             self.attribute(field)
 
     def attribute(self, field: Field) -> None:
         """Show the box of an attribute, with its rows or the reason why it cannot be had."""
-        state = self.session.state
-        there = getattr(state.element, field.name) is not None
+        there = getattr(self.rows.element, field.name) is not None
         reason = "" if there else self.reasons().get(field.name, "")
         imgui.begin_disabled(bool(reason))
         changed, _ = imgui.checkbox(f"{field.title}###{field.name} on", there)
@@ -134,10 +137,10 @@ class Elements:
 
     def reasons(self) -> dict[str, str]:
         """Why attributes cannot be had, by their names; as it was at the press while a number is dragged."""
-        state = self.session.state
-        scene, index = state.scene, state.selected
+        scene, index = self.session.state.scene, self.rows.index
         if (self._asked[0] is not scene or self._asked[1] != index) and not self.rows.is_sliding:
             self._asked = scene, index
+            state = self.session.state.select(index)
             self._reasons = {field.name: refusal(state, field) for field in optional_fields(state.element)}
         return self._reasons
 

@@ -14,6 +14,7 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.editing.state import State
 from minirt.viewer.panel.elements import Elements
 from minirt.viewer.panel.gui import Gui
+from minirt.viewer.panel.pages import Pages
 from minirt.viewer.panel.rows import Rows
 
 WIDTH, SHARE = 21.0, 0.55  # of the panel: in sizes of text, and of a narrow window
@@ -31,8 +32,15 @@ class Panel(Gui):
         self._close = close
         self._wants_focus = False
         self._state: State | None = None  # that the last frame shows
-        self._sizes: tuple[float, ...] = ()  # of the window then, and its scale
-        self._pages = {"Elements": Elements(session, self.rows).show}
+        self._others: tuple[object, ...] = ()  # what else it shows
+        elements = Elements(session, self.rows)
+        self._pages = Pages(session, self.rows, elements)
+        self._tabs = {
+            "Elements": elements.show,
+            "Scene": self._pages.scene,
+            "History": self._pages.history,
+            "Picture": self._pages.picture,
+        }
 
     def open(self, is_open: bool) -> None:
         """Open the panel, which then has the keys, or close it."""
@@ -45,13 +53,14 @@ class Panel(Gui):
 
     def follow(self) -> None:
         """Make a frame if the session shows something else than the last one."""
-        if self.is_open and (self._state is not self.session.state or self._sizes != self.sizes):
+        if self.is_open and (self._state is not self.session.state or self._others != self.others):
             self.frame()
 
     @property
-    def sizes(self) -> tuple[float, ...]:
-        """Size of the window, and the scale of its texts."""
-        return self.session.window.width, self.session.window.height, self.session.screen.scale
+    def others(self) -> tuple[object, ...]:
+        """What a frame shows besides the state: for the size of the window, the scale of its texts and the film."""
+        window = self.session.window
+        return window.width, window.height, self.session.screen.scale, self._pages.film
 
     @property
     def left(self) -> float:
@@ -64,7 +73,7 @@ class Panel(Gui):
 
     def build(self) -> None:
         window = self.session.window
-        self._state, self._sizes = self.session.state, self.sizes
+        self._state, self._others = self.session.state, self.others
         self.resize_text(max(READABLE, min(self.session.screen.text_size, window.width // LETTERS)))
         self.rows.begin_frame()
         imgui.set_next_window_pos((self.left, 0.0))
@@ -74,11 +83,13 @@ class Panel(Gui):
             self._wants_focus = False
         imgui.begin("panel", False, FRAME)
         if imgui.begin_tab_bar("pages"):
-            for name, show in self._pages.items():
+            for name, show in self._tabs.items():
                 visible, _ = imgui.begin_tab_item(name)
                 self.rows.note(name)
                 if visible:
-                    show()
+                    if imgui.begin_child(name, (0.0, 0.0), imgui.ChildFlags.NAV_FLATTENED):
+                        show()
+                    imgui.end_child()
                     imgui.end_tab_item()
             if imgui.tab_item_button(">", imgui.TabItemFlags.TRAILING):
                 self._close()

@@ -43,7 +43,7 @@ class Rows:
         self.places: dict[str, tuple[float, float]] = {}  # centres of the widgets of the last frame, by their names
         self.focused = ""  # name of the widget that has the focus
         self.error = ("", "")  # name of the value that was refused, and why
-        self._index = 0  # of the element whose rows are shown
+        self.index = 0  # of the element whose rows are shown
         self._typing: Value | None = None  # the number that is typed
         self._text, self._first = "", ""  # what is typed, and the character that began it
         self._pressed = ""  # name of the number under the button that is down
@@ -54,7 +54,7 @@ class Rows:
     @property
     def element(self) -> Element:
         """The element whose rows are shown, as it is now."""
-        return self.session.state.scene.elements[self._index]
+        return self.session.state.scene.elements[self.index]
 
     @property
     def is_sliding(self) -> bool:
@@ -76,7 +76,7 @@ class Rows:
 
     def show(self, index: int) -> None:
         """Show the rows of the values that an element always has."""
-        self._index = index
+        self.index = index
         for field in seen_fields(self.element):
             if not field.keyed or field.default is not None:
                 self.show_field(field)
@@ -108,7 +108,8 @@ class Rows:
             if changed:
                 self.set(value, new)
         elif isinstance(leaf, Choice):
-            self.choose(value, leaf.words, old, room)
+            if word := self.option(value.name, leaf.words, old, label=False):
+                self.set(value, word)
         elif isinstance(leaf, Three) and not isinstance(old, str):
             self.show_triple(value, room)
         elif isinstance(old, int | float):
@@ -141,21 +142,24 @@ class Rows:
         changed, new = imgui.color_edit3(f"###{value.name}", shown, SQUARE)
         self.note(f"{value.name} picker")
         if changed:
-            self.change(value, self.element, tuple(round(255 * part) for part in new))
+            levels = tuple(round(255 * part) for part in new)
+            self.change(value, self.element, lambda: value.replaced(self.element, levels))
         if imgui.is_item_deactivated():
             self.session.state = self.session.state.end_merging()
 
-    def choose(self, value: Value, options: Iterable[str], shown: str, room: float) -> None:
-        """Show a list of words."""
-        imgui.set_next_item_width(room)
-        if imgui.begin_combo(f"###{value.name}", shown):
+    def option(self, name: str, options: Iterable[str], shown: str, label: bool = True) -> str:
+        """Show a list of words; return the one that is chosen now, or an empty string."""
+        chosen = ""
+        imgui.set_next_item_width(-1.0 if not label else imgui.get_content_region_avail()[0] / 2)
+        if imgui.begin_combo(f"{name}###{name}" if label else f"###{name}", shown):
             for option in options:
                 if imgui.selectable(option, option == shown)[0]:
-                    self.set(value, option)
-                self.note(f"{value.name} {option}")
+                    chosen = option
+                self.note(f"{name} {option}")
             imgui.end_combo()
         else:
-            self.note(value.name)
+            self.note(name)
+        return chosen
 
     def choose_file(self, value: Value, room: float) -> None:
         """Show the list of the pictures, or meshes, beside the scene; in place of a picture there may be a colour."""
@@ -199,13 +203,13 @@ class Rows:
         right, down = self.gui.io.mouse_delta
         if self._start and (right or down) and imgui.is_mouse_dragging(imgui.MouseButton.LEFT):
             self._slid += (right - down) / PIXELS * (FINE_STEP if self.gui.io.key_shift else 1.0)
-            self.change(value, self._start, self.stepped(value, self._start, self._slid), is_field=True)
+            self.step(value, self._start, self._slid)
 
     def on_character(self, value: Value, text: str) -> None:
         """A character was typed while a number has the focus: it steps the number, or begins to type it."""
         if text in SIGNS:
             steps = SIGNS[text] * (FINE_STEP if self.gui.io.key_shift and text == "-" else 1.0)
-            self.change(value, self.element, self.stepped(value, self.element, steps), is_field=True)
+            self.step(value, self.element, steps)
         elif text in CHARACTERS:
             self.begin_typing(value, text)
 
@@ -219,7 +223,7 @@ class Rows:
         if self._first:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(width)
-        entered, self._text = imgui.input_text(f"###{value.name} text", self._text, TYPING)
+        entered, self._text = imgui.input_text(f"###{value.name}", self._text, TYPING)
         self.note(value.name)
         if self._first and imgui.is_item_active():
             self.gui.io.add_input_characters_utf8(self._first.strip())
@@ -232,19 +236,19 @@ class Rows:
 
     # --- changes of the scene ---
 
-    def stepped(self, value: Value, element: Element, steps: float) -> Any:
-        """The value's field of an element after a number of steps."""
+    def step(self, value: Value, start: Element, steps: float) -> None:
+        """Change a value by a number of steps from what it was in `start`."""
         state = self.session.state
-        return value.stepped(element, steps, partial(next_file, state.scene), state.stride)
+        self.change(value, start, lambda: value.stepped(start, steps, partial(next_file, state.scene), state.stride))
 
-    def change(self, value: Value, start: Element, new: Any, is_field: bool = False) -> None:
-        """Change a value of an element that was `start`; changes that follow each other are undone together.
+    def change(self, value: Value, start: Element, field: Callable[[], Any]) -> None:
+        """Change a field of an element that was `start`; changes that follow each other are undone together."""
 
-        `is_field`: `new` is the value of the whole field.
-        """
-        field = new if is_field else value.replaced(start, new)
-        changed = start.replace(**{value.field.name: field})
-        self.apply(lambda state: state.edit_element(keep_standing(state, changed), *SLIDE), value.name)
+        def edit(state: State) -> State:
+            changed = start.replace(**{value.field.name: field()})
+            return state.edit_element(keep_standing(state, changed), *SLIDE)
+
+        self.apply(edit, value.name)
 
     def set(self, value: Value, new: Any) -> None:
         """Set a value at once, as one step of undo."""
@@ -253,8 +257,8 @@ class Rows:
     def apply(self, edit: Callable[[State], State], name: str = "") -> None:
         """Select the element and edit it; a change that is refused is told below the row of the value `name`."""
         state = self.session.state.with_message("")
-        if state.selected != self._index:
-            state = state.select(self._index)
+        if state.selected != self.index:
+            state = state.select(self.index)
         try:
             after = edit(state)
         except (MiniRTError, ValueError, LookupError) as error:

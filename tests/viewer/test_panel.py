@@ -1,0 +1,387 @@
+"""The panel, on a window in memory: Dear ImGui needs no graphics card for what it does, only for what it shows.
+
+The user of the tests finds widgets by the names of values, with the pointer or by keys alone.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+from pathlib import Path
+
+import pytest
+
+from minirt.element import Element, fields_of
+from minirt.fields import Choice, Direction, Flag, MeshField, Paint, Picture
+from minirt.mlx import Key, Mlx
+from minirt.mlx.memory import Memory
+from minirt.scene import Scene, dump, load, parse
+from minirt.scene.registry import ELEMENTS
+from minirt.viewer.app.events import EventDispatcher
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.overlay import HudLevel
+from minirt.viewer.display.painter import Job, Painter
+from minirt.viewer.editing.state import State, initial_state
+from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
+from minirt.viewer.editing.values import Value, values
+from tests.processes import run
+from tests.viewer.editing.test_every_kind import BARE, path  # noqa: F401  (a fixture)
+from tests.viewer.fake import TEXT, FakeRenderer
+
+pytest.importorskip("slimgui", reason="the panel needs slimgui: make installs it")
+
+SIZE = (300, 2000)
+WITH_ATTRIBUTES = ("sp", "sl", "C")  # kinds whose attributes are those of all others
+KINDS = list(ELEMENTS.values())
+
+
+class Idle(Painter):
+    """A painter of no pictures."""
+
+    def request(self, job: Job) -> None:
+        pass
+
+
+class User:
+    """A user of a window whose panel is open."""
+
+    def __init__(self, scene: Scene, size: tuple[int, int] = SIZE, select: int | None = None) -> None:
+        self.memory = Memory()
+        mlx = Mlx(self.memory)
+        file = Path(scene.file or "scene.rt")
+        self.session = Session(mlx, mlx.mlx_init(), scene, file, size, FakeRenderer(), Idle)
+        self.session.screen.level = HudLevel.NOTHING
+        if select is not None:
+            self.session.state = self.session.state.select(select)
+        self.dispatcher = EventDispatcher(self.session)
+        self.dispatcher.connect()
+        self.press(Key.F1)
+        self.panel = self.dispatcher.panel
+        self.rows = self.panel.rows
+
+    def press(self, *keys: int) -> None:
+        self.memory.tap(*keys)
+        self.memory.play()
+
+    def place(self, name: str) -> tuple[int, int]:
+        """Where a widget is, after a scroll to it if it is out of sight."""
+        x, y = self.rows.places[name]
+        return int(x), int(y)
+
+    def click(self, name: str) -> None:
+        self.memory.click(*self.place(name))
+        self.memory.play()
+
+    def drag(self, name: str, *offsets: tuple[int, int], fine: bool = False) -> None:
+        x, y = self.place(name)
+        self.memory.motion(x, y)
+        if fine:
+            self.memory.press(Key.SHIFT_L)
+        self.memory.button_press(1, x, y)
+        for right, down in offsets:
+            self.memory.motion(x + right, y + down)
+        self.memory.button_release(1, x + right, y + down)
+        if fine:
+            self.memory.release(Key.SHIFT_L)
+        self.memory.play()
+
+    def type(self, text: str) -> None:
+        """Type characters and Enter."""
+        for character in text:
+            self.memory.text(character)
+        self.press(Key.RETURN)
+
+    def go_to(self, name: str) -> None:
+        """Press Tab until a widget has the focus."""
+        for _ in range(150):
+            self.press(Key.TAB)
+            if self.rows.focused == name:
+                return
+        raise AssertionError(f"Tab does not reach {name}")
+
+    @property
+    def state(self) -> State:
+        return self.session.state
+
+    @property
+    def element(self) -> Element:
+        return self.state.element
+
+    def saved(self) -> Element:
+        """The selected element, read back from the text that is saved."""
+        again = parse(dump(self.state.scene), self.state.scene.file).scene
+        assert again.elements == self.state.scene.elements
+        return again.elements[self.state.selected]
+
+
+def user_of(kind: type[Element], path: Path, attributes: bool = True) -> User:  # noqa: F811
+    """A user of a scene with an element of a kind, with all attributes that it can have at once, which is selected."""
+    state = initial_state(load(path).scene)
+    if kind.code == "R":
+        scene = Scene((*state.scene.items, kind(200, 100)), path)
+        state = initial_state(scene).select(len(scene.elements) - 1)
+    elif not any(type(each) is kind for each in state.scene.elements):
+        state = next(each for each in choices(state, ELEMENT) if type(each.element) is kind)
+    else:
+        state = state.select([type(each) for each in state.scene.elements].index(kind))
+    while attributes and (added := next(choices(state, ATTRIBUTE), None)):
+        state = added
+    tilts = {each.name: (0.48, 0.6, 0.64) for each in fields_of(kind) if isinstance(each, Direction)}
+    return User(state.scene.edit(state.selected, state.element.replace(**tilts)), select=state.selected)
+
+
+def number_values(element: Element) -> list[Value]:
+    """The values that are numbers in the panel: scalars and parts of triples."""
+    return [
+        value
+        for value in values(element)
+        if isinstance(value.current(element), int | float) and not isinstance(value.leaf, Flag)
+    ]
+
+
+def other_values(element: Element) -> list[Value]:
+    """The values that are chosen: words, files and flags."""
+    chosen = Choice | Flag | Picture | MeshField | Paint
+    return [value for value in values(element) if isinstance(value.leaf, chosen) and value.channel is None]
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
+def test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(kind: type[Element], path: Path) -> None:  # noqa: F811
+    user = user_of(kind, path, attributes=kind.code in WITH_ATTRIBUTES)
+    assert number_values(user.element)
+    for value in number_values(user.element):
+        before, steps = user.element, len(user.state.undo_stack)
+        user.drag(value.name, (30, 0), (30, -30))
+        user.drag(value.name, (-8, 0), (-16, 0))
+        assert value.get(user.saved()) != value.get(before), value.name
+        assert len(user.state.undo_stack) - steps in (1, 2), value.name
+        while len(user.state.undo_stack) > steps:
+            user.press(Key.CONTROL_L, Key.Z)
+        user.click(value.name)
+        assert user.panel.types, value.name
+        user.type("0,5*2")
+        after = user.saved()
+        if user.rows.error[0]:
+            assert user.rows.error[0] == value.name
+        elif isinstance(value.leaf, Direction):
+            assert value.get(after) != value.get(before)
+        else:
+            assert value.current(after) == 1, value.name
+        for field in fields_of(kind):
+            assert field.name == value.field.name or getattr(after, field.name) == getattr(before, field.name)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
+def test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(kind: type[Element], path: Path) -> None:  # noqa: F811
+    user = user_of(kind, path, attributes=kind.code in WITH_ATTRIBUTES)
+    numbers = {value.name: value for value in number_values(user.element)}
+    for name in [each for each in user.rows.places if each in numbers]:  # in the order of Tab
+        value = numbers[name]
+        user.go_to(value.name)
+        before = user.element
+        user.memory.text("-")
+        user.memory.text("-")
+        user.memory.play()
+        stepped = user.saved()
+        user.memory.text("+")
+        user.memory.play()
+        assert value.get(stepped) != value.get(before) or value.get(user.saved()) != value.get(before), value.name
+        user.type("7")
+        reached = value.current(user.saved())
+        assert reached == 7 or user.rows.error[0] == value.name or isinstance(value.leaf, Direction)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
+@pytest.mark.parametrize("by_keys", [False, True], ids=["pointer", "keys"])
+def test_every_word_file_and_flag_is_chosen(kind: type[Element], by_keys: bool, path: Path) -> None:  # noqa: F811
+    user = user_of(kind, path, attributes=kind.code in WITH_ATTRIBUTES)
+    for value in other_values(user.element):
+        before = user.element
+        name = value.name if isinstance(value.leaf, Choice | Flag) else f"{value.name} file"
+        if by_keys:
+            user.go_to(name)
+            for key in [Key.RETURN] if isinstance(value.leaf, Flag) else [Key.RETURN, Key.DOWN, Key.RETURN]:
+                user.press(key)
+        else:
+            user.click(name)
+            options = [each for each in user.rows.places if each.startswith(f"{value.name} ") and "." in each]
+            options += [f"{value.name} {value.leaf.words[-1]}"] if isinstance(value.leaf, Choice) else []
+            if not isinstance(value.leaf, Flag):
+                user.click(options[-1])
+        assert value.get(user.saved()) != value.get(before), value.name
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
+def test_every_attribute_is_switched_on_and_off(kind: type[Element], path: Path) -> None:  # noqa: F811
+    user = user_of(kind, path, attributes=False)
+    for field in fields_of(kind):
+        if field.keyed and field.default is None:
+            user.click(f"{field.name} on")
+            assert getattr(user.saved(), field.name) is not None
+            assert len(user.state.undo_stack) == 1
+            user.go_to(f"{field.name} on")
+            user.press(Key.SPACE)
+            assert getattr(user.saved(), field.name) is None
+            user.press(Key.CONTROL_L, Key.Z)
+            user.press(Key.CONTROL_L, Key.Z)
+
+
+def test_a_drag_is_one_step_of_undo_and_shift_makes_it_finer() -> None:
+    user = User(parse(TEXT, "scene.rt").scene, select=3)
+    user.drag("centre: x", *((n, 0) for n in range(4, 60, 4)))
+    far = user.element.centre[0]
+    assert len(user.state.undo_stack) == 1
+    user.press(Key.CONTROL_L, Key.Z)
+    assert user.element.centre == (0, 0, 0)
+    user.drag("centre: x", *((n, 0) for n in range(4, 60, 4)), fine=True)
+    assert user.element.centre[0] == pytest.approx(far / 10, rel=0.2)
+
+
+def test_out_of_range_is_told_as_by_the_reader_and_changes_nothing() -> None:
+    user = User(parse(TEXT, "scene.rt").scene, select=3)
+    before = user.state.scene
+    for text in ("-3", "2*(", "1/0", "abc"):
+        user.click("diameter")
+        user.type(text)
+        assert user.state.scene is before
+        assert user.rows.error[0] == "diameter"
+    user.click("diameter")
+    user.type("-3")
+    assert user.rows.error[1] == "sphere diameter must be > 0, got -3"
+
+
+def test_keys_are_those_of_the_picture_until_the_panel_has_the_focus_and_after_escape() -> None:
+    user = User(parse(TEXT, "scene.rt").scene)
+    user.memory.click(50, 50)
+    user.press(Key.TAB)
+    selected = user.state.selected
+    user.click("element 3")
+    user.press(Key.DOWN)
+    user.press(Key.RETURN)
+    assert user.state.selected == 4 != selected
+    user.press(Key.ESCAPE)
+    before = user.state.scene
+    user.press(Key.D)
+    assert user.state.scene is not before
+
+
+def test_an_eye_hides_an_element_and_nothing_is_saved_of_it() -> None:
+    user = User(parse(TEXT, "scene.rt").scene, select=1)
+    text = dump(user.state.scene)
+    user.click("shown 3")
+    assert [type(each).__name__ for each in user.session.shown_scene.shapes] == ["Plane", "Cylinder"]
+    assert dump(user.state.scene) == text
+    user.session.state = user.state.select(4)
+    user.press(Key.ESCAPE)
+    user.press(Key.DELETE)
+    assert [type(each).__name__ for each in user.session.shown_scene.shapes] == ["Cylinder"]
+    user.press(Key.CONTROL_L, Key.Z)
+    assert [type(each).__name__ for each in user.session.shown_scene.shapes] == ["Plane", "Cylinder"]
+
+
+def test_a_tab_at_the_right_edge_is_found_by_the_pointer_and_opens_the_panel_which_closes_itself() -> None:
+    user = User(parse(TEXT, "scene.rt").scene)
+    user.click("close")
+    assert not user.panel.is_open
+    width, height = SIZE
+    user.memory.motion(width // 2, height // 2)
+    user.memory.play()
+    assert not user.session.screen.has_tab
+    user.memory.motion(width - 10, height // 2)
+    user.memory.play()
+    assert user.session.screen.has_tab
+    user.memory.click(width - 10, height // 2)
+    user.memory.play()
+    assert user.panel.is_open
+    assert not user.session.screen.has_tab
+
+
+def test_the_scene_the_history_and_pictures_have_pages(tmp_path: Path) -> None:
+    (tmp_path / "scene.rt").write_text(TEXT)
+    user = User(load(tmp_path / "scene.rt").scene, select=3)
+    for text in ("3", "4", "5"):
+        user.click("diameter")
+        user.type(text)
+    user.click("History")
+    assert [name for name in user.rows.places if name.startswith("step")] == [f"step {n}" for n in range(4)]
+    user.click("step 1")
+    assert user.element.diameter == 3
+    user.click("step 3")
+    assert user.element.diameter == 5
+    user.click("Scene")
+    user.click("fov")
+    user.type("45")
+    assert user.state.scene.camera.fov == 45
+    user.click("samples")
+    user.click("samples 64")
+    assert user.session.refinement.samples == 64
+    user.click("Picture")
+    user.click("save")
+    assert load(tmp_path / "scene.rt").scene.spheres[0].diameter == 5
+
+
+def test_names_are_the_comments_before_lines_and_the_search_finds_them() -> None:
+    user = User(parse(TEXT + "# The Hat\nco 0,3,0 0,1,0 1 2 9,9,9\n", "scene.rt").scene)
+    user.click("search")
+    for character in "hat":
+        user.memory.text(character)
+    user.memory.play()
+    assert [name for name in user.rows.places if name.startswith("element")] == ["element 6"]
+    user.click("element 6")
+    assert type(user.element).__name__ == "Cone"
+
+
+def test_attributes_that_cannot_be_had_are_refused_with_the_reason(tmp_path: Path) -> None:
+    (tmp_path / "scene.rt").write_text(TEXT)
+    user = User(load(tmp_path / "scene.rt").scene, select=3)
+    user.click("texture on")
+    assert user.element.texture is None
+    assert not user.state.undo_stack
+
+
+@pytest.mark.parametrize("size", [(400, 300), (1280, 720)], ids="{0[0]}x{0[1]}".format)
+def test_random_input_leaves_a_scene_that_is_saved_and_a_panel_that_works(size: tuple[int, int], path: Path) -> None:  # noqa: F811
+    seed = random.SystemRandom().randrange(10**6)
+    chance = random.Random(seed)
+    user = User(parse(BARE + "sp 0,0,0 2 9,9,9\nbo 0,0,5 0,1,0 1,2,3 9,9,9\nL 0,9,0 0.5\n", path).scene, size)
+    keys = [*range(Key.A, Key.Z + 1), Key.TAB, Key.RETURN, Key.SPACE, Key.UP, Key.DOWN, Key.LEFT, Key.RIGHT, Key.ESCAPE]
+    keys = [key for key in keys if key not in (Key.ESCAPE, Key.P)]
+    for _ in range(150):
+        x, y = chance.randrange(size[0] // 2, size[0]), chance.randrange(size[1])
+        match chance.randrange(6):
+            case 0:
+                user.memory.click(x, y)
+            case 1:
+                user.memory.button_press(1, x, y)
+                user.memory.motion(chance.randrange(size[0]), chance.randrange(size[1]))
+                user.memory.button_release(1, x, y)
+            case 2:
+                user.memory.text(chance.choice("0123456789+-*/.,()="))
+            case 3:
+                user.memory.tap(chance.choice(keys))
+            case 4:
+                user.memory.scroll(chance.choice((-3, 3)), x, y)
+            case 5:
+                user.memory.resize(*(max(1, side + chance.randrange(-20, 20)) for side in size))
+        try:
+            user.memory.play()
+            user.saved()
+        except BaseException as error:
+            error.add_note(f"seed {seed}")
+            raise
+
+
+def test_slimgui_is_imported_when_the_panel_opens_and_without_it_f1_names_the_extra() -> None:
+    program = """if True:
+        import sys
+        from tests.viewer.fake import played
+        played("press Tab", "press H")
+        assert not any("slimgui" in name or ".panel." in name for name in sys.modules)
+        sys.modules["slimgui"] = None
+        assert "minirt[panel]" in played("press F1").state.message
+        del sys.modules["slimgui"]
+        played("press F1")
+        assert "slimgui" in sys.modules
+    """
+    ended = run([sys.executable, "-c", program], text=True)
+    assert ended.returncode == 0, ended.stderr
