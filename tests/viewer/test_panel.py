@@ -298,7 +298,7 @@ def test_a_tab_at_the_right_edge_is_found_by_the_pointer_and_opens_the_panel_whi
 
 def test_the_scene_the_history_and_pictures_have_pages(tmp_path: Path) -> None:
     (tmp_path / "scene.rt").write_text(TEXT)
-    user = User(load(tmp_path / "scene.rt").scene, select=3)
+    user = User(load(tmp_path / "scene.rt").scene, (640, 700), select=3)
     for text in ("3", "4", "5"):
         user.click("diameter")
         user.type(text)
