@@ -157,7 +157,7 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
 def render_film(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render the scene from all around it and write the film, or numbered pictures; return the worst outcome."""
     from minirt.movie import Film, numbered
-    from minirt.viewer.app.replay import turntable
+    from minirt.viewer.editing.motion import turntable
 
     wanted = options.frames or range(1, options.turntable + 1)
     views = islice(turntable(job.scene, options.turntable), wanted.start - 1, wanted.stop - 1)

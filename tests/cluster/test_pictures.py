@@ -21,7 +21,7 @@ from minirt.cluster.journal import HEAD
 from minirt.cluster.worker import work
 from minirt.errors import RenderError
 from minirt.rendering.packing.camera import Region
-from minirt.viewer.app.replay import turntable
+from minirt.viewer.editing.motion import turntable
 from tests.cli.program import environment
 from tests.cluster.scenes import BALL, with_files
 from tests.processes import run

@@ -17,7 +17,8 @@ from minirt.formats.table import is_installed
 from minirt.movie import save_movie
 from minirt.rendering.image import Image
 from minirt.viewer.app.replay import FPS as ANIMATION_FPS
-from minirt.viewer.app.replay import TICKS, record, turntable
+from minirt.viewer.app.replay import TICKS, record
+from minirt.viewer.editing.motion import turntable
 from minirt.viewer.editing.projection import projection_of, scene_centre
 from tests.processes import in_child
 from tests.test_faulty_writes import comparable

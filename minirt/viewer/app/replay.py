@@ -1,10 +1,10 @@
-"""Replay: play recorded keys and mouse events without a window, in simulated time; films of replays and turntables."""
+"""Replay: play recorded keys and mouse events without a window, in simulated time; films of replays."""
 
 from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +19,6 @@ from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Pixels
-from minirt.viewer.editing.motion import orbit_camera
-from minirt.viewer.editing.projection import scene_centre
 
 FPS = 12  # frames per second of an animation
 TICKS = 60  # per second of simulated time
@@ -72,14 +70,6 @@ def play(
     finally:
         mlx.mlx_release(display)
     return session
-
-
-def turntable(scene: Scene, count: int) -> Iterator[Scene]:
-    """Yield the scene from `count` positions on a circle around its centre; the frames repeat seamlessly."""
-    pivot = scene_centre(scene)
-    for number in range(count):
-        camera = orbit_camera(scene.camera, pivot, 360.0 * number / count, 0.0)
-        yield scene.replace(scene.camera, camera) if number else scene
 
 
 def record(scene: Scene, lines: Iterable[str], add: Callable[[Image], object], **settings: Any) -> None:

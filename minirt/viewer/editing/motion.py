@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import atan, atan2, copysign, cos, degrees, dist, fsum, hypot, pi, radians, sin, tan
 from typing import Any, TypeVar
 
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, clamp_length, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
+from minirt.scene import Scene
 from minirt.scene.elements import TONES, Camera, linear_combination
 from minirt.shapes.shape import Oriented
 from minirt.viewer.editing.projection import dot, extent, field_names, scene_centre, subtract
@@ -129,6 +130,14 @@ def orbit_camera(camera: Camera, pivot: Triple, right: float, up: float) -> Came
         along = sum((a - b) * part for a, b, part in zip(camera.position, pivot, old, strict=True))
         position = linear_combination(1.0, position, along, new)
     return turned.replace(position=clamp_point(position))
+
+
+def turntable(scene: Scene, count: int) -> Iterator[Scene]:
+    """Yield the scene from `count` positions on a circle around its centre; the frames repeat seamlessly."""
+    pivot = scene_centre(scene)
+    for number in range(count):
+        camera = orbit_camera(scene.camera, pivot, 360.0 * number / count, 0.0)
+        yield scene.replace(scene.camera, camera) if number else scene
 
 
 def handedness(camera: Camera) -> float:

@@ -15,9 +15,9 @@ from minirt.rendering.image import Image
 from minirt.rendering.settings import render
 from minirt.scene import Lamp, Scene
 from minirt.viewer.app.commands import COMMANDS
-from minirt.viewer.app.replay import turntable
 from minirt.viewer.app.session import Session
 from minirt.viewer.editing.editor import apply
+from minirt.viewer.editing.motion import turntable
 from minirt.viewer.editing.state import Snapshot
 from minirt.viewer.panel.elements import Elements, seen
 from minirt.viewer.panel.rows import Rows
