@@ -64,7 +64,7 @@ class Mesh(Turnable):
         return meshes.load_mesh(self.file.name) if loaded is None else loaded
 
     @property
-    def parts(self) -> int:
+    def parts(self) -> int:  # type: ignore[override]
         return len(self.triangles)
 
     @property

@@ -66,16 +66,12 @@ class Shape(Attributes):
     columnar: ClassVar[bool] = False  # whether `pack`, `balls` and `bounds` take fields that are columns of many shapes
     infinite: ClassVar[bool] = False  # whether the shapes of this kind have no bounding box, as planes
     solid: ClassVar[bool] = True  # whether it has an inside, that of a plane being below it
+    parts: ClassVar[int] = 1  # primitives in the kernel; a mesh has more
     smooth: ClassVar[bool] = False  # whether its flat parts are shaded as if they were curved; a mesh may be
     if TYPE_CHECKING:  # its kinds declare it as a field
 
         @property
         def colour(self) -> Triple: ...
-
-    @property
-    def parts(self) -> int:
-        """Number of its primitives in the kernel."""
-        return 1
 
     def some(self, parts: np.ndarray) -> Shape:
         """The shape made of some of its parts, by their indices."""

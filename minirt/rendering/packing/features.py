@@ -75,7 +75,8 @@ def features(scene: Scene) -> frozenset[Hashable]:
     Of these "parallel", "transparent", "fades" and "smooth" are parts: parallel light, glass, fading reflections, and
     smooth meshes.
     """
-    beside_shapes = (page.cached(features_beside_shapes) for page in scene.pages)
+    pages = (page for page in scene.pages if len(page.of(Shape)) < len(page.items))
+    beside_shapes = (page.cached(features_beside_shapes) for page in pages)
     return frozenset({"lens"} if scene.camera.lens else ()).union(*examples(scene), *beside_shapes)
 
 
@@ -89,7 +90,11 @@ def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
 
 def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shape]:
     """Find the `examples` among some elements."""
-    shapes = (item for item in items if isinstance(item, Shape))
+    shapes = [item for item in items if isinstance(item, Shape)]
+    values = zip(shapes, map(ATTRIBUTES, shapes), strict=True)
+    plain = [shape for shape, value in values if value == PLAIN and not shape.batched]  # most shapes of a crowd
+    if len(plain) == len(shapes):
+        return {(kind,): shape for kind, shape in dict(zip(map(type, plain), plain, strict=True)).items()}
     looks = chain.from_iterable(item.looks if isinstance(item, Mesh) else (item,) for item in shapes)
     return {(type(item), *shape_features(item)): item for item in looks}
 
