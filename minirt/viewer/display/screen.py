@@ -18,6 +18,7 @@ from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import translated
 
+TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow window
 # Shown until the first edit; the keys are the same on all keyboards.
 TIPS = """drag an object to move it, or nothing to look around
 N adds an object where the pointer is
@@ -67,8 +68,9 @@ class Screen:
 
     def is_on_tab(self, x: int, y: int, reach: float = 1.0) -> bool:
         """Whether a pixel is on the tab at the right edge that opens the panel, or within `reach` times its size."""
-        size = reach * self.text_size
-        return x >= self.window.width - 3 * size and abs(y - self.window.height // 2) <= size
+        width, height = self.window.width, self.window.height
+        size = reach * min(self.text_size, width // TAB_PARTS)
+        return x >= width - 3 * size and abs(y - height // 2) <= size
 
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.

@@ -19,6 +19,7 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.motion import turntable
 from minirt.viewer.editing.state import Snapshot
+from minirt.viewer.language import translated
 from minirt.viewer.panel.elements import Elements, seen
 from minirt.viewer.panel.rows import Rows
 
@@ -81,7 +82,7 @@ class Pages:
                 self._thread = Thread(target=self.make_film, name="minirt-film", daemon=True)
                 self._thread.start()
         self.rows.note("film")
-        imgui.text_wrapped(self.film)
+        imgui.text_wrapped(translated(self.film))
 
     def make_film(self) -> None:
         """Render and write the film, in a thread of its own; the window goes on meanwhile."""
