@@ -95,11 +95,12 @@ def registered() -> dict[str, type]:
     return {name: kind for home in REGISTRIES for name, kind in import_module(home).PUBLIC.items()}
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Scene:
+def load(path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False) -> Scene:
     """Read a scene file. SceneError, with all of its problems, if the file is not a valid scene.
 
     `lenient` accepts older spellings (several `L`, blanks around commas, colours with decimals) and translates lines of
-    other programs; `scene.missing` has the lines of shapes that it could not read.
+    other programs; `scene.missing` has the lines of shapes that it could not read. "base" and "angle" read, besides,
+    cones whose point is the centre of the base, or whose diameter stands for half the angle at the apex, in degrees.
     `left_handed` mirrors pictures of the scene, as renderers with left-handed coordinates do.
     """
     from minirt.scene import load as read

@@ -143,6 +143,8 @@ window:
 inspect:
 --check  read the scene and report its errors; render nothing
 --lenient  read scenes of older and of other programs, and say how
+--cone={{base,angle}}  as --lenient, with cones whose point is the centre of the base, or that have half the angle at
+    the apex in place of a diameter
 --bench  measure the frame time: of an eye at rest, and of a moving one
 --json  with --bench: print JSON
 --report=DIR  measure error against run time; write tables, pictures and a diagram into DIR

@@ -30,6 +30,7 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False) -
     from minirt.scene.parser import example
 
     path = options.scene[0]
+    options.lenient = options.cone or options.lenient
     with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")), lenience_noted(options):
         if options.example:
             reading = Reading(example(options.example), ())

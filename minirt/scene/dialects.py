@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from math import radians, tan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,9 +19,10 @@ from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, T
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
 from minirt.scene.element_reader import HEX_COLOUR, split_key
-from minirt.scene.elements import LAMPS, Ambient, Camera, FurtherCamera
+from minirt.scene.elements import LAMPS, Ambient, Camera, FurtherCamera, Resolution, linear_combination
 from minirt.scene.lines import Line, Log, first_unprintable, line_from
 from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
+from minirt.shapes import Cone
 
 # Sorts of changes, as notices tell them.
 LEFT_OUT = "words without a meaning here are left out"
@@ -34,6 +36,8 @@ JOINED = "three numbers with blanks between them are read as one field"
 NAMED = "names of colours and materials become their R,G,B"
 WHITE = "what has no colour is white"
 ORDER = "fields in another order become those of this format, without turns and second axes"
+APEX = "cones begin at their apex and have a diameter; --cone base or --cone angle reads them in another way"
+CONVENTION = "cones are read as --cone says"
 RENAMED = "elements of other names become those of this format"
 EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
 REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
@@ -67,6 +71,16 @@ WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"[()|]+,?")  # around the numbers of a field, and between fields
 UP = "0,1,0"
+
+
+# Fields of cones as programs mean them whose point is the centre of the base, or whose diameter is half the angle.
+CONES: dict[str, Callable[[Cone], dict[str, Any]]] = {
+    "base": lambda cone: {
+        "apex": linear_combination(1.0, cone.apex, cone.height, cone.axis),
+        "axis": linear_combination(-1.0, cone.axis, 0.0, cone.axis),
+    },
+    "angle": lambda cone: {"diameter": 2 * cone.height * tan(radians(cone.diameter))},
+}
 
 
 class Row(NamedTuple):
@@ -188,10 +202,13 @@ def translated(line: Line, colours: Mapping[str, str], folder: Path | None) -> T
     ordered = in_order(kind.code, values)
     if ordered != values:
         changes.append((ORDER, code))
-    spelled = fields_of_words(kind, ordered, colours, changes)
+    try:
+        spelled = fields_of_words(kind, ordered, colours, changes)
+    except FieldError:
+        return Translation("", ((SETTINGS, code),)) if kind in (Resolution, FurtherCamera) else None
     if spelled is None:
         unread = MISSING if kind in SHAPES else LIGHTS if kind in LAMPS else SETTINGS
-        return Translation("", ((unread, code),)) if kind not in (Ambient, Camera) else None
+        return Translation("", ((unread, code),)) if values and kind not in (Ambient, Camera) else None
     fields, others = spelled
     attributes = meanings(kind, others, folder, changes)
     return Translation(" ".join([kind.code, *fields, *attributes]) + f" #{comment}" * bool(comment), tuple(changes))
@@ -234,7 +251,7 @@ def fields_of_words(
 ) -> tuple[list[str], list[str]] | None:
     """Spell the fields of an element by the first words, and return the others, too.
 
-    None where a field is missing or has no value.
+    None where a field is missing, or something else stands in its place; FieldError for a malformed word.
     """
     fields = []
     for field in positional_fields(kind):
@@ -244,6 +261,8 @@ def fields_of_words(
         if spelled is None and isinstance(field, Colour) and field.required and is_absent:
             spelled = Spelling("255,255,255", 0, WHITE)
         if spelled is None and field.required:
+            if words and not is_other(field, words[0]):
+                raise FieldError(f"cannot be {quoted(words[0])}")
             return None
         if spelled is None:
             break
@@ -252,6 +271,12 @@ def fields_of_words(
         fields.append(spelled.text)
         words = words[spelled.words :]
     return fields, words
+
+
+def is_other(field: Field, word: str) -> bool:
+    """Whether a word stands for something else: a number for three of them, three for one, or an attribute."""
+    other = NUMBER if isinstance(field, Three) else TRIPLE.pattern
+    return re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", word) is not None
 
 
 def colour_first(words: list[str], colours: Mapping[str, str]) -> list[str]:
@@ -396,6 +421,19 @@ def promote_camera(items: list[Any], seen: dict[str, int], log: Log) -> None:
         items[index] = first.as_kind(Camera).replace(source=first.source)
         seen[Camera.code] = seen[first.code]
         log.change(line_from(seen[first.code], first.source), RENAMED, first.code)
+
+
+def read_cones(items: list[Any], log: Log) -> None:
+    """Give cones the meaning that was asked for, or say which one they have in a file that is in a dialect."""
+    cones = [(number, item) for number, item in enumerate(items, 1) if isinstance(item, Cone)]
+    meant = CONES.get(str(log.lenient))
+    for number, cone in cones if meant or log.changes else ():
+        line = line_from(number, cone.source)
+        log.change(line, CONVENTION if meant else APEX, cone.code)
+        try:
+            items[number - 1] = cone.replace(**meant(cone)) if meant else cone
+        except ValueError as error:
+            log.error(line, f"{error} (--cone {log.lenient})", 1)
 
 
 def check_shapes_left(items: list[Any], log: Log) -> None:

@@ -90,7 +90,7 @@ def words_of(body: str) -> list[Word]:
 class Log:
     """The errors and notices of one scene file."""
 
-    def __init__(self, file: str, lenient: bool, folder: Path | None = None) -> None:
+    def __init__(self, file: str, lenient: bool | str, folder: Path | None = None) -> None:
         """Make an empty log of a file. The scene's file names are relative to `folder`, by default that of the file;
         without either, as for `file` '', named files are not opened."""
         self.file = file
@@ -118,7 +118,7 @@ class Log:
 
         `remedy` says what a lenient reader does: "rounds it to 10,0,255". A `certain` one is that of every reader.
         """
-        is_tolerated = certain or self.lenient
+        is_tolerated = certain or bool(self.lenient)
         add = self.notice if is_tolerated else self.error
         add(line, f"{message} ({'miniRT' if certain else '--lenient'} {remedy})", column, length)
         return is_tolerated

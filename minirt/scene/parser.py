@@ -32,7 +32,9 @@ class Reading(NamedTuple):
     notices: tuple[Problem, ...]
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False, new: bool = False) -> Reading:
+def load(
+    path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False, new: bool = False
+) -> Reading:
     """Read a scene file; SceneError with all of its errors.
 
     `left_handed` mirrors its pictures; `new`: a file that holds nothing is the beginning of a scene.
@@ -45,14 +47,15 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
 
 
 def parse(
-    text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False, folder: Path | None = None
+    text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool | str = False, folder: Path | None = None
 ) -> Reading:
     """Parse the text of a scene; SceneError with all of its errors. `file` is the name that they show.
 
     Textures and meshes are looked for in `folder`, by default that of the file.
 
     `lenient` accepts, with notices, the habits of older scenes (several `L`, blanks around commas and the like), and
-    translates lines of other programs (`minirt.scene.dialects`).
+    translates lines of other programs (`minirt.scene.dialects`). "base" and "angle" do so, too, and read cones whose
+    point is the centre of the base, or whose diameter stands for half the angle at the apex, in degrees.
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):
@@ -68,7 +71,7 @@ def parse(
     return Reading(Scene(items, folder / place.name if folder and place else place), tuple(log.notices))
 
 
-def loads(text: str | bytes, lenient: bool = False) -> Scene:
+def loads(text: str | bytes, lenient: bool | str = False) -> Scene:
     """Read a scene from the text of a file; SceneError, with all of its problems, if the text is no valid scene.
 
     Textures and meshes are looked up in the current folder. `lenient` is as for `load`.
@@ -101,6 +104,7 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
     if log.lenient:
+        dialects.read_cones(items, log)
         dialects.check_shapes_left(items, log)
     return items
 

@@ -60,7 +60,7 @@ CASES = [
     ("ptl 0,9,0 0.5 255,255,255", "l 0,9,0 0.5 255,255,255", [dialects.RENAMED]),
     ("mesh 1,2,3 0,90,0 2,2,2 9,8,7 'ball.obj'", "", [dialects.MISSING]),
     ("obj ball.obj", "", [dialects.MISSING]),
-    ("sp 0,0,20 twelve 10,0,255", "", [dialects.MISSING]),
+    ("co 1,2,3 0,1,0 4 cb:0,0,0:255,255,255", "", [dialects.MISSING]),
     ("SUN 1,-1,1 1.0 255,244,214", "", [dialects.LIGHTS]),
     ("bl 115,205,255", "", [dialects.SETTINGS]),
     ("SP 0,0,20 12.6 10,0,255", BALL, [dialects.RENAMED]),
@@ -132,6 +132,21 @@ def test_the_camera_of_the_older_subject_is_the_first_one() -> None:
         parse(text)
     late = text.replace("c 0,0,9", "C 0,0,9")
     assert [each.position for each in parse(late, lenient=True).scene.cameras] == [(0, 0, 9), (0, 0, -9)]
+
+
+def test_cones_are_read_as_the_program_means_them_that_the_file_is_from() -> None:
+    text = scene_with("co 0,1.5,10 0,-1,0 15 3 9,8,7", f"{BALL} matte", "co 0,0,0 0,1,0 2 4 9,8,7")
+    scene, notices = parse(text, lenient=True)
+    assert [each.message for each in notices][-1] == f"{dialects.APEX}: co (2 places)"
+    assert (notices[-1].line, scene.cones[0].diameter) == (3, 15)
+    assert not parse(scene_with("co 0,1.5,10 0,-1,0 15 3 9,8,7"), lenient=True).notices
+    by_angle, by_base = loads(text, lenient="angle").cones, loads(text, lenient="base").cones
+    assert by_angle[0].diameter == pytest.approx(2 * 3 * 0.26794919243112270647)  # tan 15 degrees = 2 - sqrt 3
+    assert (by_angle[1].apex, by_angle[1].height) == ((0, 0, 0), 4)
+    assert [(each.apex, each.axis) for each in by_base] == [((0, -1.5, 10), (0, 1, 0)), ((0, 4, 0), (0, -1, 0))]
+    assert loads(dump(loads(text, lenient="base"))).cones == by_base
+    with pytest.raises(SceneError, match="diameter must be > 0"):
+        loads(scene_with("co 0,0,0 0,1,0 100 4 9,8,7"), lenient="angle")
 
 
 def test_pictures_are_found_beside_the_file(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ class Session:
         painter: Callable[[Renderer, Callable[[], object]], Painter] = Painter,
         *,
         keys: str = "auto",
-        lenient: bool = False,
+        lenient: bool | str = False,
         samples: int = 1,
         watch: bool = False,
         saved: Scene | None = None,
