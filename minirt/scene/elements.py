@@ -85,7 +85,8 @@ class Camera(Element):
         Focus, "distance, along the direction, of what is sharp", keyed=True, default=None, placeholder="distance"
     )
     left_handed: bool = field(default=False, kw_only=True)
-    edited: tuple[object, ...] = field(default=(), kw_only=True, compare=False, repr=False)  # see `State.change`
+    # Names and values of the fields that the window's user gave a value: see `minirt.viewer.editing.state`.
+    edited: tuple[tuple[str, object], ...] = field(default=(), kw_only=True, compare=False, repr=False)
 
     @classmethod
     def look_at(cls, eye: Triple, target: Triple, *, fov: float = 60.0, roll: float = 0.0) -> Camera:

@@ -70,8 +70,14 @@ def contents_differ(scene: Scene, saved: Scene) -> bool:
 
 
 def looks(one: Item, other: Item) -> bool:
-    """Whether two entries of a scene are cameras that were given the same values, and may look elsewhere."""
-    return isinstance(one, Camera) and isinstance(other, Camera) and one.edited == other.edited
+    """Whether two entries of a scene are cameras that were given the same values, and may look elsewhere.
+
+    Fields that nobody gave a value, such as a tone that an option chose, are not compared.
+    """
+    if not isinstance(one, Camera) or not isinstance(other, Camera):
+        return False
+    mine, theirs = dict(one.edited), dict(other.edited)
+    return all(mine.get(each, getattr(one, each)) == theirs.get(each, getattr(other, each)) for each in mine | theirs)
 
 
 def error_summary(error: MiniRTError) -> str:

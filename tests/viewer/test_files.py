@@ -88,9 +88,9 @@ POSED = ("press V\npress V\npress V\npress V\ntext 3\npress Return",)
     ],
 )
 def test_values_of_the_camera_are_to_be_saved_and_looking_around_is_not(path, tone, lines, unsaved):
-    """With --tone srgb the window shows another scene than the file holds, which is no change of the user's."""
+    """With --tone and --exposure the window shows another scene than the file holds, which the user did not change."""
     saved = load(path).scene
-    shown = saved.replace(saved.camera, tone=tone)
+    shown = saved.replace(saved.camera, tone=tone, exposure=0.0 if tone == "plain" else 1.0)
 
     def differs(*more: str) -> bool:
         session = play(
@@ -105,6 +105,15 @@ def test_values_of_the_camera_are_to_be_saved_and_looking_around_is_not(path, to
     assert not differs("press Ctrl+S", "press C", "press d")
     path.write_text(TEXT)
     assert differs("press Ctrl+S", "press Ctrl+Z") == (unsaved and lines != "press d\npress Home")
+
+
+def test_a_tone_that_a_key_makes_that_of_the_file_again_is_no_change(path):
+    saved = load(path).scene
+    shown = saved.replace(saved.camera, tone="filmic", exposure=1.0)
+    keys = ["press C", "press T", "press d"]
+    session = play(shown, keys, renderer=FakeRenderer(), size=(64, 48), path=path, saved=saved)
+    assert session.state.scene.camera.tone == saved.camera.tone == "plain"
+    assert not contents_differ(session.state.scene, session.saved)
 
 
 # File watching: changes by other programs are reported once, as soon as the file is stable.

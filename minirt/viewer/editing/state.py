@@ -16,6 +16,7 @@ from minirt.viewer.editing.values import Value, nice_number, round_changes, valu
 
 MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
 GIVEN = ("typed", "value")  # how the kinds of changes begin that give an element a value
+LOOKING = ("position", "direction", "roll")  # fields of a camera that change while one looks around
 MAX_UNDO = 1000  # length of the undo stack
 MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
 
@@ -130,16 +131,12 @@ class State:
 
 
 def with_edited_cameras(old: Scene, new: Scene, kind: str) -> Scene:
-    """Note the values of cameras that were changed by a value, or in more than where they are and look."""
+    """Note in cameras which fields were given which values: all that no looking around changes, and what was typed."""
     for before, after in zip(old.of(Camera), new.of(Camera), strict=False):
-        if before is not after and before.edited == after.edited:
-            looked = (
-                before is old.camera
-                and before.replace(position=after.position, direction=after.direction, roll=after.roll) == after
-            )
-            if not looked or kind.startswith(GIVEN):
-                given = tuple(getattr(after, each.name) for each in fields_of(Camera))
-                new = new.replace(after, after.replace(edited=given))
+        names = [each.name for each in fields_of(Camera) if kind.startswith(GIVEN) or each.name not in LOOKING]
+        given = {name: getattr(after, name) for name in names if getattr(after, name) != getattr(before, name)}
+        if given and before.edited == after.edited:
+            new = new.replace(after, after.replace(edited=tuple((dict(before.edited) | given).items())))
     return new
 
 

@@ -196,7 +196,9 @@ def test_the_window_shows_the_tone_and_the_dithering_of_the_file_and_a_key_chang
             viewer.key("i", "i", "i")
             viewer.shows(expected)
         viewer.key("Escape")
-        assert viewer.end() == (0, "", "")
+        status, out, err = viewer.end()
+        assert (status, err) == (0, "")
+        assert "scene.recovered.rt" in out  # a tone is a value to be saved
 
 
 def test_escape_right_after_the_start_ends_the_program(viewer):
