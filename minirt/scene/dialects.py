@@ -69,7 +69,7 @@ NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
 # Blanks may stand around the commas of three numbers, and within quotes.
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
-FRAMING = re.compile(r"[()|]+,?")  # around the numbers of a field, and between fields
+FRAMING = re.compile(r"\(([^()]*,[^()]*)\),?|(?<![^ \t])\|(?![^ \t])")  # of three numbers, and between fields
 UP = "0,1,0"
 
 
@@ -188,7 +188,7 @@ def translated(line: Line, colours: Mapping[str, str], folder: Path | None) -> T
     hex_colour = HEX_COLOUR.match(line.text, line.end)
     rest = css_colour(hex_colour[0]) + line.text[hex_colour.end() :] if hex_colour else line.text[line.end :]
     body, _, comment = (line.text[: line.end] + rest).partition("#")
-    words = ["".join(word.split()) for word in WORD.findall(FRAMING.sub(" ", body))]
+    words = ["".join(word.split()) for word in WORD.findall(FRAMING.sub(r" \1 ", body))]
     if not words or first_unprintable(line) >= 0:
         return None
     code, *values = words
