@@ -229,7 +229,7 @@ def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active
         far = far + max_norm(apex - start)
         active = active & (depth_behind_plane(triangle, dot(triangle.normal, a), start) >= 0.0)
     rounding, edge = APART * unit_roundoff(direction.x), maximum(max_norm(b - a), max_norm(c - a))
-    is_hopeless = rounding > ROUNDED and edge * edge < rounding * size * size
+    is_hopeless = rounding > ROUNDED and not any(edge * edge >= rounding * size * size)  # of rays through a lens, too
     if not is_hopeless and any(active):
         of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
         margin = rounding * size * far
