@@ -299,15 +299,16 @@ def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active
 
 def occlude_by_shape(shape: Any, index: int, extent: float, rays: Mask, memory: Any) -> None:
     """Set the distances in `HIT` of those of some shadow rays to -infinity that a shape occludes."""
-    hit, t = occludes(shape, load_vec(memory, ORIGIN), load_vec(memory, DIRECTION))
     distance = load(memory, HIT)
-    save(where(rays & hit & (t < distance), -inf, distance), memory, HIT)
+    occluded = occludes(shape, load_vec(memory, ORIGIN), load_vec(memory, DIRECTION), distance)
+    save(where(rays & occluded, -inf, distance), memory, HIT)
 
 
 def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
-    hit, t = occludes(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
-    memory[HIT + ray] = where(any(hit & (t < memory[HIT + ray])), -inf, memory[HIT + ray])
+    origin, direction, distance = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray), memory[HIT + ray]
+    occluded = any(occludes(read_block(group.blocks, block), origin, direction, distance))
+    memory[HIT + ray] = where(occluded, -inf, distance)
 
 
 def read_block(blocks: Any, i: int) -> Any:

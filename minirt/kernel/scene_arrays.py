@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 
-from minirt.lanes import Vec
+from minirt.lanes import Mask, Number, Vec
 from minirt.shapes import ALL_KINDS, Kind
 from minirt.shapes.shape import Position
 
@@ -160,9 +160,10 @@ mapping, shading, smooth_point = of_kind("mapping"), of_kind("shading"), of_kind
 
 def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
     """Intersect rays, which may start anywhere, with a packed shape."""
-    return formula(shape, origin, direction, True)
-
-
-def occludes(shape: Any, origin: Vec, direction: Vec) -> Any:
-    """Intersect shadow rays, which start clear of all surfaces, with a packed shape."""
     return formula(shape, origin, direction, None)
+
+
+def occludes(shape: Any, origin: Vec, direction: Vec, limit: Number) -> Mask:
+    """Whether shadow rays, which start clear of all surfaces, hit a packed shape nearer than `limit`."""
+    hit, t = formula(shape, origin, direction, limit)
+    return hit & (t < limit)

@@ -136,8 +136,8 @@ def unoccluded_by_shape(group: Group, row: int, index: int, active: Mask, visibl
         is_parallel(scene, rays.light)
         or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & active))
     ):
-        hit, t = occludes(shape, rays.origin, rays.direction)
-        visible = visible & ~(active & hit & (t < rays.distance))
+        limit = where(visible & active, rays.distance, -inf)
+        visible = visible & ~occludes(shape, rays.origin, rays.direction, limit)
     return visible
 
 

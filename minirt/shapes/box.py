@@ -64,7 +64,7 @@ class PackedBox(NamedTuple):
     half: Vec  # of the sizes
 
 
-def intersect(box: PackedBox, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the box. A face on which it starts, within rounding, is not met there again.
 
     Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
@@ -78,7 +78,7 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec, anywhere: bool | None
     enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
     enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
     hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
-    if anywhere is not None:
+    if limit is None:
         close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
         if rarely(close):
             error = where(close, position_error(origin, origin - box.centre), -1.0)

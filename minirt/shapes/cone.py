@@ -52,7 +52,7 @@ class PackedCone(NamedTuple):
     height: float
 
 
-def intersect(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
@@ -81,7 +81,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | No
     c = q.x * q.x + q.y * q.y - reach_q * reach_q
     pace = fabs(d.z) + 1.0 / (1.0 + cone.slope)
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
-    if anywhere is not None:
+    if limit is None:
         shell = 8.0 * position_error(origin, p)
         squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared

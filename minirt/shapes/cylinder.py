@@ -52,7 +52,7 @@ class PackedCylinder(NamedTuple):
 
 
 def intersect(
-    cylinder: PackedCylinder, origin: Vec, direction: Vec, anywhere: bool | None = True
+    cylinder: PackedCylinder, origin: Vec, direction: Vec, limit: Number | None = None
 ) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cylinder.
 
@@ -70,7 +70,7 @@ def intersect(
     half_b = q.x * d.x + q.y * d.y
     c = q.x * q.x + q.y * q.y - squared
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
-    if anywhere is not None:
+    if limit is None:
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - cylinder.half
         close = quadrics.starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)

@@ -52,9 +52,9 @@ class PackedDisc(NamedTuple):
 surface, mapping = square.surface, square.mapping
 
 
-def intersect(disc: PackedDisc, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(disc: PackedDisc, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the disc."""
-    hit, t, p = meets_plane(disc, origin, direction, anywhere)
+    hit, t, p = meets_plane(disc, origin, direction, limit)
     return hit & (dot(p, p) <= disc.half * disc.half), t
 
 

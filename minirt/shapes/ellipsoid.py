@@ -83,7 +83,7 @@ class PackedEllipsoid(NamedTuple):
 
 
 def intersect(
-    ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, anywhere: bool | None = True
+    ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, limit: Number | None = None
 ) -> tuple[Mask, Number]:
     """Whether and where a ray meets the ellipsoid.
 
@@ -100,7 +100,7 @@ def intersect(
     q = p + approach * d
     half_b = dot(q, d)
     below, above = negative_interval(a, per_a, half_b, dot(q, q) - 1.0, approach)
-    if anywhere is not None:
+    if limit is None:
         level = dot(p, p) - 1.0
         if rarely(fabs(level) <= CLOSE):
             close = (fabs(level) <= CLOSE) & ((b < 0.0) | (level <= ROUNDING * unit_roundoff(a)))

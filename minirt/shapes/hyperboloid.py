@@ -65,7 +65,7 @@ class PackedHyperboloid(NamedTuple):
 
 
 def intersect(
-    hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, anywhere: bool | None = True
+    hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit: Number | None = None
 ) -> tuple[Mask, Number]:
     """Whether and where a ray meets the hyperboloid.
 
@@ -89,7 +89,7 @@ def intersect(
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
     c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
-    if anywhere is not None:
+    if limit is None:
         shell = 8.0 * position_error(origin, p)
         squared = reach * reach + waist
         level = p.x * p.x + p.y * p.y - squared

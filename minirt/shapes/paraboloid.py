@@ -77,7 +77,7 @@ class PackedParaboloid(NamedTuple):
 
 
 def intersect(
-    paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: bool | None = True
+    paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: Number | None = None
 ) -> tuple[Mask, Number]:
     """Whether and where a ray meets the paraboloid.
 
@@ -96,7 +96,7 @@ def intersect(
     c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
     pace = fabs(d.z) + paraboloid.radius / (paraboloid.radius + paraboloid.focal)
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
-    if anywhere is not None:
+    if limit is None:
         across = p.x * p.x + p.y * p.y
         squared = across + paraboloid.focal * paraboloid.focal
         level = across - 2.0 * paraboloid.focal * p.z

@@ -58,13 +58,13 @@ class PackedPlane(NamedTuple):
     normal: Vec
 
 
-def intersect(plane: PackedPlane, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(plane: PackedPlane, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the plane; one that is parallel to it, or starts on it, to rounding, does not."""
     f = origin - plane.point
     height, slope = dot(plane.normal, f), dot(plane.normal, direction)
     t = -height / slope
     hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
-    if anywhere is not None:
+    if limit is None:
         hit = hit & (fabs(height) > position_error(origin, f))
     return hit, t
 

@@ -6,7 +6,7 @@ declares, t counted from the start. A start whose height is no more than the rou
 surface, and no ray hits the surface where it starts: the nearer of the two ends is exactly 0. A ray that goes inwards
 hits the other side, and one that goes outwards leaves the solid.
 
-Shadow rays start clear of all surfaces and need none of this: where `anywhere` is None the formulas of quadrics leave
+Shadow rays start clear of all surfaces and need none of this: where `limit` is not None the formulas of quadrics leave
 it out, which saves a kernel a third of its size.
 """
 

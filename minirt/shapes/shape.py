@@ -3,10 +3,11 @@
 The file of a shape holds its manual page, its line in a scene file (a record), its packed form for the kernel
 (a NamedTuple of numbers and Vecs, made by `pack`), three functions on packed shapes:
 
-    intersect(shape, origin, direction, anywhere)
+    intersect(shape, origin, direction, limit)
                                           whether a ray hits the shape, and the distance t along the unit `direction` at
-                                          which it enters or, from inside, leaves: the least t > 0; `anywhere` is None
-                                          for shadow rays, which start clear of all surfaces
+                                          which it enters or, from inside, leaves: the least t > 0; `limit` is None,
+                                          or where shadow rays end, which start clear of all surfaces: then only whether
+                                          t < `limit` counts
     surface(shape, point)                 `point`, which is within rounding of the surface, moved onto it, and the unit
                                           normal there, outward where there is an outside
     mapping(shape, point, normal)         texture coordinates of a point of the surface with this normal: u to the right

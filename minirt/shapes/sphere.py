@@ -58,7 +58,7 @@ class PackedSphere(NamedTuple):
     radius: float
 
 
-def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the sphere.
 
     Both hits lie half a chord from the ray's closest approach to the centre, by Pythagoras. Counting t from there

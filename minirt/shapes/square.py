@@ -55,13 +55,13 @@ class PackedSquare(NamedTuple):
     half: float  # of a side
 
 
-def intersect(square: PackedSquare, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(square: PackedSquare, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the square."""
-    hit, t, p = meets_plane(square, origin, direction, anywhere)
+    hit, t, p = meets_plane(square, origin, direction, limit)
     return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
 
 
-def meets_plane(flat: Any, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number, Vec]:
+def meets_plane(flat: Any, origin: Vec, direction: Vec, limit: Number | None) -> tuple[Mask, Number, Vec]:
     """Whether and where a ray meets the plane of a square or disc: t and the point, relative to the centre.
 
     A ray that is parallel to it, or starts on it, within rounding, does not meet it there.
@@ -70,7 +70,7 @@ def meets_plane(flat: Any, origin: Vec, direction: Vec, anywhere: bool | None) -
     height, slope = dot(flat.normal, f), dot(flat.normal, direction)
     t = -height / slope
     crosses = fabs(slope) > PARALLEL * unit_roundoff(slope)
-    if anywhere is None:
+    if limit is not None:
         return crosses & (t > 0.0), t, f + t * direction
     least = where(fabs(height) <= position_error(origin, f), CLOSE * flat.half, 0.0)
     return crosses & (t > least), t, f + t * direction

@@ -21,7 +21,7 @@ from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, longitude, ow
 from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along
 
 PAD = 16.0  # unit roundoffs of a torus' outer radius by which a computed height may be off, and more
-STEPS = 100  # of Newton's method at most; most roots take less than ten
+STEPS = 100  # of Halley's or Newton's method at most; most roots take less than ten
 CORNERS = 8  # of the polygon around the circle in the middle of the tube
 
 
@@ -68,15 +68,16 @@ class PackedTorus(NamedTuple):
     tube: float  # radius of the tube
 
 
-def intersect(torus: PackedTorus, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the torus.
 
     Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides
     of it, and not at all if they lie on the same side. So a root is searched only where there is one, and until it is
-    exact. The height of a point above the surface comes from its distance to the circle in the middle of the tube: that
-    keeps all digits of a thin tube, which the polynomial loses. The ray is cut a little outside of the ball and the
-    slab around the torus, clear of the places at which these touch it. A ray that starts on the surface, to rounding,
-    starts on the side to which it goes: that of the next turning point that is not on the surface, too.
+    exact; that of a shadow ray only if the ray ends between the same two points. The height of a point above the
+    surface comes from its distance to the circle in the middle of the tube: that keeps all digits of a thin tube, which
+    the polynomial loses. The ray is cut a little outside of the ball and the slab around the torus, clear of the places
+    at which these touch it. A ray that starts on the surface, to rounding, starts on the side to which it goes: that of
+    the next turning point that is not on the surface, too.
     """
     f = origin - torus.centre
     approach = -dot(f, direction)  # t is counted from the closest approach to the centre
@@ -95,7 +96,9 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, anywhere: bool | 
         half = sqrt(chord)
         enter = maximum(maximum(-half, minimum(bottom, top)), -approach)  # not before the ray's origin
         leave = minimum(half, maximum(bottom, top))
-        hit = hit & (enter <= leave)
+        hit = hit & (enter <= leave) & comes_near(torus, p, d, enter, leave, pad)
+        if limit is not None:
+            hit = hit & (approach + enter < limit)
         if any(hit):
             # The side of the surface at the start, and at the turning points between both ends.
             first, second, third = turning_points(torus, p, d, hit)
@@ -120,9 +123,13 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, anywhere: bool | 
             low = where(by_1, enter, where(by_2, first, where(by_3, second, third)))
             high = where(by_1, first, where(by_2, second, where(by_3, third, leave)))
             hit = hit & (by_1 | by_2 | by_3 | (side_3 < 0.0))
-            if any(hit):
-                t = approach + crossing(torus, p, d, low, high, side_0, hit)
-                hit = hit & (t > 0.0)
+            t = approach + high
+            unclear = hit
+            if limit is not None:
+                unclear = hit & (approach + low < limit) & ~(t < limit)
+            if any(unclear):
+                t = where(unclear, approach + crossing(torus, p, d, low, high, side_0, unclear), t)
+            hit = hit & (t > 0.0)
     return hit, t
 
 
@@ -130,6 +137,12 @@ def height(torus: PackedTorus, p: Vec) -> Number:
     """Height of a point above the surface; negative in the tube."""
     aside = sqrt(p.x * p.x + p.y * p.y) - torus.ring
     return sqrt(aside * aside + p.z * p.z) - torus.tube
+
+
+def comes_near(torus: PackedTorus, p: Vec, d: Vec, enter: Number, leave: Number, pad: Number) -> Mask:
+    """Whether p + t d may meet the surface: where its middle is no farther from there than from its two ends."""
+    middle = p + 0.5 * (enter + leave) * d
+    return height(torus, middle) <= 0.5 * (leave - enter) + pad
 
 
 def side(above: Number) -> Number:
@@ -140,21 +153,23 @@ def side(above: Number) -> Number:
 def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Number, Number, Number]:
     """Extrema of (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) along q = p + t d, in ascending order.
 
-    With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). Newton's method from beyond
-    ends at its root of largest magnitude, without passing it; a quadratic is left for the other two. Where these are
-    not real two other places are returned, which divide an interval without crossings.
+    With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). Halley's method from beyond
+    ends at its root of largest magnitude; a quadratic is left for the other two. Where these are not real two other
+    places are returned, which divide an interval without crossings.
     """
     squared = torus.ring * torus.ring
     b = dot(p, p) + squared - torus.tube * torus.tube - 2.0 * squared * (d.x * d.x + d.y * d.y)
     c = -2.0 * squared * (p.x * d.x + p.y * d.y)
     size = fabs(c)
     y = torus.ring * splat(1.415, c)  # no extremum is farther than sqrt(2) ring
-    small = 2.0**-30 * torus.ring  # the error after a step is the square of it
+    small = 2.0**-22 * torus.ring  # the error after a step is the cube of it
     unconverged = active  # a converged lane stays as it is, so that no ray's answer depends on the rays beside it
     for _ in range(STEPS):
-        step = where(unconverged, ((y * y + b) * y - size) / (3.0 * y * y + b), 0.0)
+        square = y * y
+        value, slope = (square + b) * y - size, 3.0 * square + b
+        step = where(unconverged, value * slope / (slope * slope - 3.0 * y * value), 0.0)
         y = y - step
-        unconverged = step > small
+        unconverged = fabs(step) > small
         if not any(unconverged):
             break
     forward = c < 0.0
@@ -179,11 +194,11 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         aside = rho - torus.ring
         apart = sqrt(aside * aside + q.z * q.z)
         above = apart - torus.tube
-        slope = (aside * (q.x * d.x + q.y * d.y) / rho + q.z * d.z) / apart
+        slope = aside * (q.x * d.x + q.y * d.y) + q.z * d.z * rho  # times rho and the distance to the circle
         before = above * from_side > 0.0
         low = where(before, t, low)
         high = where(before, high, t)
-        newton = t - above / slope
+        newton = t - above * (apart * rho) / slope
         nearer = where((newton > low) & (newton < high), newton, 0.5 * (low + high))
         unconverged = unconverged & (fabs(above) > rounding * torus.ring)  # below that it is rounding
         step = where(unconverged, nearer - t, 0.0)

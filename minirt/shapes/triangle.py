@@ -94,7 +94,7 @@ class PackedTriangle(NamedTuple):
     normal: Vec
 
 
-def intersect(triangle: Any, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(triangle: Any, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle, or one of a mesh, without gaps between neighbours.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
@@ -131,7 +131,7 @@ def intersect(triangle: Any, origin: Vec, direction: Vec, anywhere: bool | None 
         extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
         grazing = fabs(slope) * edge <= GRAZING * extent
         unclear = grazing
-        if anywhere is not None:
+        if limit is None:
             close = t * t < CLOSE * extent
             unclear = grazing | close
         if rarely(hit & unclear):
@@ -141,7 +141,7 @@ def intersect(triangle: Any, origin: Vec, direction: Vec, anywhere: bool | None 
             end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
             t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
             hit = hit & ~(grazing & (enter > leave)) & (extent != 0.0)  # not one that is seen edge on
-            if anywhere is not None:
+            if limit is None:
                 hit = hit & ~(close & (fabs(height) <= position_error(origin, f)))
         hit = hit & (t > 0.0)
     return hit, t

@@ -44,7 +44,7 @@ class PackedGate(NamedTuple):
     half: float  # of the side
 
 
-def intersect(gate: PackedGate, origin: Vec, direction: Vec, anywhere: bool | None = True) -> tuple[Mask, Number]:
+def intersect(gate: PackedGate, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the gate."""
     f = origin - gate.centre
     t = -f.z / direction.z

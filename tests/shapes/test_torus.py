@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from minirt.lanes import Mask, Number, Vec
 from minirt.shapes import torus as module
 from minirt.shapes.shape import Position
 from minirt.shapes.torus import PackedTorus, Torus
-from tests.shapes.execution_modes import Intersect, compiled, on_arrays, vec
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays, vec, with_numpy_numbers
 from tests.shapes.regimes import GREY, RAYS, unit
 from tests.stability.degenerate import wrong
 
@@ -89,3 +91,27 @@ def test_a_newton_step_out_of_the_bracket_is_not_taken(intersect: Intersect) -> 
     origin = np.array([1.0217727611113592, -0.23003780827641834, -0.035576964714855296])
     direction = np.array([-0.9962543729509578, -0.08488865002048886, 0.01646637403295192])
     assert not wrong(intersect, thin, np.tile(origin, (RAYS, 1)), np.tile(direction, (RAYS, 1)))
+
+
+def never_exact(*_: Any) -> Number:
+    """A crossing that a shadow ray takes for the end of its interval."""
+    return np.inf
+
+
+@pytest.mark.parametrize("planted", [False, True])
+def test_shadow_rays_end_where_they_end(planted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    seed = int(np.random.SeedSequence().generate_state(1)[0])
+    random = np.random.default_rng(seed)
+    targets = np.array(RING.centre) + random.uniform(-3, 3, (4000, 3))
+    origins = targets + 9 * unit(random.normal(size=(4000, 3)))
+    rays = with_numpy_numbers(RING.pack()), vec(origins), vec(unit(targets - origins))
+    with np.errstate(all="ignore"):
+        hit, t = module.intersect(*rays)
+        if planted:
+            monkeypatch.setattr(module, "crossing", never_exact)
+        same = True
+        for limit in (np.full(4000, np.inf), t, np.nextafter(t, np.inf), t * random.uniform(0.9, 1.1, 4000)):
+            occluded, bound = module.intersect(*rays, limit)
+            same &= np.array_equal(hit & (t < limit), occluded & (bound < limit))
+    assert hit.sum() > 500
+    assert same != planted, seed

@@ -48,7 +48,7 @@ def single(packed: Any) -> Any:
 
 def as_of_a_shadow_ray(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """The real formula of rays that start clear of all surfaces."""
-    return on_arrays(shapes, origins, directions, partial(kind_of(shapes[0]).intersect, anywhere=None))
+    return on_arrays(shapes, origins, directions, partial(kind_of(shapes[0]).intersect, limit=np.inf))
 
 
 def hits_its_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
