@@ -14,7 +14,7 @@ import numpy as np
 
 from minirt.kernel.bvh_build import LEVELS, MARGIN
 from minirt.kernel.trace import COINCIDENT
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, load_vec, max_norm, maximum, minimum, save_vec, width
+from minirt.lanes import Mask, Number, Vec, copysign, load, load_vec, max_norm, maximum, minimum, save_vec, where, width
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
 TINY = 2.0**-500  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
@@ -77,7 +77,7 @@ def store_rays(memory: Any, origin: Vec, direction: Vec) -> None:
 
 def safe_inverse(x: Number) -> Number:
     """Return 1 / x, or a huge number with the sign of x for x = 0 and -0."""
-    return 1.0 / copysign(maximum(fabs(x), TINY), x)
+    return 1.0 / where((x > TINY) | (x < -TINY), x, copysign(TINY, x))
 
 
 def vec_at(memory: Any, at: int, ray: int) -> Vec:
@@ -104,15 +104,17 @@ def intersect_boxes(
     return slab_test(near, far, enter, leave, inverse, limit)
 
 
-def rays_in_box(boxes: Any, at: int, memory: Any, planes: tuple[int, int, int], limit: Number) -> tuple[Mask, Number]:
+def rays_in_box(boxes: Any, at: int, memory: Any, limit: Number) -> tuple[Mask, Number]:
     """Return the rays of a packet that hit one box up to `limit`, and their entry distances.
 
-    All of them enter it by the same `planes`. Its bounds are `WIDTH` numbers apart, the first one at index `at`.
+    Its bounds are `WIDTH` numbers apart, the first one at index `at`.
     """
-    x, y, z = planes
-    near = Vec(boxes[at + x], boxes[at + y], boxes[at + z])
-    far = Vec(boxes[at + 3 * WIDTH - x], boxes[at + 5 * WIDTH - y], boxes[at + 7 * WIDTH - z])
     enter, leave, inverse = load_vec(memory, ENTER), load_vec(memory, LEAVE), load_vec(memory, INVERSE)
+    x, y, z = inverse.x > 0.0, inverse.y > 0.0, inverse.z > 0.0
+    low = Vec(boxes[at], boxes[at + WIDTH], boxes[at + 2 * WIDTH])
+    high = Vec(boxes[at + 3 * WIDTH], boxes[at + 4 * WIDTH], boxes[at + 5 * WIDTH])
+    near = Vec(where(x, low.x, high.x), where(y, low.y, high.y), where(z, low.z, high.z))
+    far = Vec(where(x, high.x, low.x), where(y, high.y, low.y), where(z, high.z, low.z))
     return slab_test(near, far, enter, leave, inverse, limit)
 
 
@@ -150,8 +152,8 @@ def reference_of(tagged: float) -> int:
 
 
 def least_lane(x: Number) -> float:
-    """Return the least of the lanes, none of which is negative; NaN counts as more than infinity."""
-    return float(x.view(np.int64).min().view(np.float64))
+    """Return the least of the lanes, none of which is negative or NaN."""
+    return float(x.min())
 
 
 def packet_memory() -> Any:

@@ -144,6 +144,18 @@ def read(rows: Rows, i: int) -> Any:
     return kind_of(rows.dtype.names).packed(*parts)
 
 
+def read_block(blocks: Any, i: int) -> Any:
+    """Return all shapes of a block as one packed shape, with one shape in each SIMD lane."""
+    parts = (Vec(*part) if part.ndim == 2 else part for part in blocks[i])
+    return kind_of(blocks.dtype.names).packed(*parts)
+
+
+def read_one(blocks: Any, block: int, i: int) -> Any:
+    """Return the packed shape in lane i of a block."""
+    parts = (Vec(*part[:, i]) if part.ndim == 2 else part[i] for part in blocks[block])
+    return kind_of(blocks.dtype.names).packed(*parts)
+
+
 def kind_of_packed(packed: type[Any]) -> Kind:
     """Return the kind that has this class as its packed form."""
     return next(kind for kind in ALL_KINDS if kind.packed is packed)

@@ -14,22 +14,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.beams import fold_over_mesh
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read
 from minirt.kernel.trace import for_each_kind, in_cone
-from minirt.lanes import (
-    Mask,
-    Number,
-    Vec,
-    any,
-    dot,
-    fabs,
-    first,
-    floor,
-    lane,
-    minimum,
-    rarely,
-    splat,
-    where,
-    width,
-)
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, lane, minimum, rarely, splat, where, width
 
 
 def is_close(cached: Any, tolerance: Any, direction: Vec) -> Mask:

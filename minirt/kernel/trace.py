@@ -12,20 +12,7 @@ from typing import Any
 
 from minirt.kernel.beams import fold_over_mesh
 from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read, surface
-from minirt.lanes import (
-    Mask,
-    Number,
-    Vec,
-    any,
-    dot,
-    fabs,
-    max_norm,
-    maximum,
-    rarely,
-    splat,
-    unit_roundoff,
-    where,
-)
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, max_norm, maximum, rarely, splat, unit_roundoff, where
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
 COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to their distance, may be one place

@@ -187,9 +187,12 @@ def load(values: Any, start: int) -> Number:
     return values[start : start + width(values)].copy()
 
 
-def gather(values: Any, indices: Number) -> Number:
-    """Load for each ray the number at its own whole-number index of an array, in the precision of the indices."""
-    return np.asarray(values[np.asarray(indices).astype(np.int64)]).astype(np.asarray(indices).dtype)[()]
+def gather(values: Any, start: int, indices: Number) -> Number:
+    """Load for each ray the number at its own whole-number index, below 2^31, of an array from index `start` on.
+
+    It is in the precision of the indices.
+    """
+    return np.asarray(values[start + np.asarray(indices).astype(np.int64)]).astype(np.asarray(indices).dtype)[()]
 
 
 def save(x: Number, values: Any, start: int) -> None:

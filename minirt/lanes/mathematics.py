@@ -78,7 +78,7 @@ def exp2(y: Number) -> Number:
     x = 0.693147180559945309 * (y - whole)
     series = splat(1.0, x)
     for n in range(14, 0, -1):
-        series = 1.0 + x / n * series
+        series = 1.0 + 1.0 / n * x * series
     return series * two_to(whole)
 
 

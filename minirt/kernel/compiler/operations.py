@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
-from minirt.kernel import beams, bvh_nodes, bvh_traversal, scene_arrays
+from minirt.kernel import beams, bvh_nodes, scene_arrays
 from minirt.kernel.compiler.by_reference import length
 from minirt.kernel.pixels import OPAQUE, PACKET_HEIGHT, fetch_add, store_block
 from minirt.kernel.shading import whitted
@@ -64,13 +64,13 @@ def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return load_packed(context, builder, sig.return_type, address(context, builder, sig.args, args, number))
 
 
-@register(bvh_traversal.read_block, lambda blocks, i: packed_type(blocks, LANES, 2))
+@register(scene_arrays.read_block, lambda blocks, i: packed_type(blocks, LANES, 2))
 def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     first = address(context, builder, sig.args, args, LANES_IR)
     return load_packed(context, builder, sig.return_type, first, align=8)
 
 
-@register(bvh_traversal.read_one, lambda blocks, i, lane: packed_type(blocks, types.float64, 2))
+@register(scene_arrays.read_one, lambda blocks, i, lane: packed_type(blocks, types.float64, 2))
 def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     first = builder.gep(address(context, builder, sig.args, args, ir.DoubleType()), [args[2]])
     return load_packed(context, builder, sig.return_type, first, LANES.count)
@@ -119,10 +119,9 @@ def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> A
 
 @register(bvh_nodes.least_lane, lambda x: types.float64)
 def _least_lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    kind = ir.FunctionType(INTEGER, [INTEGERS])
-    name = f"llvm.vector.reduce.smin.v{LANES.count}i64"
-    minimum = cgutils.get_or_insert_function(builder.module, kind, name)
-    return builder.bitcast(builder.call(minimum, [builder.bitcast(args[0], INTEGERS)]), ir.DoubleType())
+    kind = ir.FunctionType(ir.DoubleType(), [LANES_IR])
+    minimum = cgutils.get_or_insert_function(builder.module, kind, f"llvm.vector.reduce.fmin.v{LANES.count}f64")
+    return builder.call(minimum, args, fastmath=("nnan",))
 
 
 # The frame loop: take the next row of tiles, store a packet of pixels.

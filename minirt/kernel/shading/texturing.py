@@ -54,8 +54,8 @@ def channel_lookup(texels: Any, pictures: Any, which: int, channel: int, u: Numb
     across, down = minimum(x - left, 1.0), minimum(y - top, 1.0)  # no NaN, as in `wrap`
     x0, x1 = wrap(left, columns), wrap(left + 1.0, columns)
     y0, y1 = wrap(top, rows) * columns, wrap(top + 1.0, rows) * columns
-    upper = lerp(gather(texels, base + step * (y0 + x0)), gather(texels, base + step * (y0 + x1)), across)
-    lower = lerp(gather(texels, base + step * (y1 + x0)), gather(texels, base + step * (y1 + x1)), across)
+    upper = lerp(gather(texels, base, step * (y0 + x0)), gather(texels, base, step * (y0 + x1)), across)
+    lower = lerp(gather(texels, base, step * (y1 + x0)), gather(texels, base, step * (y1 + x1)), across)
     return lerp(upper, lower, down)
 
 

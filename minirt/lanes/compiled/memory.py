@@ -85,16 +85,16 @@ def _save(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return context.get_dummy_value()
 
 
-def gather_type(values: types.Type, indices: types.Type) -> types.Type | None:
+def gather_type(values: types.Type, start: types.Type, indices: types.Type) -> types.Type | None:
     """Return the type of lanes that are gathered from an array: that of the indices."""
-    return indices if array_of(values) and isinstance(indices, Lanes) else None
+    return indices if load_type(values, start) and isinstance(indices, Lanes) else None
 
 
 @register(lanes.gather, gather_type)
 def _gather(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     lanes, number = sig.return_type, array_of(sig.args[0]).dtype  # type: ignore[union-attr]
-    first = first_of(context, builder, sig.args[0], args[0])
-    indices = builder.fptosi(args[1], ir.VectorType(ir.IntType(64), lanes.count))
+    first = address(context, builder, sig.args, args, context.get_value_type(number))
+    indices = builder.fptosi(args[2], ir.VectorType(I32, lanes.count))  # AVX2 converts no doubles to 64 bits
     loaded = ir.Constant(ir.VectorType(context.get_value_type(number), lanes.count), ir.Undefined)
     for i in range(lanes.count):
         lane = ir.Constant(I32, i)

@@ -10,7 +10,7 @@ import pytest
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel import bvh_build, bvh_nodes, bvh_traversal
+from minirt.kernel import bvh_build, bvh_nodes, bvh_single_rays, bvh_traversal
 from minirt.kernel.bvh_nodes import (
     GROUPS,
     LEVELS,
@@ -231,7 +231,7 @@ def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf
     bvh_nodes.store_rays(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
     memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = limit
     visit = lambda group, block, tree, memory, ray: visited_leaves.append(block)  # noqa: E731
-    bvh_traversal.traverse(visit, scene, memory, 1 << 5, 0.0)
+    bvh_single_rays.traverse(visit, scene, memory, 1 << 5, 0.0)
     return visited_leaves
 
 
@@ -258,7 +258,7 @@ def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
         visits[ray] += 1
         memory[bvh_nodes.HIT + ray] = distance
 
-    bvh_traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4, 0.0)
+    bvh_single_rays.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4, 0.0)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first leaf that it hits
     expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in rays[0]]
     expected[2] = 0  # not active
@@ -329,15 +329,14 @@ def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.Monke
     near_planes = bvh_nodes.near_planes
     tiny = lambda x: np.abs(x) if np.abs(x) * bvh_nodes.TINY == 1.0 else x  # noqa: E731  (-0 as if it were 0)
     monkeypatch.setattr(
-        bvh_traversal,
+        bvh_single_rays,
         "near_planes",
         lambda inverse: near_planes(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z))),
     )
     assert [len(leaves_along(tree, *ray)) for ray in zip(*rays, strict=True)].count(0) > 5
     monkeypatch.undo()
-    # Rays that enter boxes by other planes than the first ray of their packet.
-    monkeypatch.setattr(bvh_traversal, "APART", 9.0)
-    monkeypatch.setattr(bvh_traversal, "differ_in_sign", lambda x, rays: False)
+    # Rays that enter boxes by the planes of the first ray of their packet.
+    monkeypatch.setattr(bvh_nodes, "where", lambda mask, a, b: np.where(mask if np.ndim(a) else mask[0], a, b))
     assert wrong_hits(tree, shapes, rays) > 5
 
 
