@@ -18,12 +18,14 @@ from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.state import initial_state, state_after_reading, with_edited_cameras
-from minirt.viewer.files import contents_differ
+from minirt.viewer.files import contents_differ, looks
 from minirt.viewer.recovery import FoundChanges, find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
 TEXT_STEP = 2**0.25  # factor of a key press
 DELETED = "{} was deleted by another program: {} writes it again"
+MOST_LINES = 20_000  # of files whose versions are merged
+MERGED = "{} was changed by another program; its changes and yours are in other lines, and both are here"
 UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
@@ -98,20 +100,40 @@ def save_scene(session: Session) -> None:
 
 
 def follow_change(session: Session) -> None:
-    """Show the file after another program has written it, unless the session has unsaved changes.
+    """Show the file after another program has written it, with the unsaved changes of the session if there are some.
 
-    If the file has errors or is gone, the last picture stays and a banner says so.
+    If the file has errors or is gone, or both changed the same line, the last picture stays and a banner says so.
     """
     if session.file.missing:
         session.screen.banner = DELETED.format(session.path.name, named("Ctrl+S"))
         return
-    if contents_differ(session.state.scene, session.saved):
-        session.screen.banner = UNSAVED.format(session.path.name, named("Ctrl+R"), named("Ctrl+S"))
-        return
+    unsaved = contents_differ(session.state.scene, session.saved)
     try:
-        read_file(session, keep_camera=True)
+        if not unsaved:
+            read_file(session, keep_camera=True)
+        elif merge_file(session):
+            session.say(MERGED.format(session.path.name))
+        else:
+            session.screen.banner = UNSAVED.format(session.path.name, named("Ctrl+R"), named("Ctrl+S"))
     except SceneError as error:
         session.screen.banner = files.error_summary(error)
+
+
+def merge_file(session: Session) -> bool:
+    """Take the changes of another program beside those of the session; False if both changed a line. SceneError."""
+    seen, mine, saved = files.signature(session.path), session.state.scene, session.saved
+    scene = load(session.path, session.lenient, mine.camera.left_handed).scene
+    for camera, before in zip(mine.cameras, saved.cameras, strict=False):
+        mine = mine.replace(camera, before) if looks(camera, before) else mine  # looking around changes no line
+    texts = [dump(each).split("\n") for each in (saved, mine, scene)]
+    lines = files.merged(*texts) if max(map(len, texts)) <= MOST_LINES else None
+    if lines is None:
+        return False
+    both = parse("\n".join(lines), session.path, session.lenient).scene
+    both = both.mirrored() if mine.camera.left_handed else both
+    session.file.accept(seen)
+    session.show_file(state_after_reading(session.state, with_edited_cameras(scene, both, "value"), saved), scene)
+    return True
 
 
 def read_file(session: Session, keep_camera: bool = False) -> None:

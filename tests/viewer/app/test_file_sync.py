@@ -11,7 +11,7 @@ from minirt.scene import dump, load
 from minirt.viewer.app import desktop
 from minirt.viewer.app.commands import offer_found, open_another, save_scene
 from minirt.viewer.app.desktop import end_recovery, lose_window
-from minirt.viewer.files import WatchedFile
+from minirt.viewer.files import WatchedFile, contents_differ, merged
 from minirt.viewer.recovery import Recovery, state_folder
 from tests.viewer.fake import TEXT, colour_of, scene, write
 from tests.viewer.session_harness import SessionHarness
@@ -120,15 +120,60 @@ def test_a_deleted_file_is_said_until_it_is_written_again(harness, path):
     assert harness.session.screen.banner == ""
 
 
-def test_when_both_changed_a_banner_asks_and_saving_keeps_a_copy_of_the_other_version(harness, path):
+OTHER_LIGHT = TEXT.replace("L 5,5,5 0.5", "L 5,5,5 0.7")
+
+
+def test_changes_of_both_in_other_lines_are_merged(harness, path):
+    """The user moves the light and looks around; the other program changes a sphere and adds lines."""
+    edit(harness)
+    harness.play("press C", "press d")
+    session, before = harness.session, harness.session.state.scene
+    write(path, "# at the top\n" + OTHER + "sp 1,1,1 1 9,9,9  # added\n")
+    notify(harness)
+    after = session.state.scene
+    assert session.screen.banner == ""
+    assert "both are here" in session.state.message
+    assert after.lights == before.lights != scene().lights
+    assert [ball.diameter for ball in after.spheres] == [7, 1]
+    assert after.camera == before.camera != scene().camera
+    assert contents_differ(after, session.saved)
+    harness.play(UNDO)
+    assert session.state.scene.spheres == before.spheres
+    harness.play("press Ctrl+Y", SAVE)
+    assert path.read_text().startswith("# at the top\n# a comment\n")
+    assert "# added" in path.read_text()
+    assert not path.with_name("scene-1.rt").exists()
+
+
+@pytest.mark.parametrize(
+    ("mine", "theirs", "both"),
+    [
+        ("a b c", "a b c", "a b c"),
+        ("a x c", "a b c", "a x c"),
+        ("a x c", "a b y", "a x y"),
+        ("a x c", "a y c", None),
+        ("a x c", "a x c", "a x c"),
+        ("a c", "a y c", None),
+        ("a b c m", "a b c t", "a b c m t"),
+        ("m a b c", "a b", "m a b"),
+        ("c b a", "b a c", None),
+        ("", "a b c", ""),
+    ],
+)
+def test_versions_are_merged_line_by_line(mine, theirs, both):
+    found = merged(list("abc"), mine.split(), theirs.split())
+    assert found == (None if both is None else both.split())
+
+
+def test_when_both_changed_a_line_a_banner_asks_and_saving_keeps_a_copy_of_the_other_version(harness, path):
     edited = edit(harness)
-    write(path, OTHER)
+    write(path, OTHER_LIGHT)
     notify(harness)
     assert dump(harness.session.state.scene) == edited
     assert "Ctrl+R reads it" in harness.session.screen.banner
     harness.play(SAVE)
     assert path.read_text() == edited
-    assert path.with_name("scene-1.rt").read_text() == OTHER
+    assert path.with_name("scene-1.rt").read_text() == OTHER_LIGHT
     assert harness.session.screen.banner == ""
     assert "scene-1.rt" in harness.session.state.message
     harness.play("press d")
