@@ -137,7 +137,7 @@ def test_it_is_made_with_a_name_in_python(tmp_path: Path, monkeypatch: pytest.Mo
     assert made.replace(scale=1).bounds() == ((1, 2, 3), (2, 3, 3))
     with pytest.raises(FileError, match=r"two\.obj: cannot be read"):
         Mesh("two.obj", (0, 0, 0), 1, GREY)
-    for wrong in (3, "a b.obj", ""):
+    for wrong in (3, ""):
         with pytest.raises((FieldError, ValueError), match="must be the name of a mesh file"):
             Mesh(wrong, (0, 0, 0), 1, GREY)
     assert minirt.Mesh is Mesh
