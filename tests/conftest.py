@@ -24,6 +24,14 @@ settings.load_profile("miniRT")
 pytest_xdist_make_scheduler = pytest.hookimpl(optionalhook=True)(scheduling.make_scheduler)
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """Return the number of processes: one more than the processors, since that of the windows mostly waits."""
+    from minirt.rendering.threads import usable_cores
+
+    return usable_cores() + 1
+
+
 def pytest_configure() -> None:
     """Give the programs of the tests the signals that the caller ignores, as `nohup make test &` in a script does.
 
