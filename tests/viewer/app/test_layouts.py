@@ -33,6 +33,8 @@ KEYBOARDS = {  # X11's names, with the option --keys and the key codes of letter
 }
 SIZE = (320, 240)
 LAST = ("toggle full screen", "quit")  # the window may be replaced or closed afterwards
+# Return closes the list that N has opened; Escape takes the keys from the panel that F1 has opened.
+WITH = {"Shift+N": "Return Shift+N", "F1": "F1 Escape"}
 
 
 @contextmanager
@@ -83,7 +85,7 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout:
             """Press keys in a window until each of them has led to an action, or the program has ended."""
             window = desktop.find(f"miniRT - {scene.name}", size)
             count = len(log.read_text().splitlines()) + len(keys)
-            listed = " ".join(keys).replace("Shift+N", "Return Shift+N")  # which closes the list that N has opened
+            listed = " ".join(WITH.get(key, key) for key in keys)
             do(desktop, window, *(f"press {key}" for key in listed.split()), codes=codes)
             until(
                 lambda: len(log.read_text().splitlines()) >= count or process.poll() is not None, f"actions of {keys}"
