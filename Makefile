@@ -34,8 +34,10 @@ $(NAME): pyproject.toml
 
 .DELETE_ON_ERROR:
 
+FURTHER := '.[report,panel]'
+
 further-packages:
-	$(call INSTALL,'.[report,panel]')
+	$(call INSTALL,$(FURTHER))
 
 # They draw the first picture of any scene at once. Where a change of the sources makes them useless, a program compiles
 # what its scene needs, in seconds: so `make run` does not wait for them.

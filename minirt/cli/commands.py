@@ -94,7 +94,8 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
         from minirt.cli.render import render_output
 
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
-        changed = {"output": options.fallback, "command": [*options.command, "-o", options.fallback]}
+        changed = {"output": options.fallback, "samples": options.samples or WINDOW_SAMPLES}
+        changed["command"] = [*options.command, "-o", options.fallback]
         render_output(scene, argparse.Namespace(**vars(options) | changed))
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK

@@ -101,7 +101,7 @@ def run_checked(command: list[str], environment: Environment) -> float:
 
 
 POLL = 2e-3  # seconds between two looks at the screen
-COMPARED = slice(HEIGHT // 4, HEIGHT * 7 // 8)  # rows without the words of the window
+COMPARED = slice(HEIGHT // 4, HEIGHT * 5 // 8)  # rows without the words of the window
 WRONG = 1e-3  # share of pixels that may differ by more than 1 of 255
 
 

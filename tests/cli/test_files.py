@@ -27,7 +27,7 @@ def test_the_program_without_arguments_renders_the_opening_scene_where_no_window
     assert str(folder / OPENING_PICTURE) in ended.out.decode()
     with pillow.open(folder / OPENING_PICTURE) as picture:
         shown = np.asarray(picture)
-    expected = minirt.render(minirt.load(SCENES / "opening.rt")).array
+    expected = minirt.render(minirt.load(SCENES / "opening.rt"), samples=16).array
     assert np.array_equal(shown, expected)
     assert not np.array_equal(shown, minirt.render(minirt.example("shapes")).array)
 

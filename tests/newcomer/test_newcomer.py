@@ -56,7 +56,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     add_line(registry, 'MAPPED: dict[str, Any] = {"mapped": True} | SHARED', sheen)
     add_line(
         registry,
-        '    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, default=None, shared=MARBLE)',
+        '    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, default=None, shared=WOOD)',
         '    sheen: Sheen | None = declare(Compound, "soft highlight", record=Sheen, default=None, shared=SHARED)',
     )
     return root
