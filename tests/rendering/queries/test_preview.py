@@ -127,7 +127,10 @@ def render(scene: Scene) -> np.ndarray:
 
 def shown_by(scene: Scene, notice: str) -> Scene:
     """The scene as the camera of a notice sees it."""
-    assert re.match("nothing is in view(: all is behind the eye)?; this line would show the scene: C ", notice)
+    assert re.match(
+        r"(nothing is in view(: all is behind the eye)?|the eye is in plane \d+); this line would show the scene: C ",
+        notice,
+    )
     line = notice.partition("scene: ")[2]
     camera, notices = parse(f"A 0 0,0,0\n{line}\n")
     assert not notices
