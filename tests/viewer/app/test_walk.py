@@ -19,7 +19,6 @@ from minirt.scene import Scene, dump, load, parse
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.screen import help_pages
 from minirt.viewer.editing.state import State
 from tests.viewer.app.test_real_window import SIZE, Viewer, still, viewing
 from tests.viewer.fake import WITH_CYLINDER
@@ -65,6 +64,8 @@ STEPS = (
 )
 
 
+HIDE = ("press i", "press i")  # marks and handles
+
 MESSAGE_ROWS = 60  # at most, at the bottom of the picture
 
 
@@ -94,11 +95,6 @@ class Twin:
     def state(self) -> State:
         return self.session.state
 
-    @property
-    def help_pages(self) -> int:
-        """The number of pages of the help, each of which a press of its key turns."""
-        return len(help_pages("qwerty", *SIZE, self.session.screen.text_size)[1])
-
     def do(self, *lines: str) -> None:
         """Perform lines of a recording in both."""
         do(self.viewer.desktop, self.viewer.window, *lines)
@@ -107,8 +103,8 @@ class Twin:
         self.lines += lines
 
     def replayed(self) -> State:
-        """Return the state after all lines are replayed at once, as by `miniRT --replay`."""
-        return play(self.start, self.lines, renderer=self.renderer, size=SIZE, path=self.path).state
+        """Return the state after all lines are replayed at once, as by `miniRT --replay`, without marks."""
+        return play(self.start, [*HIDE, *self.lines], renderer=self.renderer, size=SIZE, path=self.path).state
 
     def check_agreement(self) -> None:
         """Wait until the window shows the picture of the session in memory, except where a message is; then save.
@@ -163,7 +159,7 @@ def test_a_walk(desktop, tmp_path):
         viewer.shows(still(edited))
         viewer.key("h")
         until(lambda: desktop.screenshot(viewer.window).mean() < still(edited).mean() / 2, "the help")
-        viewer.key(*["h"] * twin.help_pages)
+        viewer.key("h")
         viewer.shows(still(edited))
         viewer.key("Escape")
         assert viewer.end() == (0, "", "")
