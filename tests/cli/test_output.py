@@ -165,7 +165,7 @@ def test_without_a_display_the_fallback_file_is_rendered(
     assert run("ball.rt") == (1, b"", "Error\nno display\n")
     ended = run("ball.rt", "--fallback", "x.png", "--size", "8x6")
     assert (ended.status, ended.err) == (0, "")
-    assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6))
+    assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6, samples=16))
     assert os.fspath(folder / "x.png").encode() in ended.out
 
 
