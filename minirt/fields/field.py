@@ -143,7 +143,7 @@ class Field(Immutable):
 
     @property
     def prefix(self) -> str:
-        """What precedes the value of an attribute in a line: `mirror:`, or `pattern:marble,`."""
+        """Text before the value of an attribute in a line: `mirror:`, or `pattern:marble,`."""
         return self.keyword + (SEPARATOR if ":" in self.keyword else ":")
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -64,6 +64,10 @@ def plurals(elements: set[type[Shape]]) -> str:
 
 def shape_name(shape_arrays: ShapeArrays, index: int) -> str:
     """Name a shape, or the mesh that owns a triangle, by its kind and number: plane 2."""
-    owner = int(shape_arrays.owner[index])
-    kind = type(shape_arrays.shapes[owner])
-    return f"{kind.title} {sum(type(shape) is kind for shape in shape_arrays.shapes[: owner + 1])}"
+    return numbered(shape_arrays.shapes, int(shape_arrays.owner[index]))
+
+
+def numbered(shapes: Sequence[Shape], index: int) -> str:
+    """Name a shape by its kind and its number among those of this kind."""
+    kind = type(shapes[index])
+    return f"{kind.title} {sum(type(shape) is kind for shape in shapes[: index + 1])}"

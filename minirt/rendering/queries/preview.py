@@ -19,7 +19,7 @@ from minirt.kernel.frame import ray_direction
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame import thread_memory
-from minirt.rendering.notes import shape_name
+from minirt.rendering.notes import numbered, shape_name
 from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.materials import encloses
@@ -36,6 +36,7 @@ from minirt.shapes.sphere import Sphere
 
 BUDGET = 0.12  # seconds
 SHAPE, RAY = 2e-4, 2e-7  # seconds to intersect a shape with all rays, and seconds more for each ray
+UNBOUNDED = ((-np.inf,) * 3, (np.inf,) * 3)  # box of a plane
 FEWEST = 400  # rays of a picture worth showing
 
 
@@ -141,18 +142,16 @@ def hidden_shapes(scene: Scene) -> Iterator[str]:
     Only what is certain counts: the corners of the bounding box, grown, are inside the other one.
     """
     eye, shapes = np.array(scene.camera.position), scene.shapes[:MOST_COMPARED]
-    arrays = ShapeArrays()
-    arrays.update(shapes)
-    low, high = arrays.boxes.transpose(1, 0, 2)
-    ends = np.maximum.reduceat(high, arrays.listed) if len(shapes) else high
-    starts = np.minimum.reduceat(low, arrays.listed) if len(shapes) else low
+    boxes = np.array([shape.bounds() or UNBOUNDED for shape in shapes]).reshape(-1, 2, 3)
+    starts, ends = boxes[:, 0], boxes[:, 1]
     grown = CERTAIN * (ends - starts)
     for outer, shape in enumerate(shapes):
         if isinstance(shape, CONVEX) and not shape.glass and not scene.camera.lens and not encloses(shape, eye):
-            for index in np.flatnonzero((starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)):
+            within = (starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)
+            for index in np.flatnonzero(within).tolist():
                 corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
-                if index != outer and shapes[index].bounds() and all(encloses(shape, np.array(at)) for at in corners):
-                    names = (shape_name(arrays, arrays.listed[each]) for each in (index, outer))
+                if index != outer and all(encloses(shape, np.array(at)) for at in corners):
+                    names = (numbered(shapes, each) for each in (index, outer))
                     yield "{} is never seen: it is inside {}, which is opaque".format(*names)
 
 

@@ -188,7 +188,7 @@ def arrows(scene: Scene, selected: int | None, view: Projection, every: bool) ->
 
 
 def arrow_tip(direction: tuple[float, float], width: int, height: int, scale: float) -> Pixel:
-    """Where a line from the picture's middle in this direction meets its border, which has room for an arrow."""
+    """Tip of the arrow at the border of the picture, on a line from its middle in this direction."""
     border, top = min(BORDER * scale, width / 4, height / 8), min(TOP * scale, height / 4)
     room = width / 2 - border, (height - border - top) / 2
     reach = min(side / abs(part) for side, part in zip(room, direction, strict=True) if part)

@@ -22,7 +22,7 @@ CORNERS = 48  # of a ring
 
 
 class Handle(NamedTuple):
-    """What a drag moves, turns or resizes the selected element by."""
+    """Handle of the selected element: a drag of it moves, turns or resizes the element."""
 
     kind: str
     axis: int  # of the scene

@@ -1,4 +1,4 @@
-"""Where shapes stand: on the surface that is aimed at, along its normal; on what lies beneath; and on a grid."""
+"""Place shapes: on the surface that is aimed at, along its normal; on what lies beneath; and on a grid."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def frame_of(shape: Shape) -> list[Triple]:
 
 
 def lift_of(shape: Shape, normal: Triple) -> float:
-    """How far above a surface a shape stands: flat ones are clear of it, since it would hide what lies in it."""
+    """Distance of a shape above its surface: more than 0 for flat ones, which the surface would hide."""
     x, y, z = normal
     flat = -lowest_along(shape, normal) == lowest_along(shape, (-x, -y, -z))
     return FLAT_LIFT * middle_of(shape)[1] if flat else 0.0

@@ -111,7 +111,7 @@ class Pages:
 
 
 def step_title(before: Snapshot, after: Snapshot) -> str:
-    """What was done between two versions of a scene."""
+    """Description of the edit between two versions of a scene."""
     old, new = before.scene.elements, after.scene.elements
     if len(old) != len(new):
         return f"add {new[after.selected].title}" if len(new) > len(old) else f"delete {old[before.selected].title}"

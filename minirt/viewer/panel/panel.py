@@ -58,7 +58,7 @@ class Panel(Gui):
 
     @property
     def others(self) -> tuple[object, ...]:
-        """What a frame shows besides the state: for the size of the window, the scale of its texts and the film."""
+        """Inputs of a frame besides the state: the size of the window, the scale of its texts and the film."""
         window = self.session.window
         return window.width, window.height, self.session.screen.scale, self._pages.film
 

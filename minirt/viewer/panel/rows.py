@@ -268,5 +268,5 @@ class Rows:
 
 
 def file_title(file: Any) -> str:
-    """What a file, or a colour in its place, is called in a list."""
+    """Name of a file, or of a colour in its place, in a list."""
     return file.name if isinstance(file, MeshFile) else file if isinstance(file, str) else COLOUR_OR
