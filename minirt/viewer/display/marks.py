@@ -18,8 +18,8 @@ from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Mesh, Shape
 from minirt.viewer.display.painter import Pixels
-from minirt.viewer.editing.handles import MOVE, SLIDE, TURN, Handle, handles_of
-from minirt.viewer.editing.handles import SIZE as RESIZE
+from minirt.viewer.editing.dragging import MOVE, SLIDE, TURN, Handle, handles_of
+from minirt.viewer.editing.dragging import SIZE as RESIZE
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, position_of, projection_of, subtract
 from minirt.viewer.editing.state import Frame, State, can_edit

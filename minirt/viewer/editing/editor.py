@@ -120,7 +120,7 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
         if isinstance(value, str | MeshFile):
             noun = "picture" if isinstance(value, str) else "mesh"
             return state.with_message(f"there is no other {noun} beside the scene")
-        limits = f" ({active.range})" if active.range else ""
+        limits = f" ({active.leaf.range})" if active.leaf.range else ""
         return state.with_message(f"{active.name} cannot go further{limits}")
     return changed
 

@@ -65,14 +65,14 @@ def rotate(element: Element, axis: Triple, angle: float) -> Element:
     changes: dict[str, Any] = {name: neat_rotation(each, axis, angle) for name, each in directions.items()}
     if isinstance(element, Oriented) and shows_roll(element):
         # Compared with the frame without a roll about the new axis, however far that is from the one before.
-        u, v = across(element.replace(**changes, roll=0.0))
-        rotated = rodrigues(across(element)[0], axis, angle)
+        u, v, _ = frame_of(element.replace(**changes, roll=0.0))
+        rotated = rodrigues(frame_of(element)[0], axis, angle)
         changes["roll"] = degrees(atan2(dot(rotated, v), dot(rotated, u)))
     points = {name: getattr(element, name) for name in field_names(type(element), Point)}
     if len(points) > 1:
         x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
         for name, point in points.items():
-            offset = rodrigues(linear_combination(1.0, point, -1.0, (x, y, z)), axis, angle)
+            offset = rodrigues(subtract(point, (x, y, z)), axis, angle)
             changes[name] = clamp_point(linear_combination(1.0, (x, y, z), 1.0, offset))
     return element.replace(**changes)
 
@@ -163,10 +163,9 @@ def turn_axis(camera: Camera, axis: int) -> Triple:
     return (0.0, copysign(1.0, direction[1]), 0.0) if axis == UPWARD and abs(direction[1]) > LEVEL else direction
 
 
-def across(shape: Oriented) -> tuple[Triple, Triple]:
-    """The two vectors of the frame of a shape that are perpendicular to its axis or normal."""
-    u, v, _ = shape.frame()
-    return (u.x, u.y, u.z), (v.x, v.y, v.z)
+def frame_of(element: Element) -> list[Triple]:
+    """The vectors of the own frame of a shape that has one; the last is its axis or normal."""
+    return [(each.x, each.y, each.z) for each in element.frame()] if isinstance(element, Oriented) else []
 
 
 def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:

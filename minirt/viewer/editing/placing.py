@@ -11,8 +11,8 @@ from minirt.scene import Scene
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 from minirt.shapes.shape import Oriented
-from minirt.viewer.editing.motion import shifted
-from minirt.viewer.editing.projection import TOP, UP, Aim, dot, extent, field_names, position_of, subtract
+from minirt.viewer.editing.motion import frame_of, shifted
+from minirt.viewer.editing.projection import TOP, UP, Aim, dot, field_names, middle_of, position_of, subtract
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import round_point
 
@@ -67,12 +67,6 @@ def stand(shape: Shape, point: Triple, normal: Triple) -> Shape:
     return shifted(turned, subtract(point, there))
 
 
-def frame_of(shape: Shape) -> list[Triple]:
-    """The vectors of the own frame of a shape that has one."""
-    assert isinstance(shape, Oriented)
-    return [(each.x, each.y, each.z) for each in shape.frame()]
-
-
 def lift_of(shape: Shape, normal: Triple) -> float:
     """Distance of a shape above its surface: more than 0 for flat ones, which the surface would hide."""
     x, y, z = normal
@@ -100,13 +94,6 @@ def lowest_along(shape: Shape, direction: Triple) -> float:
     by_box = sum(min(low * part, high * part) for low, high, part in zip(*box, direction, strict=True))
     by_balls = (dot(centre, direction) - radius for centre, radius in shape.balls())
     return max(by_box, min(by_balls, default=by_box))
-
-
-def middle_of(shape: Shape) -> tuple[Triple, float]:
-    """Middle and radius of a bounded shape."""
-    found = extent(shape)
-    assert found
-    return found
 
 
 def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:

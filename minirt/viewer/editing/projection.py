@@ -109,6 +109,13 @@ def extent(element: Element) -> Extent | None:
     return (point, 0.0) if point else None
 
 
+def middle_of(shape: Shape) -> Extent:
+    """Middle and radius of a bounded shape."""
+    found = extent(shape)
+    assert found
+    return found
+
+
 def field_names(kind: type[Element], field_type: type[Any]) -> tuple[str, ...]:
     """Names of the fields of a type, such as the points or the directions."""
     return tuple(each.name for each in fields_of(kind) if isinstance(each, field_type))
@@ -197,13 +204,10 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
 
 def aim_at_top(view: Projection, shape: Shape) -> Aim:
     """Aim at the top of a bounded shape, above its middle."""
-    box, around = shape.bounds(), extent(shape)
+    box, ((x, _, z), radius) = shape.bounds(), middle_of(shape)
     assert box
-    assert around
-    (x, _, z), radius = around
-    top = x, box[1][1], z
     found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
-    point, normal = found if found else (top, UP)
+    point, normal = found or ((x, box[1][1], z), UP)
     return Aim(view.eye, point, normal, length_at(view, shape, point, normal))
 
 

@@ -1,4 +1,7 @@
-"""Add, duplicate and delete elements; add attributes (highlight, mirror, texture, ...) and remove them."""
+"""Add, duplicate and delete elements; add attributes (highlight, mirror, texture, ...) and remove them.
+
+New elements and attributes are made from tables of fields alone.
+"""
 
 from __future__ import annotations
 
@@ -6,19 +9,30 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from math import cos, pi, sin
+from typing import Any
 
-from minirt.element import Element, fields_of
+from minirt.element import Element, Record, fields_of
 from minirt.errors import ElementError
-from minirt.fields import Field
-from minirt.scene import Lamp
+from minirt.fields import Direction, Field, Length, Lengths, MeshField, Picture, Point, Real, Triple, clamp_length
+from minirt.materials import Compound
+from minirt.rendering.packing.camera import camera_frame
+from minirt.scene import Camera, Lamp, Light, Scene
+from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
-from minirt.viewer.editing.adding import SIZE, addable_kinds, default_element, default_value, first_lamp
-from minirt.viewer.editing.state import State, index_of
-from minirt.viewer.editing.values import nice_number, values
+from minirt.viewer.editing.motion import clamp_point
+from minirt.viewer.editing.placing import settled
+from minirt.viewer.editing.projection import UP, aim_ahead, field_names
+from minirt.viewer.editing.state import State, can_edit, index_of
+from minirt.viewer.editing.values import RecordType, leading_decimal, nice_number, round_length, round_point, values
+from minirt.viewer.files import usable_files
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
+SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
+LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs
+LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
@@ -52,9 +66,8 @@ def choices(state: State, group: str) -> Iterator[State]:
     if group == ELEMENT:
         additions = [partial(with_element, state, kind) for kind in addable_kinds(state.scene)]
     else:
-        keyed = (field for field in fields_of(type(state.element)) if field.keyed)
-        absent = (field for field in keyed if getattr(state.element, field.name) is None)
-        additions = [partial(with_attribute, state, field) for field in absent]
+        absent = [each for each in fields_of(type(state.element)) if getattr(state.element, each.name) is None]
+        additions = [partial(with_attribute, state, field) for field in absent if field.keyed]
     for add in additions:
         with suppress(LookupError, ElementError):
             yield add()
@@ -88,3 +101,89 @@ def remove_attribute(state: State, _amount: float, now: float) -> State:
         return state.with_message(f"{active.name} is as it is without the attribute")
     state = state.change(state.scene.edit(state.selected, changed), "", now)
     return replace(state, value_index=0).with_message(f"no {active.field.title} any more")
+
+
+# Default values.
+
+
+def addable_kinds(scene: Scene) -> list[type[Element]]:
+    """Kinds of elements that can be added to a scene: shapes first, kinds made from a mesh file last.
+
+    Left out are kinds of which a scene has one and has it already.
+    """
+    there = {type(each) for kind in ELEMENTS.values() if kind.once for each in scene.of(kind)}
+    missing = [kind for kind in ELEMENTS.values() if can_edit(kind) and not (kind.once and kind in there)]
+    return sorted(missing, key=lambda kind: (bool(field_names(kind, MeshField)), not issubclass(kind, Shape)))
+
+
+def default_element(kind: type[Element], state: State) -> Element:
+    """Make an element of default values where the state aims; a shape stands on the surface there.
+
+    LookupError if it needs a picture or mesh file and there is none beside the scene.
+    """
+    if issubclass(kind, Camera):  # which sees what is seen now
+        return state.scene.camera.as_kind(kind)
+    aim = state.aim or aim_ahead(state.scene.camera, state.size)
+    made = default_record(kind, state, one_digit(aim.size))
+    return settled(made, aim, state.scene, state.stride) if isinstance(made, Shape) else made
+
+
+def default_record(kind: type[RecordType], state: State, length: float) -> RecordType:
+    """Make a record of default values, such as the value of an attribute; `length` is the usual one.
+
+    LookupError as in `default_element`.
+    """
+    fields = [field for field in fields_of(kind) if field.required]
+    points = iter(default_points(kind, state, sum(isinstance(field, Point) for field in fields)))
+    made = (next(points) if isinstance(each, Point) else default_value(each, state, length) for each in fields)
+    return kind(**dict(zip((each.name for each in fields), made, strict=True)))
+
+
+def one_digit(length: float) -> float:
+    """Round a length to its leading digit."""
+    return clamp_length(round(length, leading_decimal(length)))
+
+
+def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
+    """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
+
+    What has no surface hangs on the way there, so that a lamp lights the surface that it is aimed at.
+    """
+    aim = state.aim or aim_ahead(state.scene.camera, state.size)
+    right, up, _ = camera_frame(state.scene.camera)
+    middle = aim.point
+    if aim.normal and not issubclass(kind, Shape):
+        middle = linear_combination(1 - LAMP_SHARE, aim.eye, LAMP_SHARE, aim.point)
+    radius = one_digit(aim.size) / 2 if count > 1 else 0.0
+    angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
+    offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
+    return [round_point(clamp_point(linear_combination(1.0, middle, 1.0, offset)), state.stride) for offset in offsets]
+
+
+def first_lamp(state: State) -> Light:
+    """A lamp for a scene without any: above the camera's left shoulder, at a distance that lights what it looks at."""
+    camera = state.scene.camera
+    right, _, _ = camera_frame(camera)
+    beside = linear_combination(-LAMP_SHARE * state.size, right, LAMP_SHARE * state.size, UP)
+    position = clamp_point(linear_combination(1.0, camera.position, 1.0, beside))
+    return Light(position=round_point(position, state.stride), brightness=LAMP_BRIGHTNESS)
+
+
+def default_value(field: Field, state: State, length: float) -> Any:
+    """Default value of a field that is not a point; LookupError as in `default_element`."""
+    if isinstance(field, Compound):
+        return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state, length)
+    if isinstance(field, (Picture, MeshField)):
+        for file in usable_files(state.scene, isinstance(field, MeshField)):
+            return file
+        raise LookupError(f"there is no file for {field.name} beside the scene")
+    if isinstance(field, Lengths):
+        return length, length, length
+    if isinstance(field, Length) and field.unit:
+        return round_length(clamp_length(length * (field.initial or 1)))
+    usual = field.instead if field.initial is None and isinstance(field, Direction) else field.initial
+    if usual is None and isinstance(field, Real):
+        usual = (field.low + field.high) / 2
+    if usual is None:
+        raise LookupError(f"{field.name} has no default value")
+    return usual

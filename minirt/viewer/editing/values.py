@@ -67,11 +67,6 @@ class Value(NamedTuple):
         return title if self.channel is None else f"{title}: {part_names(self.leaf)[self.channel]}"
 
     @property
-    def range(self) -> str:
-        """Range of the value in words."""
-        return self.leaf.range
-
-    @property
     def part(self) -> int | None:
         """Index of the component of the field, from 0; None for the whole field, and for an angle of a direction."""
         if (self.inner is None and self.channel is None) or (self.channel or 0) >= Three.width:

@@ -22,12 +22,11 @@ from minirt.shapes.frames import basis
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.triangle import Triangle
-from minirt.viewer.editing.adding import addable_kinds, default_element
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.placing import dropped, middle_of, stand
-from minirt.viewer.editing.projection import SHARE, aim, looked_at_distance, projection_of
+from minirt.viewer.editing.placing import dropped, stand
+from minirt.viewer.editing.projection import SHARE, aim, looked_at_distance, middle_of, projection_of
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.editing.structure import ELEMENT, choices
+from minirt.viewer.editing.structure import ELEMENT, addable_kinds, choices, default_element
 from tests.viewer.fake import scene
 
 HEAD = "A 0.2 255,255,255\nC 0,3,10 0,-0.2,-1 60\nL 5,9,5 0.6\n"

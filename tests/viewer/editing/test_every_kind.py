@@ -27,11 +27,10 @@ from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
-from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import field_names, position_of, projection_of
 from minirt.viewer.editing.state import State, index_of, initial_state
-from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
+from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, addable_kinds, choices
 from minirt.viewer.editing.typed import set_typed
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
