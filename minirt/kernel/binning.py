@@ -43,7 +43,6 @@ class Projection(NamedTuple):
     planes: Any  # (p, 5)
     plane_indices: Any  # (p,)
     shown: Any  # (p,) whether a plane has rectangles
-    traits: Any  # (n,) bits that the caller chooses
     chunk: int  # shapes in it, at most
     rectangles: Any  # (r, 4) shape, first cell, columns and rows
     used: Any  # (chunks + 1,) rows of each chunk, and of the planes
@@ -145,9 +144,9 @@ def project_planes(seen: Projection, slack: float, at: int) -> int:
 # The lists, by counting.
 
 
-def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits: Any) -> tuple[int, int]:
-    """Write the shapes of all rectangles into the lists of their cells, the nearest first; return the members of all
-    lists and the traits of the shapes in any.
+def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits: Any) -> int:
+    """Write the shapes of all rectangles into the lists of their cells, the nearest first; return the number of members
+    of all lists.
 
     Where `members` has no room for so many they are not written. `starts`, of the cells of all kinds, receives where
     the lists start. `entries` (2, r) and `digits` (2 ** RADIX,) are overwritten.
@@ -155,13 +154,12 @@ def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits:
     across, room = seen.grid.across, seen.chunk * seen.grid.frames.shape[0]
     for cell in range(starts.shape[0]):
         starts[cell] = 0
-    count, traits = 0, 0
+    count = 0
     for number in range(seen.used.shape[0]):
         for at in range(number * room, number * room + seen.used[number]):
             shape, cell, columns, rows = rectangle_at(seen, at)
             entries[0, count] = (seen.cone_bits[shape, 4] >> DROPPED_BITS << INDEX_BITS) | at
             count += 1
-            traits |= seen.traits[shape]
             for row in range(rows):
                 start = cell + row * across
                 for covered in range(start, start + columns):
@@ -179,7 +177,7 @@ def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits:
                 for covered in range(start, start + columns):
                     starts[covered] -= 1
                     members[starts[covered]] = shape
-    return total, traits
+    return total
 
 
 def rectangle_at(seen: Projection, at: int) -> tuple[int, int, int, int]:

@@ -27,10 +27,6 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
     else:
         cells = arrays.light_buffer_cells
         yield f"light buffer: 6 x {cells} x {cells} cells per light ({shapes})"
-    for name in ("specular", "reflective"):
-        rows = getattr(arrays, name)
-        if rows is not None and not len(rows):
-            yield f"no pixel can show {WORDS[name]}: skipped"
     for number, light in enumerate(scene.lights, 1):
         if not light.brightness:
             yield f"light {number} has brightness 0"

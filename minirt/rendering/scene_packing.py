@@ -133,13 +133,11 @@ class Packing:
         light_starts, light_buffers = cached(keys, joined_light_buffers, binned, shapes)
         look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
         packed = cached(look, materials.pack_materials, scene, shapes, used)
-        traits = materials.traits_of(packed, shapes)
         if TILES in self.without:
             square, eye = TILE, visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))
-            seen = int(np.bitwise_or.reduce(traits))
         else:
-            self.view = View(self.kernel, shapes, scene.camera, place, lens, traits, self.precision, self.view)
-            square, (eye, seen) = self.view.square, self.view.look(scene.camera, self.run)
+            self.view = View(self.kernel, shapes, scene.camera, place, lens, self.precision, self.view)
+            square, eye = self.view.square, self.view.look(scene.camera, self.run)
         spots = lights.spot_parameters(sources) if "spots" in used else None
         emitted = lights.positions_and_intensities(sources, colours)
         shining = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
@@ -172,7 +170,7 @@ class Packing:
             background=colours.light(paint) if "background" in used else None,
             environment=environment,
             bvh=self.bvh_of(scene.shapes) if needs_bvh and BVH not in self.without else None,
-            **materials.without_unseen(packed, seen),
+            **packed,
         )
         if self.precision == "single" and fits_single(arrays):
             rounding = Rounding(self.kernel, numbers[:3])

@@ -26,7 +26,6 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
-from minirt.shapes.mesh import Mesh
 from minirt.shapes.shape import UPRIGHT, Flat, Oriented
 from minirt.shapes.triangle import Triangle
 
@@ -217,37 +216,3 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
         _, normal = kind.surface(packed, origin + distances[first] * TOWARDS)
         leaving = np.atleast_1d(dot(normal, TOWARDS))[first]
     return bool(distances[first] < np.inf and leaving > 0.0)
-
-
-# Highlights and mirrors that no pixel can show are left out of the arrays of a picture: the kernel skips a feature
-# whose array has no rows, and draws the same bits. A highlight behind the eye cost 9 % of the frames of scenes/demo.rt,
-# a mirror 8 %; left out like this they cost 1 % and 5 %. A kernel without the feature would save the rest, after some
-# seconds of compiling, which pay off after more than a minute of rendering.
-
-
-SHOWN = (("reflective", 2), ("specular", 1))  # features, and their columns that are 0 where a shape lacks it
-
-
-def traits_of(materials: dict[str, Any], primitives: ShapeArrays) -> np.ndarray:
-    """Return a bit for each of `SHOWN` that a primitive has, (n,): a triangle, that some triangle of its mesh has."""
-    traits = np.zeros(len(primitives.owner), np.int64)
-    for bit, (name, columns) in enumerate(SHOWN):
-        if name in materials:
-            traits |= (materials[name][:, :columns] != 0.0).any(axis=1).astype(np.int64) << bit
-    if Mesh in primitives.group_numbers:
-        traits = np.bitwise_or.reduceat(traits, primitives.listed)[primitives.owner]
-    return traits
-
-
-def without_unseen(materials: dict[str, Any], seen: int) -> dict[str, Any]:
-    """Return materials without the rows of the features that no pixel can show.
-
-    `seen` has the traits of the shapes in the lists of all tiles. Mirrors and glass that are seen may show every shape.
-    Light shines through glass that is not seen: its other rows stay.
-    """
-    for bit, (name, _) in enumerate(SHOWN):
-        if name in materials:
-            if seen >> bit & 1:
-                break
-            materials = materials | {name: materials[name][:0]}
-    return materials

@@ -46,12 +46,10 @@ class View:
         camera: Camera,
         place: Place,
         lens: np.ndarray | None,
-        traits: np.ndarray,
         precision: str,
         spare: View | None,
     ) -> None:
-        """Traits are those of `minirt.kernel.binning.Projection`. The bins of a `spare` view are used again where they
-        fit."""
+        """The bins of a `spare` view are used again where they fit."""
         self.size = place[2][:2]  # of the whole picture
         radius, per_focus = radius_and_focus(lens)
         if radius:
@@ -62,17 +60,16 @@ class View:
         grid = screen_grid(*slopes_at_edges(camera, *self.size), place, self.square)
         if spare and spare.bins.fit(shapes, grid, radius) and len(spare.bins.seen.extents) == len(extents):
             self.bins = spare.bins
-            self.bins.seen.traits[:] = traits
         else:
-            self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, traits=traits, extents=extents)
+            self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, extents=extents)
 
-    def look(self, camera: Camera, run: Run | None) -> tuple[BinnedShapes, int]:
-        """Bin the shapes that a camera sees into tiles, and return also the traits of these shapes."""
+    def look(self, camera: Camera, run: Run | None) -> BinnedShapes:
+        """Bin the shapes that a camera sees into tiles."""
         right, (x, y, z), forward = camera_frame(camera)
         self.bins.seen.grid.frames[0] = right, (-x, -y, -z), forward
-        traits = self.bins.see_from(camera.position, run, SPARE)
-        self.seen = traits, self.bins.seen.sides.tobytes(), id(self.bins.members)
-        return BinnedShapes(self.bins.starts, self.bins.members, self.bins.seen.cones), traits
+        self.bins.see_from(camera.position, run, SPARE)
+        self.seen = self.bins.seen.sides.tobytes(), id(self.bins.members)
+        return BinnedShapes(self.bins.starts, self.bins.members, self.bins.seen.cones)
 
     def follow(self, camera: Camera, arrays: SceneArrays, run: Run | None) -> bool:
         """Let the arrays of a scene follow its camera; False where that takes other arrays, and these are spoilt."""

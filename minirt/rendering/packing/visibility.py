@@ -139,7 +139,7 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 
 class Bins:
     """The shapes in the cells of a grid of directions from a point: when it moves they are binned anew, in the same
-    arrays. Radius, reach, lean, traits and extents are those of `minirt.kernel.binning.Projection`."""
+    arrays. Radius, reach, lean and extents are those of `minirt.kernel.binning.Projection`."""
 
     def __init__(
         self,
@@ -151,7 +151,6 @@ class Bins:
         skipped: np.ndarray | None = None,
         copies: int = 1,
         largest: int = system.UNLIMITED,
-        traits: np.ndarray | None = None,
         extents: np.ndarray = NO_EXTENTS,
         reach: float = np.inf,
     ) -> None:
@@ -173,7 +172,6 @@ class Bins:
             lean=lean,
             **{name: getattr(shape_arrays, name) for name in BOUNDS},
             shown=np.ones(planes, np.int64) if skipped is None else 1 - skipped,
-            traits=np.zeros(shapes, np.int64) if traits is None else traits,
             chunk=chunk,
             rectangles=np.empty((room, 4), np.int32),
             used=np.zeros(chunks + 1, np.int64),
@@ -201,22 +199,21 @@ class Bins:
         scratch = self.entries, np.empty(2**RADIX, np.int64)
         return bound(self.kernel.fill_bins, self.seen, self.starts.reshape(-1), self.members, *scratch)
 
-    def see_from(self, point: Any, run: Run | None = None, spare: float = 0.0) -> int:
-        """Bin the shapes as seen from a point, many of them on all threads by `run`; return the traits of those in any
-        list. New lists leave room for a `spare` share of members. `TooLargeError` likewise."""
+    def see_from(self, point: Any, run: Run | None = None, spare: float = 0.0) -> None:
+        """Bin the shapes as seen from a point, many of them on all threads by `run`. New lists leave room for a `spare`
+        share of members. `TooLargeError` likewise."""
         self.seen.origin[:] = point
         self.counter[0] = 0
         if run and self.is_large:
             run(self.project)
         else:
             self.project()
-        count, traits = self.fill()
+        count = self.fill()
         if count > len(self.members):
             check_lists(self.fixed + self.copies * count * MEMBER, self.largest)
             self.members = np.zeros(int(count * (1.0 + spare)), np.int32)
             self.fill = self.bound_fill()
             self.fill()
-        return int(traits)
 
 
 def check_lists(size: int, largest: int) -> None:
