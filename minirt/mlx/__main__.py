@@ -11,7 +11,7 @@ import runpy
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
@@ -125,38 +125,31 @@ def install(backend: Display | None, *, strict: bool) -> None:
 
 
 def simulate_process(user: Headless) -> None:
-    """Let the program see simulated time, and save its picture even if it ends by `os._exit`."""
-    leave = os._exit
+    """Let the program see simulated time, and save its picture even if it ends by `os._exit`.
 
-    def save_and_leave(status: int) -> None:
-        leave(status if user.finish() else 1)
-
-    simulate_time(user.time, user.pass_time)
-    os._exit = save_and_leave  # type: ignore[assignment]
-
-
-def simulate_time(now: Callable[[], float], advance: Callable[[float], None]) -> None:
-    """Replace the clocks by `now`, and sleeping in the main thread by `advance`; other threads sleep as usual.
-
-    Call it before the program is imported, which may import the functions by their names.
+    Sleeping in the main thread lets time pass; other threads sleep as usual. Call it before the program is imported,
+    which may import these functions by their names.
     """
-    start, sleep = time.time(), time.sleep
+    start, sleep, leave = time.time(), time.sleep, os._exit
 
     def read() -> float:
-        advance(READING)
-        return now()
+        user.pass_time(READING)
+        return user.time()
 
     def simulated_sleep(seconds: float) -> None:
         if threading.current_thread() is threading.main_thread():
-            advance(seconds)
+            user.pass_time(seconds)
         else:
             sleep(seconds)
+
+    def save_and_leave(status: int) -> None:
+        leave(status if user.finish() else 1)
 
     time.monotonic = time.perf_counter = read
     time.time = lambda: start + read()
     time.monotonic_ns = time.perf_counter_ns = lambda: int(1e9 * read())
     time.time_ns = lambda: int(1e9 * (start + read()))
-    time.sleep = simulated_sleep  # type: ignore[assignment]
+    time.sleep, os._exit = simulated_sleep, save_and_leave  # type: ignore[assignment]
 
 
 if __name__ == "__main__":

@@ -153,7 +153,7 @@ class Mlx(Calls):
     def mlx_overlay_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(painter, param) whenever the canvas is brought to the screen, to draw triangles over it.
 
-        `painter` is a `minirt.mlx.on_pyglet.triangles.Triangles`; without a graphics card there is none, and no call.
+        `painter` is an `on_pyglet.pyglet_window.Triangles`; without a graphics card there is none, and no call.
         A vertex is x, y, u, v as float32 and RGBA as bytes, an index two bytes. Triangles of one texture are a run:
         texture, clipping rectangle (left, top, right, bottom), count of indices, first index, vertex of index 0.
         """

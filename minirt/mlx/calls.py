@@ -17,6 +17,7 @@ from minirt.mlx.events import Event
 from minirt.mlx.window import Window
 
 FileName = str | PathLike[str]
+Switch = bool | None
 ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure
 
 GREATEST = 32767  # pixels of an image's side
@@ -40,12 +41,7 @@ class Calls:
         self._mlx_options = Options(alpha, strict, symbols)
 
     def mlx_set_options(
-        self,
-        *,
-        alpha: bool | None = None,
-        strict: bool | None = None,
-        symbols: bool | None = None,
-        application: str | None = None,
+        self, *, alpha: Switch = None, strict: Switch = None, symbols: Switch = None, application: str | None = None
     ) -> int:
         """Change options, `alpha` and `application` for windows that are opened later; None leaves one as it is."""
         given = {"alpha": alpha, "strict": strict, "symbols": symbols, "application": application}

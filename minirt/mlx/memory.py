@@ -19,7 +19,6 @@ import math
 import sys
 import time
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -83,7 +82,7 @@ class Memory(Display):
         self.after_tick: Callable[[], object] = lambda: None  # called after each step of simulated time
         self.last: NDArray[np.uint8] | None = None  # the picture that was shown last, in any window
         self._now = 0.0
-        self._selected = 0  # number of the window that steps act on
+        self.selected = 0  # number of the window that steps act on
 
     # --- the script: steps of the user, in this order; `do` adds any other, for example to check a picture half way ---
 
@@ -141,14 +140,6 @@ class Memory(Display):
         """Advance simulated time, in ticks of at most TICK seconds."""
         self.do(lambda: self._advance(seconds))
 
-    def select(self, number: int) -> None:
-        """Let the next steps act on another window, 0 for the oldest."""
-        self.do(partial(setattr, self, "_selected", number))
-
-    def save(self, file: Path) -> None:
-        """Save the picture of the selected window or, if it is closed, the one that was shown last. MlxError."""
-        self.do(partial(self._save, file))
-
     # --- playing the script ---
 
     def play(self) -> None:
@@ -181,9 +172,9 @@ class Memory(Display):
     @property
     def window(self) -> MemoryWindow:
         """The selected window. Raises MlxError."""
-        if self._selected >= len(self.windows):
-            raise MlxError(f"there is no window {self._selected + 1}: {len(self.windows)} are open")
-        return self.windows[self._selected]
+        if self.selected >= len(self.windows):
+            raise MlxError(f"there is no window {self.selected + 1}: {len(self.windows)} are open")
+        return self.windows[self.selected]
 
     def screenshot(self) -> NDArray[np.uint8]:
         """Return the picture that the selected window shows now: (h, w, 4) uint8, BGRA."""
@@ -204,10 +195,11 @@ class Memory(Display):
                 self.turn(tick=True)
                 self.after_tick()
 
-    def _save(self, file: Path) -> None:
+    def save(self, file: Path) -> None:
+        """Save the picture of the selected window or, if it is closed, the one that was shown last. MlxError."""
         from PIL import Image
 
-        pixels = self.window.picture if self._selected < len(self.windows) else self.last
+        pixels = self.window.picture if self.selected < len(self.windows) else self.last
         if pixels is None:
             raise MlxError("there is no picture: no window was opened")
         try:
@@ -247,7 +239,7 @@ class Headless(Memory):
         """Save the last picture, if one is asked for. False if that failed; the reason is printed."""
         try:
             if self.picture:
-                self._save(self.picture)
+                self.save(self.picture)
         except MlxError as error:
             print(f"mlx: {error}", file=sys.stderr)
             return False

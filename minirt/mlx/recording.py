@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -198,7 +199,7 @@ COMMANDS: dict[str, tuple[str, Callable[..., None]]] = {  # by their first words
         ("hide", lambda user: user.minimise(True)),
         ("show", lambda user: user.minimise(False)),
         ("close", lambda user: user.close_button()),
-        ("window NUMBER", lambda user, number: user.select(number - 1)),
-        ("picture FILE", lambda user, file: user.save(Path(file))),
+        ("window NUMBER", lambda user, number: user.do(partial(setattr, user, "selected", number - 1))),
+        ("picture FILE", lambda user, file: user.do(partial(user.save, Path(file)))),
     )
 }

@@ -6,14 +6,22 @@ import sys
 from functools import partial
 from typing import Any
 
+from pyglet.image import ImageData
 from pyglet.window import key as pyglet_key
 from pyglet.window import mouse as pyglet_mouse
 
 from minirt.errors import MlxError
 from minirt.mlx.display import ADVICE
-from minirt.mlx.events import Button, Event, Key, Modifier
-from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow
-from minirt.mlx.on_pyglet.x11 import KeyEvent, fix_drag_enter, report_key_events, request_full_screen
+from minirt.mlx.events import Button, Cursor, Event, Key, Modifier
+from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow, Triangles, new_cursor
+from minirt.mlx.on_pyglet.x11 import (
+    KeyEvent,
+    fix_drag_enter,
+    is_x11,
+    report_key_events,
+    request_full_screen,
+    set_icon,
+)
 from minirt.mlx.window import Window
 
 BUTTONS = {
@@ -48,7 +56,8 @@ class NativeWindow(Window):
         super().__post_init__()
         self._wheel = [0.0, 0.0]  # fractions of steps, which touch pads send
         self._is_reported = False  # the key event that pyglet handles now
-        self._triangles: Any = None  # draw the overlay, since there was one
+        self._triangles: Triangles | None = None  # draw the overlay, since there was one
+        self._cursors: dict[Cursor, Any] = {}
         try:
             self.pyglet = PygletWindow(
                 self.display.request_turn,
@@ -61,7 +70,17 @@ class NativeWindow(Window):
             report_key_events(self.pyglet, self._on_key_event)
             # pyglet refers to methods weakly, which those of an integer cannot be.
             names = set(dir(self)).intersection(PygletWindow.event_types)
-            self.pyglet.push_handlers(**{name: partial(getattr(self, name)) for name in names})
+            self.pyglet.push_handlers(
+                **{name: partial(getattr(self, name)) for name in names},
+                on_mouse_press=partial(self._button, Event.BUTTON_PRESS),
+                on_mouse_release=partial(self._button, Event.BUTTON_RELEASE),
+                on_mouse_leave=lambda _x, _y: self.deliver(Event.LEAVE_NOTIFY),
+                on_file_drop=lambda _x, _y, paths: self.on_drop(paths),
+                on_activate=partial(self.on_focus, True),
+                on_show=partial(self.on_visibility, True),
+                on_hide=partial(self.on_visibility, False),
+                on_scale=partial(self.on_resize),
+            )
             self._texture = CanvasTexture()
             self.on_resize(self.width, self.height)
         except Exception as error:  # any error of pyglet means that there is no window
@@ -84,10 +103,16 @@ class NativeWindow(Window):
         self.pyglet.set_caption(self.title)
 
     def set_icons(self) -> None:
-        self.pyglet.set_icons(self.icons)
+        if self.icons and is_x11(self.pyglet):  # pyglet takes a tenth of a second for it
+            set_icon(self.pyglet, [each.pixels for each in self.icons])
+        elif self.icons:
+            pixels = ((each.width, each.height, "BGRA", each.pixels.tobytes(), -4 * each.width) for each in self.icons)
+            self.pyglet.set_icon(*(ImageData(*each) for each in pixels))
 
     def set_cursor(self) -> None:
-        self.pyglet.set_cursor(self.cursor)
+        if self.cursor not in self._cursors:
+            self._cursors[self.cursor] = new_cursor(self.pyglet, self.cursor)
+        self.pyglet.set_mouse_cursor(self._cursors[self.cursor])
 
     def show_pointer(self, on: bool) -> None:
         self.pyglet.set_mouse_visible(on)
@@ -108,8 +133,6 @@ class NativeWindow(Window):
         size = self._framebuffer_size()
         self._texture.draw(self.shown, *size)
         if "overlay" in self.hooks:
-            from minirt.mlx.on_pyglet.triangles import Triangles
-
             self._triangles = self._triangles or Triangles()
             self._triangles.resize((self.width, self.height), size)
             self.display.call(self.hooks, "overlay", self._triangles)
@@ -124,12 +147,6 @@ class NativeWindow(Window):
             self._forget_keys(self.keyboard.release(SYMBOLS.get(symbol, symbol), _modifiers(modifiers)))
         return True
 
-    def on_mouse_press(self, x: float, y: float, button: int, modifiers: int) -> None:
-        self._button(Event.BUTTON_PRESS, x, y, button, modifiers)
-
-    def on_mouse_release(self, x: float, y: float, button: int, modifiers: int) -> None:
-        self._button(Event.BUTTON_RELEASE, x, y, button, modifiers)
-
     def on_mouse_motion(self, x: float, y: float, _dx: float, _dy: float) -> None:
         self.on_motion(*self._from_top(x, y))
 
@@ -143,18 +160,9 @@ class NativeWindow(Window):
         self._wheel = [amount - step for amount, step in zip(self._wheel, steps, strict=True)]
         self.on_scroll(steps[0], steps[1], *self._from_top(x, y))
 
-    def on_file_drop(self, _x: int, _y: int, paths: list[str]) -> None:
-        self.on_drop(paths)
-
     def on_mouse_enter(self, x: float, y: float) -> None:
         self.place_pointer(*self._from_top(x, y))
         self.deliver(Event.ENTER_NOTIFY)
-
-    def on_mouse_leave(self, _x: float, _y: float) -> None:
-        self.deliver(Event.LEAVE_NOTIFY)
-
-    def on_activate(self) -> None:
-        self.on_focus(True)
 
     def on_deactivate(self) -> None:
         self._forget_keys()
@@ -164,21 +172,12 @@ class NativeWindow(Window):
         if self.announced:
             super().on_expose()
 
-    def on_show(self) -> None:
-        self.on_visibility(True)
-
-    def on_hide(self) -> None:
-        self.on_visibility(False)
-
-    def on_resize(self, _width: int, _height: int) -> None:
+    def on_resize(self, _width: float, _height: float) -> None:
         ratio = self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0]  # pixels per unit of the platform
         self.scale = max(1.0, float(ratio), float(self.pyglet.scale))
         super().on_resize(*self._framebuffer_size())
         if sys.platform in ("win32", "darwin") and self.announced:
             self.blit()  # the loop stands still on these platforms while a border is dragged
-
-    def on_scale(self, _scale: float, _dpi: int) -> None:
-        self.on_resize(0, 0)
 
     def on_close(self) -> bool:
         self.on_close_button()
@@ -195,7 +194,7 @@ class NativeWindow(Window):
         if self.resizable and not self.pyglet.fullscreen and request_full_screen(self.pyglet, on):
             return
         self.pyglet.set_fullscreen(on)
-        self.pyglet.set_icons(self.icons)
+        self.set_icons()
         self._forget_keys()
         self.keyboard.release_all()
         self.on_resize(0, 0)

@@ -44,8 +44,6 @@ def set_icon(window: Any, pictures: Sequence[NDArray[np.uint8]]) -> None:
 
 def manager_has_full_screen(window: Any) -> bool:
     """Whether a window manager is running that can let a window fill the screen."""
-    if not is_x11(window):
-        return False
     root, check = window._get_root(), _atom(window, "_NET_SUPPORTING_WM_CHECK")
     manager = _property(window, root, check, WINDOW)
     if not manager or _property(window, manager[0], check, WINDOW) != manager:  # an old one, which has ended
@@ -57,7 +55,7 @@ def manager_has_full_screen(window: Any) -> bool:
 def request_full_screen(window: Any, on: bool) -> bool:
     """Ask the window manager to let the window fill the screen, or to give it its former size and place; return whether
     one is running that can."""
-    if not manager_has_full_screen(window):
+    if not is_x11(window) or not manager_has_full_screen(window):
         return False
     event = xlib.XEvent()
     message = event.xclient
