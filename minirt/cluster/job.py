@@ -23,7 +23,7 @@ from minirt.scene import Scene
 ROWS = 64  # of a band, where the next two leave the choice
 MOST_PIXELS = 2**21  # of a band, whose light takes 48 MiB; but at least one row of tiles
 LEAST_PIXELS = 2**15  # of a band: twice those from which on the estimated error of a picture is promised
-RAYS, MOST_COLUMNS = 2**21, 64  # rays of a band of columns, and bands; they are wider where there would be more of them
+RAYS, MOST_BANDS = 2**21, 64  # rays of a band, and bands that are so small because of their rays
 
 
 class Job(NamedTuple):
@@ -46,15 +46,11 @@ class Job(NamedTuple):
         _, first, _, height = self.region
         return f"rows {first} to {first + height - 1}" if self.settings.region else "a picture"
 
-    def bands(self, regions: Sequence[Region], bits: int | None = None) -> list[Job]:
-        """Return the bands that render some regions."""
-        pairs = enumerate(regions)
+    def bands(self, bits: int | None = None) -> list[Job]:
+        """Cut the picture into bands, of which strips of `bits` a channel are made if they are given."""
+        samples = 1 if self.settings.samples == "auto" else self.settings.samples
+        pairs = enumerate(rows_of(self.region, samples))
         return [Job(self.scene, self.size, self.settings.replace(region=each), number, bits) for number, each in pairs]
-
-    def cut(self, by_workers: bool) -> list[Job]:
-        """Cut the picture into bands for workers, or for a journal of what this process renders."""
-        samples = self.settings.samples
-        return self.bands(rows_of(self.region) if by_workers or samples == "auto" else columns_of(self.region, samples))
 
     def work(self, *more: object) -> str:
         """Return what tells the job from others: a hash of all that the bits of the picture, or of `more`, depend
@@ -82,29 +78,17 @@ def render_band(band: Job) -> Made:
     return image
 
 
-def rows_of(region: Region) -> list[Region]:
-    """Divide a region of a picture into bands of whole rows of tiles, which depend on its size alone.
+def rows_of(region: Region, samples: int) -> list[Region]:
+    """Divide a region of a picture into bands of whole rows of tiles, which depend on its size and samples alone.
 
     So does the estimated error of a picture that is made of bands, whoever renders them.
     """
     x, y, width, height = region
     rows = min(max(ROWS, LEAST_PIXELS // width), max(TILE, MOST_PIXELS // width))
     tiles = -(-height // TILE)
-    count = max(1, round(height / rows))
+    count = max(1, round(height / rows), min(MOST_BANDS, width * height * samples // RAYS))
     ends = [min(height, TILE * (tiles * number // count)) for number in range(count + 1)]
     return [Region(x, y + first, width, end - first) for first, end in pairwise(ends) if end > first]
-
-
-def columns_of(region: Region, samples: int) -> list[Region]:
-    """Divide a region of a picture into bands of columns of tiles, one beside the other, of about `RAYS` rays.
-
-    They are as high as the region, so that the threads of a process share as many rows of tiles.
-    """
-    x, y, width, height = region
-    rays = max(RAYS, width * height * samples // MOST_COLUMNS)
-    step = max(rays // (height * samples) // TILE, 1) * TILE
-    edges = [x, *range(x // TILE * TILE + step, x + width, step), x + width]
-    return [Region(left, y, right - left, height) for left, right in pairwise(edges)]
 
 
 def whole(parts: Sequence[tuple[Region, Outcome | None]]) -> Outcome | None:

@@ -12,7 +12,7 @@ from typing import Literal, Unpack
 
 import numpy as np
 
-from minirt.cluster.job import Job, Made, Workers, render_band, rows_of, whole
+from minirt.cluster.job import Job, Made, Workers, render_band, whole
 from minirt.cluster.journal import Journal
 from minirt.errors import RenderError
 from minirt.formats import tiff
@@ -93,7 +93,7 @@ def stream(
     path: str | os.PathLike[str], job: Job, bits: int, executor: Workers | None, on_progress: Progress
 ) -> Outcome | None:
     """Render a picture into a TIFF file, or go on with it; return its outcome. RenderError."""
-    bands, outcomes = job.bands(rows_of(job.region), bits), []
+    bands, outcomes = job.bands(bits), []
     with file_io.told_errors(path):
         file_io.probe(path)
     with Journal(path, job.work(bits), keeps_all=True) as journal, file_io.told_errors(path):
@@ -114,16 +114,15 @@ def picture_of(
     if executor is None and journal is None:
         whole_picture: Image = render_band(job)
         return whole_picture
-    left, top, width, height = job.region
+    _, top, width, height = job.region
     levels = np.empty((height, width, 3), np.uint8)
     light = np.empty((height, width, 3)) if job.settings.linear else None
     outcomes, not_finite = [], 0
-    for band, image in results(job.cut(executor is not None), executor, journal, on_progress):
-        x, y, across, down = band.region
-        place = slice(y - top, y - top + down), slice(x - left, x - left + across)
-        levels[place] = image.array
+    for band, image in results(job.bands(), executor, journal, on_progress):
+        rows = slice(band.region.y - top, band.region.y - top + band.region.height)
+        levels[rows] = image.array
         if light is not None:
-            light[place] = image.linear
+            light[rows] = image.linear
         outcomes.append((band.region, image.reached))
         not_finite += image.not_finite
     return Image(levels, light, whole(outcomes), job.scene.camera.tone, not_finite)

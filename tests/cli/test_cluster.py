@@ -84,12 +84,12 @@ def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: P
     how = "--size", "640x1600", "--samples", "16384", "--threads", "1", "-o", "a.tif"
     with terminal() as screen, start(folder, "ball.rt", *how, *LOCAL, stderr=screen.end) as running:
         screen.leave()
-        until(lambda: bool(re.search(rb"([4-9]|1\d) of 25 bands", screen.read())) or running.poll() is not None, "work")
+        until(lambda: bool(re.search(rb"([4-9]|1\d) of 64 bands", screen.read())) or running.poll() is not None, "work")
         assert running.poll() is None, "the work ended before it could be interrupted"
         assert interrupt(running, screen)[0] == 130  # after the end of all processes, which have the terminal open
     assert b"Traceback" not in screen.text
     assert re.search(
-        rb"\d+ of 25 bands of the picture are kept in .a.tif.journal; the same command or call goes on", screen.text
+        rb"\d+ of 64 bands of the picture are kept in .a.tif.journal; the same command or call goes on", screen.text
     )
     assert {each.name for each in folder.iterdir()} == {"ball.rt", ".a.tif.journal"}
 

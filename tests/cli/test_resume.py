@@ -16,7 +16,7 @@ from minirt.rendering import settings
 from tests import processes
 from tests.cli.program import SCENE, Run, environment
 
-STILL = ("ball.rt", "--size", "150x40", "--samples", "4", "-o", "x.png")
+STILL = ("ball.rt", "--size", "40x80", "--samples", "4", "-o", "x.png")
 FILM = ("ball.rt", "--size", "40x30", "--turntable", "5", "-o", "x.gif")
 NUMBERED = (*FILM[:-1], "x.png")
 EVERY = pytest.mark.parametrize("arguments", [STILL, FILM, NUMBERED], ids=["still", "film", "numbered"])
@@ -25,7 +25,7 @@ EVERY = pytest.mark.parametrize("arguments", [STILL, FILM, NUMBERED], ids=["stil
 @pytest.fixture(autouse=True)
 def _small_work_is_long(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(render, "LONG", 0)
-    monkeypatch.setattr(job, "RAYS", 32 * 40 * 4)
+    monkeypatch.setattr(job, "RAYS", 40 * 16 * 4)
     monkeypatch.setattr(journal, "SHARE", 1e9)
 
 
@@ -101,11 +101,11 @@ def test_without_resume_the_work_begins_anew(
 
 
 CHANGES = {
-    "size": ("--size", "150x41"),
+    "size": ("--size", "40x81"),
     "samples": ("--samples", "5"),
     "tone": ("--tone", "srgb"),
     "dithering": ("--dither",),
-    "region": ("--region", "0,0,150,40"),
+    "region": ("--region", "0,0,40,80"),
     "depth": ("--depth", "2"),
 }
 
@@ -148,7 +148,7 @@ def test_a_damaged_part_is_rendered_again(run: Run, folder: Path, renders: Rende
     run(*STILL)
     file = folder / ".x.png.journal"
     whole = file.read_bytes()
-    for damaged, missing in ((whole[:-7], 3), (whole[:200] + b"\0\0\0" + whole[203:], 5), (whole[:20], 5), (b"", 5)):
+    for damaged, missing in ((whole[:-7], 3), (whole[:120] + b"\0\0\0" + whole[123:], 5), (whole[:20], 5), (b"", 5)):
         file.write_bytes(damaged)
         renders.until(0)
         assert run(*STILL, "--resume").status == 0
@@ -185,7 +185,7 @@ import minirt
 from minirt.cli import main, render
 from minirt.cluster import job, journal
 from minirt.rendering import settings
-render.LONG, job.RAYS, journal.SHARE = 0, 32 * 40 * 4, 1e9
+render.LONG, job.RAYS, journal.SHARE = 0, 40 * 16 * 4, 1e9
 rendered, calls = settings.rendered, []
 def killed(*arguments, **settings):
     calls.append(1)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import minirt
 from minirt import Scene
 from minirt.cluster import worker
-from minirt.cluster.job import LEAST_PIXELS, MOST_COLUMNS, MOST_PIXELS, ROWS, Job, columns_of, rows_of, whole
+from minirt.cluster.job import LEAST_PIXELS, MOST_BANDS, MOST_PIXELS, ROWS, Job, rows_of, whole
 from minirt.cluster.worker import packed, unpacked, work
 from minirt.errors import FileError, RenderError
 from minirt.kernel.frame import TILE
@@ -46,29 +46,20 @@ def test_rows_that_are_not_there_are_refused(rows: tuple[int, int]) -> None:
         minirt.render(BALL, *SIZE, rows=(0, 5), region=(0, 0, 5, 5))
 
 
-@given(st.integers(1, 300_000), st.integers(1, 300_000))
-def test_bands_are_all_rows_once_by_whole_tiles_and_of_bounded_size(width: int, height: int) -> None:
-    bands = rows_of(Region(0, 0, width, height))
+@given(st.integers(1, 300_000), st.integers(1, 300_000), st.sampled_from([1, 64, 65536]))
+def test_bands_are_all_rows_once_by_whole_tiles_and_of_bounded_size(width: int, height: int, samples: int) -> None:
+    bands = rows_of(Region(0, 0, width, height), samples)
     ends = [band.y + band.height for band in bands]
     assert [0, *ends] == [*(band.y for band in bands), height]
     assert all(band[::2] == (0, width) and band.y % TILE == 0 and band.height > 0 for band in bands)
     limit = max(TILE, min(MOST_PIXELS // width, max(ROWS, LEAST_PIXELS // width)))
     assert max(band.height for band in bands) <= 1.5 * limit + TILE
+    assert len(bands) <= max(MOST_BANDS, len(rows_of(Region(0, 0, width, height), 1)))
 
 
-def test_bands_of_a_region_lie_in_it() -> None:
-    assert rows_of(Region(5, 7, 600, 100)) == [(5, 7, 600, 48), (5, 55, 600, 52)]
-
-
-@pytest.mark.parametrize("region", [Region(0, 0, 640, 480), Region(37, 5, 300, 7), Region(15, 0, 1, 1)])
-@pytest.mark.parametrize("samples", [1, 64, 65536])
-def test_columns_cover_a_region_once_and_begin_with_tiles(region: Region, samples: int) -> None:
-    found = columns_of(region, samples)
-    columns = [column for x, _, width, _ in found for column in range(x, x + width)]
-    assert columns == list(range(region.x, region.x + region.width))
-    assert all(x % TILE == 0 for x, *_ in found[1:])
-    assert {band[1::2] for band in found} == {region[1::2]}
-    assert len(found) <= MOST_COLUMNS + 1
+def test_bands_of_a_region_lie_in_it_and_many_samples_make_more_of_them() -> None:
+    assert rows_of(Region(5, 7, 600, 100), 1) == [(5, 7, 600, 48), (5, 55, 600, 52)]
+    assert [each.height for each in rows_of(Region(5, 7, 600, 100), 2**20)] == [16, 16, 16, 16, 16, 16, 4]
 
 
 def rows(count: int) -> Region:

@@ -28,7 +28,7 @@ from tests.processes import run
 from tests.waiting import HANG_LIMIT
 
 SIZE = 600, 400
-BANDS = len(rows_of(Region(0, 0, *SIZE)))
+BANDS = len(rows_of(Region(0, 0, *SIZE), 1))
 
 
 def rendered(path: Path, **how: Any) -> list[int]:
