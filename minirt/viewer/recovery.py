@@ -1,7 +1,7 @@
 """Recovery of unsaved changes: a thread writes the scene's text to the user's state folder within a second of a change.
 
 So a killed program loses no more than its last second. The file is deleted when nothing is unsaved; one that a killed
-program left is offered when the scene is opened again.
+program left is offered when the scene is opened again. An empty file beside the folder tells that the panel is open.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from minirt.scene import Scene, dump, files
 from minirt.viewer.files import contents_differ
 
 INTERVAL = 0.8  # seconds between two writes, which leaves a fifth of a second for the write itself
+PANEL_MARK = "panel-is-open"  # the empty file
 KEPT = 30 * 24 * 3600  # seconds that changes are kept which are older than their scene
 
 
@@ -96,9 +97,7 @@ class Recovery:
             self._delete()
         if unsaved:
             if self.path is None:
-                folder = state_folder()
-                folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
-                path = folder / f"{name_of(version.file)}-{os.urandom(6).hex()}.rt"
+                path = created_state_folder() / f"{name_of(version.file)}-{os.urandom(6).hex()}.rt"
                 self.path, self._lock = path, open_lock(path)
             file_io.write(self.path, dump(version.scene).encode(), file_io.PRIVATE_FILE)
             with suppress(OSError):  # clocks are set back, too: what was changed is never newer than its changes
@@ -146,6 +145,28 @@ def find_changes(file: Path) -> FoundChanges | None:
 def state_folder() -> Path:
     """Return the folder of this user's unsaved changes; RuntimeError where the user has no home."""
     return file_io.user_folder("XDG_STATE_HOME", "Application Support", ".local/state") / "minirt" / "unsaved"
+
+
+def created_state_folder() -> Path:
+    """Return the folder of this user's unsaved changes, which is created if necessary; RuntimeError, OSError."""
+    folder = state_folder()
+    folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
+    return folder
+
+
+def remember_panel(*, is_open: bool) -> None:
+    """Remember for the next window whether the panel is open, by an empty file."""
+    with suppress(OSError, RuntimeError):
+        mark = created_state_folder().with_name(PANEL_MARK)
+        mark.touch(file_io.PRIVATE_FILE) if is_open else mark.unlink(missing_ok=True)
+
+
+def panel_was_open() -> bool:
+    """Whether the panel was open when a window was last closed."""
+    try:
+        return state_folder().with_name(PANEL_MARK).exists()
+    except (OSError, RuntimeError):  # the user has no home
+        return False
 
 
 def name_of(file: Path) -> str:

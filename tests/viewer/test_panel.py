@@ -19,7 +19,6 @@ from minirt.scene import Scene, dump, load, parse
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.painter import Job, Painter
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
@@ -42,6 +41,17 @@ class Idle(Painter):
         pass
 
 
+class Card:
+    """A graphics card that takes triangles and shows nothing."""
+
+    def upload(self, *_texture: object) -> int:
+        return 1
+
+    def draw(self, vertices: int, _size: int, _indices: int, _index_size: int, runs: list[tuple[object, ...]]) -> None:
+        assert vertices
+        assert runs
+
+
 class User:
     """A user of a window whose panel is open."""
 
@@ -50,7 +60,6 @@ class User:
         mlx = Mlx(self.memory)
         file = Path(scene.file or "scene.rt")
         self.session = Session(mlx, mlx.mlx_init(), scene, file, size, FakeRenderer(), Idle)
-        self.session.screen.level = HudLevel.NOTHING
         if select is not None:
             self.session.state = self.session.state.select(select)
         self.dispatcher = EventDispatcher(self.session)
@@ -58,6 +67,8 @@ class User:
         self.press(Key.F1)
         self.panel = self.dispatcher.panel
         self.rows = self.panel.rows
+        self.session.window.blit = lambda: self.panel.is_open and self.panel.paint(Card())
+        self.session.draw()
 
     def press(self, *keys: int) -> None:
         self.memory.tap(*keys)

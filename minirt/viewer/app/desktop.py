@@ -22,7 +22,7 @@ from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import BackgroundPainter
 from minirt.viewer.files import contents_differ, save_recovery
-from minirt.viewer.recovery import Recovery
+from minirt.viewer.recovery import Recovery, panel_was_open
 
 
 class ViewSettings(TypedDict, total=False):
@@ -63,6 +63,7 @@ def run(
     session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), **options)
     session.screen.text_scale = text_scale
     session.recovery = Recovery()
+    session.wants_panel = panel_was_open()
     offer_found(session)
     session.mlx.mlx_lost_hook(session.display, lose_window, session)
     try:

@@ -16,6 +16,7 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
 from minirt.viewer.editing.state import State
+from minirt.viewer.recovery import remember_panel
 
 if TYPE_CHECKING:
     from minirt.viewer.panel.panel import Panel
@@ -165,6 +166,9 @@ class EventDispatcher:
         session.refresh()
         session.update()
         session.give_back_memory()
+        if session.wants_panel:
+            session.wants_panel = False
+            self.toggle_panel(has_keys=False)
 
     def on_resize(self, _width: int, _height: int) -> None:
         """The window has another size: the pointer is over another part of the picture, so a drag ends."""
@@ -197,19 +201,22 @@ class EventDispatcher:
             session.attempt(COMMANDS[action])
         session.show(session.state)
 
-    def toggle_panel(self) -> None:
-        """Open the panel, or close it; slimgui is imported when it opens first."""
-        self.session.screen.has_tab = False
+    def toggle_panel(self, has_keys: bool = True) -> None:
+        """Open the panel, which then `has_keys`, or close it; slimgui is imported when it opens first."""
+        session = self.session
+        session.screen.has_tab = False
         try:
-            if not self.session.window.has_overlay:
+            if not session.window.has_overlay:
                 raise ImportError
             from minirt.viewer.panel.panel import Panel
         except ImportError:
-            self.session.say(NO_PANEL)
-            self.session.refresh()
-            return
-        self.panel = self.panel or Panel(self.session, self.toggle_panel)
-        self.panel.open(not self.panel.is_open)
+            session.say(NO_PANEL)
+            session.refresh()
+        else:
+            self.panel = self.panel or Panel(session, self.toggle_panel)
+            self.panel.open(not self.panel.is_open, has_keys)
+        if session.recovery:
+            remember_panel(is_open=bool(self.panel and self.panel.is_open))
 
     def hold(self, binding: Binding, key: int, is_typed: bool = False) -> None:
         """Begin the action of a key that goes on while the key is held."""

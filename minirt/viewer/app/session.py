@@ -71,6 +71,7 @@ class Session:
         self.watches_file = watch
         self.recovery: Recovery | None = None  # of unsaved changes
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
+        self.wants_panel = False  # whether the panel opens with the first picture, as it was open in the last window
         self.keymap = Keymap(keys)
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
         self.pressed: DragStart | None = None

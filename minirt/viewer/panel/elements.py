@@ -80,7 +80,7 @@ class Elements:
         self.rows.note(f"shown {index}")
         imgui.set_item_tooltip("shown while you edit; the file keeps it")
         if changed:
-            session.show(replace(state, hidden=state.hidden ^ {index}))
+            self.rows.gui.show(replace(state, hidden=state.hidden ^ {index}))
         imgui.same_line()
         side = imgui.get_frame_height() * 0.7
         imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
@@ -91,10 +91,10 @@ class Elements:
         title = f"{element.title} {self._names[index]}"
         if imgui.selectable(f"{title}###element", index == state.selected, flags)[0] and index != state.selected:
             self._followed = index
-            session.show(state.with_message("").select(index))
+            self.rows.gui.show(state.with_message("").select(index))
         self.rows.note(f"element {index}")
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
-            session.show(apply(session.state, "look at", 1.0, session.now))
+            self.rows.gui.show(apply(session.state, "look at", 1.0, session.now))
         imgui.pop_item_flag()
         imgui.pop_id()
 

@@ -13,6 +13,7 @@ from slimgui import imgui
 
 from minirt.mlx.events import Button, Event, Key, Modifier
 from minirt.viewer.app.session import Session
+from minirt.viewer.editing.state import State
 
 ARROWS = {key: f"KEY_{key.name}_ARROW" for key in (Key.LEFT, Key.RIGHT, Key.UP, Key.DOWN)}
 ENTER = {Key.RETURN: "KEY_ENTER", Key.KEYPAD_ENTER: "KEY_ENTER"}
@@ -59,6 +60,7 @@ class Gui(ABC):
         self._context = imgui.get_current_context()
         self._time = session.now
         self._is_building = False
+        self._is_changed = False  # whether the frame that is being made has changed the session's state
         self.io.ini_filename = self.io.log_filename = None
         self.io.config_input_text_cursor_blink = False
         self.io.config_nav_escape_clear_focus_window = True
@@ -165,6 +167,10 @@ class Gui(ABC):
             self.unsettled -= 1
             self.frame()
 
+    def show(self, state: State) -> None:
+        """Make `state` the current one; the window shows it after the frame, as none is drawn while one is made."""
+        self.session.state, self._is_changed = state, True
+
     def frame(self) -> None:
         """Make a frame, unless one is being made."""
         if self._is_building:
@@ -182,6 +188,9 @@ class Gui(ABC):
             imgui.render()
             self.typed = ""
             window.stale = True
+            if self._is_changed:
+                self._is_changed = False
+                self.session.show(self.session.state)
         finally:
             self._is_building = False
 

@@ -63,7 +63,7 @@ class Pages:
             if imgui.selectable(f"{number}  {title}{undone}###{number}", number == now)[0]:
                 for _ in range(abs(number - now)):
                     state = apply(state, "redo" if number > now else "undo")
-                self.session.show(state)
+                self.rows.gui.show(state)
             self.rows.note(f"step {number}")
 
     def picture(self) -> None:
@@ -71,7 +71,7 @@ class Pages:
         for action, title in COMMAND_TITLES.items():
             if imgui.button(f"{title}###{action}"):
                 self.session.attempt(COMMANDS[action])
-                self.session.show(self.session.state)
+                self.rows.gui.show(self.session.state)
             self.rows.note(action)
         imgui.separator_text("turntable")
         self._frames = self.rows.option("frames", FRAMES, self._frames) or self._frames

@@ -42,10 +42,10 @@ class Panel(Gui):
             "Picture": self._pages.picture,
         }
 
-    def open(self, is_open: bool) -> None:
-        """Open the panel, which then has the keys, or close it."""
-        self.is_open = self._wants_focus = is_open
-        self.is_left = False
+    def open(self, is_open: bool, has_keys: bool) -> None:
+        """Open the panel, which then `has_keys`, or close it."""
+        self.is_open = is_open
+        self._wants_focus, self.is_left = is_open and has_keys, not has_keys
         paint = (lambda painter, _: self.paint(painter)) if is_open else None
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
         if is_open:

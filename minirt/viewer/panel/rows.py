@@ -264,7 +264,7 @@ class Rows:
         except (MiniRTError, ValueError, LookupError) as error:
             after = state.with_message(str(error))
         self.error = (name, after.message) if after.message and after.scene is state.scene else ("", "")
-        self.session.show(after)
+        self.gui.show(after)
 
 
 def file_title(file: Any) -> str:

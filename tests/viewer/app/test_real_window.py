@@ -58,16 +58,17 @@ def viewing(
     options: tuple[str, ...] = (),
     program: str = "minirt",
     text: str | None = WITH_CYLINDER,
+    environment: tuple[str, ...] = (),
 ) -> Iterator[Viewer]:
     """Run the program in a window with the scene `text`; None: with the file as it is.
 
     `cache`: an empty folder, if the program is to compile its kernel, for a processor for which no kernel was compiled
-    ahead of time; `options`: further arguments; `program`: the
-    module to run.
+    ahead of time; `options`: further arguments; `program`: the module to run; `environment`: variables, such as A=b.
     """
     command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *options]
     if cache:
-        command = ["env", f"XDG_CACHE_HOME={cache}", "NUMBA_CPU_NAME=generic", *command]
+        environment += f"XDG_CACHE_HOME={cache}", "NUMBA_CPU_NAME=generic"
+    command = ["env", *environment, *command]
     if text is not None:
         path.write_text(text)
     with desktop.program(*command) as process:
