@@ -99,29 +99,24 @@ def frame_arguments(
             whole = Crop(pixels.shape[1], pixels.shape[0])
             plan = plan_of_variants(pixels.shape, lanes, samples, variants, crop or whole)
     return Frame(
-        next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=pixels.view(np.uint32)[..., 0],  # numbers 0xAARRGGBB
-        linear=linear,
-        rays=rays,
-        plan=plan,
-        errors=NO_ERRORS,
-        memory=thread_memory(arrays),
-        sums=sum_buffer(arrays),
-        scene=arrays,
+        np.zeros(1, np.int64) if counter is None else counter,
+        pixels.view(np.uint32)[..., 0],  # numbers 0xAARRGGBB
+        linear,
+        rays,
+        plan,
+        NO_ERRORS,
+        *thread_memory(arrays),
+        arrays,
     )
 
 
-def sum_buffer(arrays: Any) -> np.ndarray:
-    """Allocate the buffer in which a thread sums the light of a tile."""
-    return np.empty(SUMS, arrays.camera.dtype)
-
-
-def thread_memory(arrays: Any) -> np.ndarray:
-    """Allocate the memory of a thread from one packet to the next, still empty: see `minirt.kernel.trace`."""
+def thread_memory(arrays: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Allocate what a thread remembers from one packet to the next, still empty (see `minirt.kernel.trace`), and the
+    buffer in which it sums the light of a tile."""
     kept = 2 * width(arrays.camera) if arrays.soft is not None else 0
     memory = np.zeros((len(arrays.lights) + 1, 4 + kept), arrays.lights.dtype)
     memory[-1, SPACING] = 1.0
-    return memory
+    return memory, np.empty(SUMS, arrays.camera.dtype)
 
 
 # Numbers of samples that a packet may have, four for each doubling; a level is an index of them.
@@ -140,10 +135,9 @@ class SampleTable:
     def __init__(
         self, levels: np.ndarray, pixels: int, with_places: bool = False, with_references: bool = True
     ) -> None:
-        self.first = np.zeros(len(COUNTS), np.int32)  # row of the drawn samples of a level
-        self.reference = np.zeros(len(COUNTS), np.int32)  # row of its first pair of references
-        self.variants = np.ones(len(COUNTS), np.int32)
-        self.drawn_variants = np.ones(len(COUNTS), np.int32)
+        self.with_references = with_references
+        self.first, self.reference = np.zeros((2, len(COUNTS)), np.int32)  # rows of a level
+        self.drawn_variants, self.variants = np.ones((2, len(COUNTS)), np.int32)
         parts, rows = [], 0
         for level, packets in enumerate(np.bincount(levels).tolist()):
             count, most = int(COUNTS[level]), 2 ** (packets - 1).bit_length()
@@ -158,24 +152,22 @@ class SampleTable:
             rows += count * (drawn + 2 * REFERENCE_SAMPLES * pairs)
         self.positions = np.concatenate(parts)
 
-    def plan(self, levels: np.ndarray, probed: np.ndarray) -> np.ndarray:
-        """Rows of the plan of `minirt.kernel.frame.frame` for packets of some levels; those `probed` get references."""
-        plan = np.zeros((len(levels), 3), np.int32)
-        plan[:, 0] = self.first[levels]
-        plan[:, 1] = COUNTS[levels]
-        if self.drawn_variants.max() > 1:
-            chosen = (random_numbers(len(levels)) * self.drawn_variants[levels]).astype(np.int32)
-            plan[:, 0] += COUNTS[levels] * chosen
-        chosen = levels[probed]
-        pairs = 2 * REFERENCE_SAMPLES * COUNTS[chosen] * (np.arange(len(chosen)) % self.variants[chosen])
-        plan[probed, 2] = self.reference[chosen] + pairs
-        return plan
+    def plan(self, levels: np.ndarray) -> np.ndarray:
+        """Rows of the plan of `minirt.kernel.frame.frame` for packets of some levels."""
+        counts, references = COUNTS[levels], np.zeros(len(levels), np.int32)
+        chosen = (random_numbers(len(levels)) * self.drawn_variants[levels]).astype(np.int32)
+        if self.with_references:
+            pair = np.arange(len(levels)) % self.variants[levels]
+            references = self.reference[levels] + 2 * REFERENCE_SAMPLES * counts * pair
+        return np.stack([self.first[levels] + counts * chosen, counts, references], axis=1)
 
 
 @lru_cache(32)
 def positions_of(count: int, drawn: int, pairs: int, pixels: int, with_places: bool) -> np.ndarray:
     """The positions of variants of drawn samples and of their references, or also the places in lens and lights."""
-    lattice, shifts = sample_positions(REFERENCE_SAMPLES * count), random_shifts(pairs, pixels)
+    # Shifts of both references of each pair, independent and the same at each call.
+    shifts = random_numbers(2 * pairs * pixels * 2).reshape(2 * pairs, pixels, 2)
+    lattice = sample_positions(REFERENCE_SAMPLES * count)
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
     positions = np.tile(sample_positions(count)[:, None], (drawn, pixels, 1)), references.reshape(-1, pixels, 2)
@@ -186,12 +178,6 @@ def positions_of(count: int, drawn: int, pairs: int, pixels: int, with_places: b
         camera.aperture_places(REFERENCE_SAMPLES * count, 2 * pairs, pixels, 2),
     )
     return np.concatenate([np.concatenate(positions), np.concatenate(places)], axis=-1)
-
-
-@cache
-def random_shifts(variants: int, pixels: int) -> np.ndarray:
-    """Independent shifts of both references of each pair, (2 * variants, pixels, 2), the same at each call."""
-    return random_numbers(2 * variants * pixels * 2).reshape(2 * variants, pixels, 2)
 
 
 @cache

@@ -15,7 +15,7 @@ from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.lanes import width
-from minirt.rendering.frame import Frame, frame_arguments, plan_of, plan_of_variants, sum_buffer, thread_memory
+from minirt.rendering.frame import Frame, frame_arguments, plan_of, plan_of_variants, thread_memory
 from minirt.rendering.kernels import Choice, Kernels
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Crop, Request, has_apertures, packet_rays, with_apertures
@@ -47,13 +47,9 @@ class FrameRunner:
         """The threads that render."""
         return ThreadPool(self.threads)
 
-    def run_jobs(self, jobs: list[Job]) -> None:
-        """Run brief jobs on the threads that render, and on the caller's."""
-        self.pool.run(jobs, self.cancel, helps=True)
-
     def run_on_all(self, job: Job) -> None:
-        """Run a job on each of the threads that render."""
-        self.run_jobs([job] * self.threads)
+        """Run a brief job as often as there are threads that render, on these and on the caller's."""
+        self.pool.run([job] * self.threads, self.cancel, helps=True)
 
     def new_counter(self) -> np.ndarray:
         """Return a counter of rows for a frame, which `cancel` ends from now on."""
@@ -72,7 +68,7 @@ class FrameRunner:
         if work == frame.pixels.size and height < TILE * FEW_ROWS * self.threads:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
-        memories = [(thread_memory(frame.scene), sum_buffer(frame.scene)) for _ in range(self.threads)]
+        memories = [thread_memory(frame.scene) for _ in range(self.threads)]
         start, shared = perf_counter(), words_of(frame[:-3])
         jobs: list[Job] = [partial(choice.entry.run, shared + words_of(each) + self.words) for each in memories]
         self.pool.run(jobs, self.cancel, helps=self.pace * work < BRIEF)
@@ -110,7 +106,7 @@ class FrameRunner:
         arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
         frame = frame_arguments(arrays, pixels, samples, light, counter, crop)
         if edges_only and not has_apertures(arrays):
-            classes = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_jobs, self.threads)
+            classes = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_on_all)
             packets = np.flatnonzero(classes >= EDGE)
             drawn = np.tile(np.array([0, samples, 0], np.int32), (len(packets), 1))
             frame = frame._replace(plan=plan_of(packets, classes.shape[1], drawn))
@@ -142,7 +138,7 @@ class FrameRunner:
             if counter[0] >= CANCELLED:
                 raise CancelledError
 
-        classify = partial(contrast_classes, pixels, packet_width, self.run_jobs, self.threads)
+        classify = partial(contrast_classes, pixels, packet_width, self.run_on_all)
         packets = Packets(height, across, packet_width)
         auto = AutoSampler(draw, classify, packets, 3 * height * across, lanes, with_places)
         try:

@@ -64,7 +64,7 @@ class Renderer:
         self.runner = FrameRunner(self.threads, self.kernels)
         run = self.runner.run_on_all
         self.packing = Packing(precision=self.precision, depth=self.depth, without=self.without, run=run)
-        self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, self.dither)
+        self.tone_mapper = ToneMapper(run, self.dither)
 
     @property
     def not_finite(self) -> int:

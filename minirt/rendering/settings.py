@@ -20,7 +20,7 @@ from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.records import Immutable, record
-from minirt.rendering.image import Image, LinearImage, copy_rgb
+from minirt.rendering.image import Image, LinearImage, rgb_of
 from minirt.rendering.packing.camera import cut_for
 from minirt.rendering.renderer import Renderer, renderer
 from minirt.scene import Scene, dump
@@ -184,9 +184,7 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
             is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
     if not is_done:
         raise RenderError(CANCELLED)
-    pixels, parts = pixels[kept], chosen.threads
-    levels = np.empty((*pixels.shape[:2], 3), np.uint8)
-    chosen.runner.run_jobs([partial(copy_rgb, pixels[part::parts], levels[part::parts]) for part in range(parts)])
+    levels = rgb_of(pixels[kept], chosen.runner.run_on_all)
     about = reached, scene.camera.tone, chosen.not_finite
     if light is None:
         return Image(levels, None, *about)

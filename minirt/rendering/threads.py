@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
@@ -12,6 +13,7 @@ from typing import TypeAlias
 from weakref import finalize
 
 Job: TypeAlias = Callable[[], object]
+Run: TypeAlias = Callable[[Job], object]  # runs a job on all threads
 
 LONGEST_WAIT = 0.2  # seconds: Python does not see a signal that comes just before it waits until the wait ends
 
@@ -28,10 +30,10 @@ class ThreadPool:
 
     def __init__(self, number: int) -> None:
         self.tasks: SimpleQueue[Task | None] = SimpleQueue()
-        self.threads: list[Thread] = []
-        for _ in range(number):
-            self.threads.append(Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True))
-            self.threads[-1].start()
+        target = partial(run_tasks, self.tasks)
+        self.threads = [Thread(target=target, name="minirt-render", daemon=True) for _ in range(number)]
+        for thread in self.threads:
+            thread.start()
         finalize(self, self.tasks.put, None)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None], helps: bool = False) -> None:

@@ -17,7 +17,7 @@ The kernel itself rounds light in proportion to levels; other tones and ditherin
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache
 from math import nan, sqrt
 from pathlib import Path
 from typing import NamedTuple
@@ -26,7 +26,7 @@ import numpy as np
 
 from minirt.rendering.outcome import ROUNDING
 from minirt.rendering.packing.camera import Crop, Request
-from minirt.rendering.threads import Job
+from minirt.rendering.threads import Run
 from minirt.scene import Scene
 
 LEVELS = 256
@@ -93,36 +93,41 @@ def map_tones(
     tone: str,
     dither: bool = False,
     crop: Crop | None = None,
-    part: int = 0,
-    parts: int = 1,
+    run: Run = lambda job: job(),
     is_wanted: Callable[[], bool] = lambda: True,
 ) -> None:
     """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
 
     Pixels whose light is NaN stay as they are. The pattern that dithers begins with the whole picture, of which `crop`
-    may be a part. Of several `parts`, which may be mapped side by side, this maps one. It ends early where `is_wanted`,
-    which is asked every few milliseconds, says no.
+    may be a part. `run` runs a job on all threads. They end early where `is_wanted`, which is asked every few
+    milliseconds, says no.
     """
-    curve = tone_named(tone)
+    curve, strips = tone_named(tone), iter(range(0, len(light), STRIP))
     left, above = (crop.left, crop.top) if crop else (0, 0)
-    for top in range(part * STRIP, len(light), parts * STRIP):
-        if not is_wanted():
-            return
-        strip = np.ascontiguousarray(light[top : top + STRIP])
-        if dither:
-            exact = np.interp(strip, curve.light, np.arange(LEVELS))
-            with np.errstate(invalid="ignore"):  # NaN, whose level is not used
-                levels = exact.astype(np.uint8)
-            rows = np.arange(above + top, above + top + len(strip)) % NOISE
-            columns = np.arange(left, left + strip.shape[1]) % NOISE
-            levels += exact - levels > blue_noise()[np.ix_(rows, columns)][..., None]
-        else:
-            levels = curve.nearest(strip).astype(np.uint8)
-        into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
-        if known.all():
-            into[..., 2::-1], into[..., 3] = levels, 255
-        else:
-            into[known] = np.insert(levels[known][:, ::-1], 3, 255, axis=-1)
+
+    def map_strips() -> None:
+        for top in strips:
+            if not is_wanted():
+                return
+            strip = np.ascontiguousarray(light[top : top + STRIP])
+            levels = dithered(strip, curve, left, above + top) if dither else curve.nearest(strip).astype(np.uint8)
+            into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
+            if known.all():
+                into[..., 2::-1], into[..., 3] = levels, 255
+            else:
+                into[known] = np.insert(levels[known][:, ::-1], 3, 255, axis=-1)
+
+    run(map_strips)
+
+
+def dithered(light: np.ndarray, curve: Tone, left: int, above: int) -> np.ndarray:
+    """Return dithered levels of light (h, w, 3), which begins at this column and row of the picture."""
+    exact = np.interp(light, curve.light, np.arange(LEVELS))
+    with np.errstate(invalid="ignore"):  # NaN, whose level is not used
+        levels = exact.astype(np.uint8)
+    height, width, _ = light.shape
+    rows, columns = np.arange(above, above + height) % NOISE, np.arange(left, left + width) % NOISE
+    return levels + (exact - levels > blue_noise()[np.ix_(rows, columns)][..., None])
 
 
 def clipped_pixels(light: np.ndarray, tone: str) -> int:
@@ -151,10 +156,9 @@ def rounding_error(pixels: np.ndarray, tone: str, dither: bool) -> float:
 class ToneMapper:
     """Maps the tones of the pictures of one renderer, and keeps the light of a picture until then."""
 
-    def __init__(self, run: Callable[[list[Job]], object], threads: int, dither: bool) -> None:
-        """`run` runs jobs on so many threads."""
+    def __init__(self, run: Run, dither: bool) -> None:
+        """`run` runs a job on all threads."""
         self.run = run
-        self.threads = threads
         self.dither = dither
         self.scratch = NO_LINEAR  # the light of the last picture for which nobody else kept it
 
@@ -181,8 +185,7 @@ class ToneMapper:
         """Write the levels of a picture, if the kernel has not; as `map_tones` only while it is wanted."""
         scene, pixels, light, crop = request
         if self.needed(scene):
-            map_part = partial(map_tones, light, pixels, scene.camera.tone, self.dither, crop, is_wanted=is_wanted)
-            self.run([partial(map_part, part=part, parts=self.threads) for part in range(self.threads)])
+            map_tones(light, pixels, scene.camera.tone, self.dither, crop, self.run, is_wanted)
 
     def rounding(self, request: Request) -> float:
         """Return the RMSE of rounding or dithering a picture, in light clamped to [0, 1]."""

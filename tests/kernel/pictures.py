@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from minirt.kernel import frame
 from minirt.kernel import interpreted as interpreted_functions
 from minirt.rendering import Renderer
-from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, sample_positions, sum_buffer, thread_memory
+from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, sample_positions, thread_memory
 from minirt.rendering.packing.camera import packet_rays
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.scene_packing import Packing
@@ -82,6 +82,6 @@ def interpreted(
     traced = Packing(interpreted_functions, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
         rays = packet_rays(traced.camera, sample_positions(samples))
-        memory, sums = thread_memory(traced), sum_buffer(traced)
-        frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, NO_ERRORS, memory, sums, traced)
+        memory = thread_memory(traced)
+        frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, NO_ERRORS, *memory, traced)
     return words.view(np.uint8).reshape(height, width, 4), light

@@ -119,8 +119,7 @@ FIRST_RANKS = [224, 1571, 1974, 52]
 def test_strips_and_parts_make_no_difference(tone: str, dither: bool) -> None:
     whole = mapped(PICTURE, tone, dither)
     pixels = np.zeros_like(whole)
-    for part in (1, 0, 2):
-        map_tones(PICTURE, pixels, tone, dither, None, part, 3)
+    map_tones(PICTURE, pixels, tone, dither, run=lambda job: [job() for _ in range(3)])
     assert np.array_equal(pixels, whole)
     alone = np.vstack([mapped(np.ascontiguousarray(PICTURE[:64]), tone, dither), whole[64:]])
     assert np.array_equal(alone, whole)

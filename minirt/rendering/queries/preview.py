@@ -59,7 +59,7 @@ def render_interpreted(scene: Scene, width: int, height: int, crop: Crop | None 
         arrays = arrays._replace(soft=None, lens=None)
         y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
         direction = unit(ray_direction(arrays.camera, x + arrays.camera[12], y + arrays.camera[13]))
-        colour = incoming_radiance(arrays, thread_memory(arrays), 0, Vec(*arrays.camera[:3]), direction)
+        colour = incoming_radiance(arrays, thread_memory(arrays)[0], 0, Vec(*arrays.camera[:3]), direction)
     light = np.stack([colour.x, colour.y, colour.z], axis=-1).reshape(height, width, 3)
     pixels = np.empty((height, width, 4), np.uint8)
     map_tones(light, pixels, scene.camera.tone)

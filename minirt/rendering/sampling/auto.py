@@ -124,7 +124,7 @@ class AutoSampler:
         if not len(some):
             return errors
         table = SampleTable(levels, self.packet_pixels, self.with_places, with_references=is_probed)
-        plan = plan_of(some, packets.columns, table.plan(levels, np.full(len(some), is_probed)))
+        plan = plan_of(some, packets.columns, table.plan(levels))
         packets.levels[some], self.positions = levels, table.positions
         drawn, references = float(plan[:, 3].sum()), REFERENCES * is_probed
         self.probed += drawn * references

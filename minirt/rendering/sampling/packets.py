@@ -29,7 +29,7 @@ from minirt.kernel.machine_code.library import Call
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering.frame import COUNTS, random_numbers
 from minirt.rendering.outcome import ERROR_EXPONENT
-from minirt.rendering.threads import Job
+from minirt.rendering.threads import Run
 from minirt.rendering.tone_mapping import PLAIN, rounding_error, tone_named
 
 CLASSES = 9  # class k > 0 differs by at least 2^(k - 1) levels of 255, but by less than 2^k; class 0 not at all
@@ -37,12 +37,10 @@ CLASS_OF = np.array([value.bit_length() for value in range(256)], np.uint8)
 EDGE = 4  # the class from which on neighbours are taken to differ by an edge: by 8 levels
 
 
-def contrast_classes(
-    pixels: np.ndarray, packet_width: int, run: Callable[[list[Job]], object], threads: int
-) -> np.ndarray:
+def contrast_classes(pixels: np.ndarray, packet_width: int, run: Run) -> np.ndarray:
     """The class of each packet, uint8 (rows, columns), by the greatest difference of a colour from a neighbour above,
-    below, left or right. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs jobs, one for each of
-    the threads, side by side."""
+    below, left or right. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs a job on all
+    threads."""
     height, width, _ = pixels.shape
     if below := -height % PACKET_HEIGHT:
         pixels = np.concatenate([pixels, *[pixels[-1:]] * below])
@@ -56,7 +54,7 @@ def contrast_classes(
         seen = np.empty((2, lines.shape[1]), np.uint8)
         functions.classify(counter, lines, seen, seen.view(np.uint64), CLASS_OF, classes)
 
-    run([job] * threads)
+    run(job)
     return classes
 
 
