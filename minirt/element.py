@@ -8,19 +8,16 @@ own.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import field, fields, replace
-from functools import cache
 from itertools import repeat
-from typing import Any, ClassVar, Self, TypeVar, cast
+from typing import Any, ClassVar, Self, TypeVar
 
 from minirt.errors import ElementError
 from minirt.fields import Field, FieldError
-from minirt.records import Immutable, record
+from minirt.records import Immutable, cached_per_kind, record
 
-Ask = TypeVar("Ask", bound=Callable[..., Any])
 Kind = TypeVar("Kind", bound="Element")
-cached_per_kind = cast("Callable[[Ask], Ask]", cache)  # type checkers take no class for hashable
 
 
 @cached_per_kind

@@ -25,6 +25,11 @@ OTHER_NAMES = {  # of fields in other programs, and what they are called here
 }
 
 
+Ask = TypeVar("Ask", bound=Callable[..., Any])
+Kind = TypeVar("Kind", bound="type[Immutable]")
+cached_per_kind = cast("Callable[[Ask], Ask]", cache)  # type checkers take no class for hashable
+
+
 class FieldSignature:
     """Descriptor of `__signature__`, by which `help` and notebooks show the fields of a record."""
 
@@ -68,9 +73,6 @@ def facts_of(attribute: Any) -> str:
     return "; ".join(part for part in (field.doc, field.unit, field.range, optional) if part)
 
 
-Kind = TypeVar("Kind", bound="type[Immutable]")
-
-
 def declare(
     kind: Callable[..., Any], doc: str, *, default: Any = None, shared: Mapping[str, Any] | None = None, **how: Any
 ) -> Any:
@@ -104,8 +106,7 @@ class Immutable:
     __signature__ = FieldSignature()
 
     def __init__(self, *values: Any, **named: Any) -> None:
-        kind: Any = type(self)
-        positional, defaults = parameters(kind)
+        positional, defaults = parameters(type(self))
         given = dict(zip(positional, values, strict=False)) | named
         complete = defaults | given
         if (
@@ -116,8 +117,8 @@ class Immutable:
             for name in set(named).difference(defaults):
                 meant = next((each for each in OTHER_NAMES.get(name, ()) if each in defaults), "")
                 found = hint(meant) or did_you_mean(name, defaults)
-                raise TypeError(f"{kind.__name__} has no field {name!r}{found}")
-            kind.__signature__.bind(*values, **named)  # TypeError, which says what is wrong
+                raise TypeError(f"{type(self).__name__} has no field {name!r}{found}")
+            type(self).__signature__.bind(*values, **named)  # TypeError, which says what is wrong
         for name, value in complete.items():
             object.__setattr__(self, name, value)
         self.__post_init__()
@@ -134,19 +135,16 @@ class Immutable:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        kind: Any = type(self)
-        values = compared_values(kind)
+        values = compared_values(type(self))
         return bool(values(self) == values(other))
 
     def __hash__(self) -> int:
-        kind: Any = type(self)
-        return hash(compared_values(kind)(self))
+        return hash(compared_values(type(self))(self))
 
     def __repr__(self) -> str:
-        kind: Any = type(self)
-        pairs = [(each, getattr(self, each.name)) for each in ordered_fields(kind) if each.repr]
+        pairs = [(each, getattr(self, each.name)) for each in ordered_fields(type(self)) if each.repr]
         values = ", ".join(f"{each.name}={value!r}" for each, value in pairs if value != each.default)
-        return f"{kind.__qualname__}({values})"
+        return f"{type(self).__qualname__}({values})"
 
 
 def ordered_fields(kind: Any) -> list[Any]:
@@ -154,14 +152,14 @@ def ordered_fields(kind: Any) -> list[Any]:
     return sorted(fields(kind), key=lambda each: bool(each.kw_only))
 
 
-@cache
+@cached_per_kind
 def parameters(kind: type[Any]) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Return the fields that need no keyword, and the defaults of all fields, MISSING where there is none."""
     positional = tuple(each.name for each in fields(kind) if not each.kw_only)
     return positional, {each.name: each.default for each in fields(kind)}
 
 
-@cache
+@cached_per_kind
 def compared_values(kind: type[Any]) -> Callable[[object], Any]:
     """Return a function that returns the values by which records of a kind are compared."""
     return attrgetter(*(each.name for each in fields(kind) if each.compare), "__class__")

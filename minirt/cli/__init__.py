@@ -32,10 +32,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return run(argument_parser(), argv)
     except BrokenPipeError:  # the reader of standard output has closed it
         return FAILED
-    except KeyboardInterrupt as error:  # SIGINT, or another signal that the error names
+    except KeyboardInterrupt as error:  # SIGINT, or another signal, whose number it has
         tell_notes(error)
-        number = getattr(error, "number", None)
-        return INTERRUPTED if number is None else 128 + int(number)
+        return 128 + int(*error.args) if error.args else INTERRUPTED
     except MiniRTError as error:
         return failed(error)
     except MemoryError as error:
@@ -102,7 +101,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
     """Run the command for one scene."""
-    from minirt.helpers.system import gc_paused
+    from minirt.helpers.system import ended_by_signals, gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
         from minirt.cli.commands import command_for, replay, show
@@ -117,9 +116,7 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         read = read_scene(options, sys.stdout if command is show else sys.stderr, command in (show, replay))
     if command is show:  # which compares what it shows with the file
         return show(with_camera_options(read, options), options, read)
-    from minirt.helpers.signals import end_work, ended_by_signals
-
-    with ended_by_signals(end_work):
+    with ended_by_signals():
         return command(with_camera_options(read, options), options)
 
 

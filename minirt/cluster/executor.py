@@ -15,8 +15,7 @@ from threading import Thread
 from time import perf_counter
 from typing import Any
 
-from minirt.cluster.job import Job, Made, Workers
-from minirt.cluster.worker import packed, version, work
+from minirt.cluster.job import Job, Made, Workers, packed, version, work
 from minirt.errors import MiniRTError, RenderError
 from minirt.rendering.threads import usable_cores
 from minirt.scene import Camera

@@ -1,24 +1,34 @@
-"""Jobs: pictures, cut into bands that anyone may render with the same result."""
+"""Jobs: pictures, cut into bands that anyone may render with the same result, and their way to workers."""
 
 from __future__ import annotations
 
+import atexit
+import hashlib
+import pickle
+import shutil
+import sys
 from collections.abc import Sequence
-from functools import partial
-from itertools import pairwise
+from functools import cache, lru_cache, partial
+from io import BytesIO
+from itertools import chain, pairwise
 from math import sqrt
 from operator import itemgetter
+from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from minirt import __version__
+from minirt.errors import RenderError
 from minirt.formats import tiff
+from minirt.helpers import file_io
+from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.kernel.pixels import TILE
 from minirt.rendering import settings as rendering_settings
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Region, cut_for
 from minirt.rendering.settings import RenderSettings
-from minirt.scene import Scene
+from minirt.scene import Camera, Scene
 
 ROWS = 64  # of a band, where the next two leave the choice
 MOST_PIXELS = 2**21  # of a band, whose light takes 48 MiB; but at least one row of tiles
@@ -111,3 +121,99 @@ def whole(parts: Sequence[tuple[Region, Outcome | None]]) -> Outcome | None:
         rounded=any(each.rounded for each in outcomes) and not all(each.is_reached for each in outcomes),
         rounding=sqrt(mean([each.rounding**2 for each in outcomes])),
     )
+
+
+# Scenes on their way to workers, which are other processes or other machines, and the work that is done there. Values
+# travel as they are, not as text, since a direction that is normalised again may differ in its last bit. Workers on
+# other machines get textures, too, under the hashes of their contents.
+
+SCENES = 4  # that are kept unpacked in memory
+
+
+@cache
+def version() -> str:
+    """Return the version of the program and of the sources of its kernels."""
+    return f"{__version__} {fingerprint_of(V3)}"
+
+
+class Packer(pickle.Pickler):
+    """Pickler that puts the hashes of files in place of their names."""
+
+    hashes: dict[str, str]
+
+    def persistent_id(self, value: object) -> str | None:
+        return self.hashes.get(value) if isinstance(value, str) else None
+
+
+class Unpacker(pickle.Unpickler):
+    """Unpickler that puts the paths of this worker's files in place of their hashes."""
+
+    def persistent_load(self, digest: str) -> str:
+        return str(folder() / digest)
+
+
+def packed(scene: Scene, with_files: bool) -> bytes:
+    """Return a scene as bytes, `with_files` with the contents of its textures; FileError where one cannot be read."""
+    named = chain.from_iterable(map(rendering_settings.files_of, scene.elements)) if with_files else ()
+    names = {*named} - {mesh.file.name for mesh in scene.meshes}  # whose triangles travel
+    contents = {name: file_io.read(scene.beside(name), file_io.LARGEST_ASSET) for name in names}
+    buffer = BytesIO()
+    packer = Packer(buffer, protocol=5)
+    packer.hashes = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
+    place = None if with_files else (scene.file or Path("scene.rt")).absolute()
+    packer.dump((scene.elements, place))
+    return pickle.dumps((buffer.getvalue(), {packer.hashes[name]: data for name, data in contents.items()}))
+
+
+@lru_cache(SCENES)
+def unpacked(data: bytes) -> Scene:
+    """Return a scene; its textures are written into this worker's folder."""
+    packed_scene, files = pickle.loads(data)
+    for digest, content in files.items():
+        if not (texture := folder() / digest).exists():
+            file_io.write(texture, content)
+    return Scene(*Unpacker(BytesIO(packed_scene)).load())
+
+
+@cache
+def folder() -> Path:
+    """Return a folder for textures, which is deleted at the end of this process or, if it was killed, by dask.
+
+    Threads that ask for it at once may get one each.
+    """
+    from tempfile import mkdtemp
+
+    worker = dask_worker()
+    path = mkdtemp(prefix="minirt-", dir=worker and worker.local_directory)
+    atexit.register(shutil.rmtree, path, ignore_errors=True)
+    return Path(path)
+
+
+def work(asked: str, data: bytes, camera: Camera, band: Job) -> Made:
+    """Render a band of a packed scene, with another camera. RenderError where this version is not the one `asked` for,
+    which might draw other bits."""
+    if asked != version():
+        raise RenderError(f"a worker has another miniRT: {version()} in place of {asked}")
+    scene = unpacked(data)
+    settings = band.settings
+    if settings.threads is None:
+        settings = settings.replace(threads=share_of_cores())
+    return render_band(band._replace(scene=scene.replace(scene.camera, camera), settings=settings))
+
+
+def share_of_cores() -> int | None:
+    """Return the number of threads that a dask worker has; None elsewhere: all processors."""
+    worker = dask_worker()
+    return worker and int(worker.state.nthreads)
+
+
+def dask_worker() -> Any:
+    """Return the dask worker that calls this, None elsewhere."""
+    if "distributed" not in sys.modules:
+        return None
+    from distributed import get_worker
+
+    try:
+        return get_worker()
+    except ValueError:  # not called by a worker
+        return None

@@ -12,9 +12,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar, copy_context
 from functools import partial
+from itertools import chain, repeat
 from threading import Event, Thread
 from time import perf_counter
-from typing import Any, NamedTuple, TextIO
+from typing import NamedTuple, TextIO
 
 PATIENCE = 1.0  # seconds of work without a bar
 PAUSE = 0.2  # seconds from one drawing of the bar to the next
@@ -37,8 +38,13 @@ def drawn(read: Callable[[], State], draw: Callable[[str], object]) -> Iterator[
     Nothing is drawn in the first second, or where the system allows no more threads; `draw("")` erases what was drawn.
     """
     ended = Event()
-    arguments = without_signals, draw_until, ended, read, draw
-    thread = Thread(target=copy_context().run, args=arguments, daemon=True)
+
+    def run() -> None:
+        if hasattr(signal, "pthread_sigmask"):  # the main thread, which waits for a picture, is to get all signals
+            signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+        draw_until(ended, read, draw)
+
+    thread = Thread(target=copy_context().run, args=(run,), daemon=True)
     with suppress(RuntimeError):  # the system allows no more threads
         thread.start()
     try:
@@ -59,14 +65,6 @@ def draw_until(ended: Event, read: Callable[[], State], draw: Callable[[str], ob
         pause, is_drawn = PAUSE, True
     if is_drawn:
         draw("")
-
-
-def without_signals(work: Callable[..., None], *arguments: object) -> None:
-    """Do some work in a thread that gets no signal: one that it took would not wake the main thread, which waits for a
-    picture."""
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
-    work(*arguments)
 
 
 def line(state: State, seconds: float) -> str:
@@ -102,28 +100,23 @@ def in_notebooks(read: Callable[[], State]) -> Iterator[None]:
         return
     token = SHOWN.set(True)
     try:
-        with drawn(read, NotebookLine().draw):
+        with drawn(read, notebook_line()):
             yield
     finally:
         SHOWN.reset(token)
 
 
-class NotebookLine:
-    """A line of text below a cell, which can be replaced and erased."""
+def notebook_line() -> Callable[[str], None]:
+    """Return a function that shows a text below a cell, in place of its last one; none erases that."""
+    from IPython.display import DisplayHandle
 
-    def __init__(self) -> None:
-        self.handle: Any = None
+    line = DisplayHandle()
+    show = chain([line.display], repeat(line.update))
 
-    def draw(self, text: str) -> None:
-        """Show a text instead of the last one; none erases it."""
-        from IPython.display import DisplayHandle
+    def draw(text: str) -> None:
+        next(show)({"text/plain": text} if text else {"text/html": ""}, raw=True)
 
-        content = {"text/plain": text} if text else {"text/html": ""}
-        if self.handle is None:
-            self.handle = DisplayHandle()
-            self.handle.display(content, raw=True)
-        else:
-            self.handle.update(content, raw=True)
+    return draw
 
 
 @contextmanager

@@ -22,8 +22,7 @@ import tifffile
 import minirt
 from minirt.cli import main, render
 from minirt.cluster import executor
-from minirt.cluster.job import Job, Made
-from minirt.cluster.worker import share_of_cores, work
+from minirt.cluster.job import Job, Made, share_of_cores, work
 from minirt.errors import RenderError
 from tests.cluster.scenes import BALL, with_files
 from tests.paths import ROOT

@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 
 import minirt
 from minirt import Scene
-from minirt.cluster import worker
-from minirt.cluster.job import LEAST_PIXELS, MOST_BANDS, MOST_PIXELS, ROWS, Job, rows_of, whole
-from minirt.cluster.worker import packed, unpacked, work
+from minirt.cluster import job
+from minirt.cluster.job import LEAST_PIXELS, MOST_BANDS, MOST_PIXELS, ROWS, Job, packed, rows_of, unpacked, whole, work
 from minirt.errors import FileError, RenderError
 from minirt.kernel.frame import TILE
 from minirt.rendering.outcome import Outcome
@@ -103,7 +102,7 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers keep no scenes, and their files in a folder of this test."""
     (tmp_path / "files").mkdir()
     unpacked.cache_clear()
-    monkeypatch.setattr(worker, "folder", lambda: tmp_path / "files")
+    monkeypatch.setattr(job, "folder", lambda: tmp_path / "files")
 
 
 def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> None:
@@ -112,7 +111,7 @@ def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> N
     data = packed(scene, with_files=True)
     shutil.rmtree(tmp_path / "home")
     for _ in range(2):
-        made = work(worker.version(), data, scene.camera, Job(BALL, (40, 30), RenderSettings()))
+        made = work(job.version(), data, scene.camera, Job(BALL, (40, 30), RenderSettings()))
         assert np.array_equal(made.linear, expected.linear)
         assert len(list((tmp_path / "files").iterdir())) == 1  # a picture that is there twice
     assert unpacked.cache_info().misses == 1

@@ -16,9 +16,8 @@ import tifffile
 import minirt
 from minirt import Scene
 from minirt.cluster import executor
-from minirt.cluster.job import Job, Made, rows_of
+from minirt.cluster.job import Job, Made, rows_of, work
 from minirt.cluster.journal import HEAD
-from minirt.cluster.worker import work
 from minirt.errors import RenderError
 from minirt.rendering.packing.camera import Region
 from minirt.viewer.editing.motion import turntable

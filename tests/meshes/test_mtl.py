@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import minirt
-from minirt.cluster.worker import packed, unpacked
+from minirt.cluster.job import packed, unpacked
 from minirt.errors import FileError
 from minirt.materials import Bump, Glass, Mirror, Specular
 from minirt.meshes import load_mesh

@@ -11,8 +11,7 @@ from typing import Any, Literal, NoReturn, TypedDict
 
 import numpy as np
 
-from minirt.helpers.signals import ended_by_signals
-from minirt.helpers.system import gc_paused
+from minirt.helpers.system import ended_by_signals, gc_paused
 from minirt.mlx import Image, Mlx
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.renderer import renderer as shared_renderer
