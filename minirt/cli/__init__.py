@@ -113,7 +113,8 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         options = with_settings(parser, options)
         command = command_for(options)
         # A picture may go to standard output. A window leaves it free, and standard error stays empty without errors.
-        read = read_scene(options, sys.stdout if command is show else sys.stderr, command in (show, replay))
+        stream = sys.stdout if command is show else sys.stderr
+        read = read_scene(options, stream, command in (show, replay), for_window=command is show)
     if command is show:  # which compares what it shows with the file
         return show(with_camera_options(read, options), options, read)
     with ended_by_signals():

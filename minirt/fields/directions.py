@@ -27,7 +27,7 @@ class Direction(Three):
     component = Scalar(doc="a component", low=-1.0, high=1.0)
 
     instead: Triple = (0.0, 1.0, 0.0)  # the direction that a lenient reader takes for 0,0,0
-    may_be_zero: bool = False  # whether every reader takes it, as in the example that the subject prints
+    may_be_zero: bool = False  # whether a strict reader takes it, too, as in the example that the subject prints
 
     def check(self, value: Triple) -> Triple:
         checked = super().check(value)
@@ -46,11 +46,16 @@ class Direction(Three):
         return ",".join(map(plain_decimal, shortest(value)))
 
     def repair(self, text: str) -> Repair | None:
+        head, _, tail = text.rpartition(",")
+        deed = ""
         with suppress(FieldError):
-            instead = self.format(self.instead)
-            return None if any(self.parse(text)) else Repair(instead, f"takes {instead}", self.may_be_zero)
-        repair = super().repair(text)  # a fourth component of 0 makes a direction in homogeneous coordinates
-        return repair and repair._replace(certain=number(text.rpartition(",")[2]) == 0)
+            if text.count(",") == 3 and number(tail) == 0:  # a direction in homogeneous coordinates
+                text, deed = head, "drops the fourth component"
+            if self.may_be_zero and not any(self.parse(text)):
+                text = self.format(self.instead)
+                deed = f"takes {text}"
+            return Repair(self.check(self.parse(text)), deed) if deed else None
+        return None
 
     @property
     def notation(self) -> str:

@@ -4,7 +4,7 @@ An element declares a field by `declare`. It is positional, or it is an attribut
 with a key, `mirror:0.3`, and may be left out; then they have their default or are absent (None).
 
 A field defines how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), its range
-(`check`), which wrong spellings a lenient reader accepts (`repair`) and how a key press changes it (`nudge`). Errors
+(`check`), which wrong spellings have one meaning only (`repair`) and how a key press changes it (`nudge`). Errors
 are `FieldError`s that say what was expected, without the name of the field.
 """
 
@@ -32,14 +32,10 @@ class PictureFile(NamedTuple):
 
 
 class Repair(NamedTuple):
-    """A correct spelling that a lenient reader takes instead, and what that does: "rounds it to 1,2,3".
+    """The value that a wrong spelling certainly means, and what taking it does: "drops the fourth component"."""
 
-    Where nothing else can be meant it is `certain`, and every reader takes it.
-    """
-
-    text: str
+    value: Any
     deed: str
-    certain: bool = False
 
 
 @record(kw_only=True)
@@ -94,20 +90,7 @@ class Field(Immutable):
         return None if self.remark(value) else checked
 
     def repair(self, text: str) -> Repair | None:
-        """The spelling that a lenient reader takes instead of the wrong `text`; None if there is none."""
-        return None
-
-    def mend(self, text: str) -> tuple[Any, str, bool] | None:
-        """The checked value that repairs give to a wrong `text`, what they do, whether they are certain; or None."""
-        deeds, certain = [], True
-        while repaired := self.repair(text):
-            text = repaired.text
-            deeds.append(repaired.deed)
-            certain &= repaired.certain
-            try:
-                return self.check(self.parse(text)), " and ".join(deeds), certain
-            except FieldError:
-                continue
+        """The checked value that the wrong `text` certainly means; None if there is none."""
         return None
 
     def nudge(self, value: Any, steps: float) -> Any:

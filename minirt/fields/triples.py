@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any, ClassVar
 
 from minirt.errors import FieldError, quoted
-from minirt.fields.field import Field, PictureFile, Repair, file_name, in_quotes, unquoted
-from minirt.fields.scalars import PLAIN, Length, Scalar, Whole, clamp, number, scaled
+from minirt.fields.field import Field, PictureFile, file_name, in_quotes, unquoted
+from minirt.fields.scalars import PLAIN, Length, Scalar, Whole, clamp, scaled
 from minirt.records import record
 
 Triple = tuple[float, float, float]
@@ -57,13 +56,6 @@ class Three(Field):
     def format(self, value: Triple) -> str:
         return ",".join(map(self.component.format, value))
 
-    def repair(self, text: str) -> Repair | None:
-        head, _, tail = text.rpartition(",")
-        with suppress(FieldError):
-            number(tail)
-            return Repair(head, "drops the fourth component") if text.count(",") == 3 else None
-        return None
-
     @property
     def notation(self) -> str:
         return self.names
@@ -104,13 +96,6 @@ class Colour(Three):
     step: float = 8.0
     initial: Any = (200, 200, 200)
 
-    def repair(self, text: str) -> Repair | None:
-        with suppress(FieldError):
-            parts = list(map(number, text.split(",")))
-            rounded = ",".join(str(math.floor(part + 0.5)) for part in parts)
-            return Repair(rounded, f"rounds it to {rounded}") if len(parts) == 3 and rounded != text else None
-        return None
-
     def nudge(self, value: Triple, steps: float) -> tuple[int, int, int]:
         red, green, blue = (int(clamp(round(component + steps * self.step), 0, 255)) for component in value)
         return red, green, blue
@@ -128,9 +113,6 @@ class Paint(Colour):
 
     def check(self, value: Triple | str) -> Triple | str:  # type: ignore[override]
         return file_name(value, ",") if isinstance(value, str) else super().check(value)
-
-    def repair(self, text: str) -> Repair | None:
-        return super().repair(text) if "," in text else None
 
     def nudge(self, value: Triple | str, steps: float) -> Triple | str:  # type: ignore[override]
         return value if isinstance(value, str) else super().nudge(value, steps)

@@ -22,7 +22,6 @@ from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
 from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_key
 
 SLASHES = re.compile(r"(?<![^ \t])//")
-COMMA_AND_BLANK = re.compile(r"[ \t],|,[ \t]")
 KEY = re.compile(r"(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):")
 HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
 
@@ -75,23 +74,19 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
         return None
     body = line.text[: line.end]
     slashes = SLASHES.search(body) if "//" in body else None
-    if slashes:
-        message = "a comment begins with '#', got '//'"
-        if not log.tolerate(line, message, "takes '//', too", slashes.start() + 1, 2):
-            return None
-        body = body[: slashes.start()]
     words = words_of(body)
-    spread = next((word for word in words if word.text != word.raw), None)
-    blank = COMMA_AND_BLANK.search(body, spread.column - 1) if spread else None
-    message = "no blanks may stand around a comma"
-    if blank and not log.tolerate(line, message, "leaves them out", blank.start() + 1, 2):
-        return None
-    return words
+    blank = next((word.column - 1 for word in words[2:] if word.text.startswith(",")), 0)
+    blank = blank or next((word.end - 1 for word in words[1:-1] if word.text.endswith(",")), 0)
+    if slashes:
+        log.error(line, "a comment begins with '#', got '//'", slashes.start() + 1, 2)
+    elif blank:
+        log.error(line, "no blanks may stand around a comma", blank, 2)
+    return None if slashes or blank else words
 
 
 def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
     """Return the element whose identifier `word` is; None, with an error and a hint, for none."""
-    code = word.raw
+    code = word.text
     if code in SPELLINGS:
         return SPELLINGS[code]
     glued = GLUED.match(code)
@@ -109,7 +104,7 @@ def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: L
     """Assign the words of a line to the fields of an element; to none, with an error, for too few or too many."""
     positional, keyed = positional_fields(kind), fields_by_key(kind)
     values = line_words[1:]
-    first = next((index for index, word in enumerate(values) if is_attribute(word.raw, keyed)), len(values))
+    first = next((index for index, word in enumerate(values) if is_attribute(word.text, keyed)), len(values))
     values, attributes = values[:first], values[first:]
     hex_colour = HEX_COLOUR.match(line.text, line.end)
     if len(values) < len(positional) and isinstance(positional[len(values)], Colour) and hex_colour:
@@ -136,10 +131,10 @@ def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line:
     del log.errors[before + 1 :]  # later fields may be off by one
     if len(log.errors) == before:
         keyed = fields_by_key(kind)
-        guess = nearest_key(extra.raw, list(keyed))
+        guess = nearest_key(extra.text, list(keyed))
         expected = hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
-        why = " (one element a line)" if extra.raw in SPELLINGS else expected
-        log.error(line, f"{kind.title} has no further field {quoted(extra.raw)}{why}", *extra.span(None))
+        why = " (one element a line)" if extra.text in SPELLINGS else expected
+        log.error(line, f"{kind.title} has no further field {quoted(extra.text)}{why}", *extra.span(None))
 
 
 def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log: Log) -> list[Slot]:
@@ -147,18 +142,18 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
     keyed = fields_by_key(kind)
     slots: dict[str, Slot] = {}
     for word in attributes:
-        key, start = split_key(word.raw)
-        written = word.raw[: start - 1] if start else word.raw
+        key, start = split_key(word.text)
+        written = word.text[: start - 1] if start else word.text
         field = keyed.get(key)
-        if not is_attribute(word.raw, keyed):
-            log.error(line, f"only attributes 'name:value' follow an attribute, got {quoted(word.raw)}", word.column)
+        if not is_attribute(word.text, keyed):
+            log.error(line, f"only attributes 'name:value' follow an attribute, got {quoted(word.text)}", word.column)
         elif field is None:
             log.error(line, unknown_key_message(kind, key), word.column, len(written))
         elif field.name in slots:
             log.error(line, f"{kind.title} has '{key}' twice", word.column, len(written))
         else:
             slots[field.name] = Slot(kind, field, word, start, bare=not start)
-            if not word.raw.startswith(key):
+            if not word.text.startswith(key):
                 message = f"'{written}' is the old name of '{field.notation}': later versions will not read it"
                 log.notice(line, message, word.column, len(written))
     return list(slots.values())
@@ -182,21 +177,20 @@ def parse_slots(slots: list[Slot], line: Line, log: Log) -> dict[str, Any]:
 
 
 def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
-    """Parse the value of a field; None, with an error, when it is wrong and not tolerated."""
-    field, word, text = slot.field, slot.word, slot.text
+    """Parse the value of a field; None, with an error, when it is wrong."""
+    field, text = slot.field, slot.text
     try:
         value = field.parse(text)
         checked = field.check(value)
         remark = field.remark(value)
     except FieldError as error:
         message, span = f"{slot.title} {error}", slot.span(error.part)
-        # The last of four components with blanks between them may be the next field.
-        tolerated = field.mend(text) if word.raw == word.text or text.count(",") == 2 else None
-        if tolerated is None:
+        repair = field.repair(text)
+        if repair is None:
             log.error(line, message, *span)
             return None
-        checked, remedy, certain = tolerated
-        return checked if log.tolerate(line, message, remedy, *span, certain=certain) else None
+        log.notice(line, f"{message} (miniRT {repair.deed})", *span)
+        return repair.value
     if remark:
         log.notice(line, f"{slot.title} {remark}", *slot.span(None))
     return value_with_files(slot, checked, line, log) if log.folder else checked

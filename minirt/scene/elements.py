@@ -222,6 +222,7 @@ class SpotLight(Lamp):
         return (*self.direction, end, 1 / (full - end) if full - end > 1 / STEEPEST else STEEPEST)
 
 
+FURTHER: dict[type[Element], type[Element]] = {Light: FurtherLight, Camera: FurtherCamera}  # repeatable kinds
 LAMPS = (Light, FurtherLight, ParallelLight, SpotLight)
 PUBLIC = {kind.__name__: kind for kind in (Resolution, Ambient, Camera, FurtherCamera, Background, Lamp, *LAMPS)}
 

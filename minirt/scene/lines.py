@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import replace
-from itertools import chain, compress, count, islice
+from itertools import compress, count, islice
 from operator import not_
 from pathlib import Path
 from typing import NamedTuple
@@ -21,8 +21,7 @@ MAX_NOTICES = 1000
 MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
 PART = r'(?:"[^"]*+"|[^ \t])++'  # blanks may stand within quotes
-WORD = re.compile(rf"[ \t]*+({PART})")
-JOINED = re.compile(rf"({PART}(?:(?:[ \t]++(?=,)|(?<=,)[ \t]++){PART})*+)")  # with blanks around commas
+WORD = re.compile(PART)
 
 
 class Line(NamedTuple):
@@ -40,29 +39,22 @@ class Line(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A word of a line; a lenient reader joins words that meet at a comma into one."""
+    """A word of a line."""
 
     column: int
-    raw: str  # as it stands in the line
-
-    @property
-    def text(self) -> str:
-        """Text of the word without blanks inside, but for those within quotes."""
-        return "".join(self.raw.split()) if '"' not in self.raw else self.raw
+    text: str
 
     @property
     def end(self) -> int:
         """Column behind the word."""
-        return self.column + len(self.raw)
+        return self.column + len(self.text)
 
     def span(self, part: int | None, start: int = 0) -> tuple[int, int]:
         """Return column and length of component `part`, from 0, of the word from character `start` on; None: of all."""
         if part is None:
-            return self.column + start, len(self.raw) - start
-        parts = self.raw[start:].split(",")
-        before = sum(len(component) + 1 for component in parts[:part])
-        blanks = len(parts[part]) - len(parts[part].lstrip())
-        return self.column + start + before + blanks, len(parts[part].strip())
+            return self.column + start, len(self.text) - start
+        parts = self.text[start:].split(",")
+        return self.column + start + sum(len(each) + 1 for each in parts[:part]), len(parts[part])
 
 
 def line_from(number: int, source: str) -> Line:
@@ -80,11 +72,8 @@ def first_unprintable(line: Line) -> int:
 
 
 def words_of(body: str) -> list[Word]:
-    """Return at most `MAX_WORDS` words of a line without its comment; behind the first, commas join them."""
-    first = WORD.match(body)
-    following = JOINED.finditer(body, first.end()) if first else ()
-    found = islice(chain([first] if first else [], following), MAX_WORDS)
-    return [Word(match.start(1) + 1, match[1]) for match in found]
+    """Return at most `MAX_WORDS` words of a line without its comment."""
+    return [Word(match.start() + 1, match[0]) for match in islice(WORD.finditer(body), MAX_WORDS)]
 
 
 class Log:
@@ -110,18 +99,6 @@ class Log:
             message = "too many notices: those from here on are left out"
         if len(self.notices) <= MAX_NOTICES:
             self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
-
-    def tolerate(
-        self, line: Line, message: str, remedy: str, column: int, length: int = 1, certain: bool = False
-    ) -> bool:
-        """Add a notice if the reader is lenient, an error if it is strict; return whether it tolerates the mistake.
-
-        `remedy` says what a lenient reader does: "rounds it to 10,0,255". A `certain` one is that of every reader.
-        """
-        is_tolerated = certain or bool(self.lenient)
-        add = self.notice if is_tolerated else self.error
-        add(line, f"{message} ({'miniRT' if certain else '--lenient'} {remedy})", column, length)
-        return is_tolerated
 
     def change(self, line: Line, sort: str, words: str) -> None:
         """Note what a lenient reader did to the words of a line, or to the whole line, whose first word they are."""

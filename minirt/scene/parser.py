@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
-from minirt.scene.elements import Ambient, Camera, FurtherCamera, FurtherLight, Light
+from minirt.scene.elements import Camera, FurtherCamera
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS, nearest_element
@@ -22,7 +23,6 @@ from minirt.shapes.mesh import Mesh
 
 NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
 BLOCK = 4096  # lines that the fast path reads at once
-FURTHER: dict[type[Element], type[Element]] = {Light: FurtherLight, Camera: FurtherCamera}  # repeatable kinds
 
 
 class Reading(NamedTuple):
@@ -46,6 +46,18 @@ def load(
     return Reading(scene.mirrored() if left_handed else scene, notices)
 
 
+def load_for_window(
+    path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False, new: bool = False
+) -> tuple[Reading, SceneError | None]:
+    """Read a scene file, leniently where a strict reader refuses it; return its error, too. SceneError."""
+    try:
+        return load(path, lenient, left_handed, new), None
+    except SceneError as error:
+        with suppress(SceneError):
+            return load(path, True, left_handed, new), error
+        raise
+
+
 def parse(
     text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool | str = False, folder: Path | None = None
 ) -> Reading:
@@ -53,8 +65,8 @@ def parse(
 
     Textures and meshes are looked for in `folder`, by default that of the file.
 
-    `lenient` accepts, with notices, the habits of older scenes (several `L`, blanks around commas and the like), and
-    translates lines of other programs (`minirt.scene.dialects`). "base" and "angle" do so, too, and read cones whose
+    `lenient` translates lines of older scenes (several `L`, blanks around commas) and of other programs, with notices
+    (`minirt.scene.dialects`). "base" and "angle" do so, too, and read cones whose
     point is the centre of the base, or whose diameter stands for half the angle at the apex, in degrees.
     """
     name = os.fspath(file) or "scene"
@@ -100,12 +112,9 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
                 return items
         items += [item for item in block if item is not None]
     if log.lenient:
-        dialects.promote_camera(items, seen, log)
+        dialects.complete(items, seen, log)
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
-    if log.lenient:
-        dialects.read_cones(items, log)
-        dialects.check_shapes_left(items, log)
     return items
 
 
@@ -114,11 +123,12 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
 
     A line without a meaning here becomes a comment. `colours` are those of named materials.
     """
+    from minirt.scene import dialect_tables as tables
     from minirt.scene import dialects
 
     known, before, notices = dict(seen), len(log.errors), len(log.notices)
     item = read_line(line, seen, log)
-    translation = None if item else dialects.translated(line, colours, log.folder)
+    translation = None if item is not None else dialects.translated(line, colours, log.folder, known)
     if translation is None:
         return item
     errors = log.errors[before:]
@@ -134,7 +144,7 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
         del log.errors[before:]
     for sort, words in translation.changes:
         log.change(line, sort, words)
-    is_missing = dialects.MISSING in dict(translation.changes)
+    is_missing = tables.MISSING in dict(translation.changes)
     return item or f"{MISSING if is_missing else '# '}{line.text}"
 
 
@@ -155,11 +165,7 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     errors = len(log.errors)
     if kind.once and first != line.number:
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
-        further = FURTHER.get(kind)
-        if further is None:
-            log.error(line, message, *words[0].span(None))
-        elif log.tolerate(line, message, f"reads it as '{further.code}'", *words[0].span(None)):
-            kind = further
+        log.error(line, message, *words[0].span(None))
     slots = assign_words(kind, words, line, log)
     values = parse_slots(slots, line, log)
     if len(log.errors) > errors:
@@ -200,9 +206,7 @@ def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
     for kind in ELEMENTS.values():
         if kind.required and kind.code not in seen:
             message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"
-            if kind is Ambient:
-                log.tolerate(line, message, "renders without", 1)
-            elif kind is Camera and (further := seen.get(FurtherCamera.code)):
+            if kind is Camera and (further := seen.get(FurtherCamera.code)):
                 log.error(line, f"{message}; the '{FurtherCamera.code}' in line {further} is a further one", 1)
             else:
                 log.error(line, message, 1)

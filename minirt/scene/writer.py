@@ -14,7 +14,6 @@ from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
 from minirt.scene.pages import Page
-from minirt.scene.registry import SPELLINGS
 
 
 def describe(element: Element) -> str:
@@ -34,18 +33,14 @@ def line_of(element: Element) -> str:
     """Return the element's source line with its changed fields rewritten; a new line when the source does not fit."""
     kind = type(element)
     line = line_from(1, element.source)
-    log = Log("", lenient=True)
+    log = Log("", lenient=False)
     words = split_line(line, log) if not {"\n", "\0"} & set(line.source) else None
     written = identify(words[0], line, log) if words else None
-    # A lenient reader makes a FurtherLight of a second `L`, and a Camera of the first `c`.
-    is_alike = written and fields_of(written) == fields_of(kind)
-    slots = assign_words(kind, words, line, log) if words and is_alike else []
+    slots = assign_words(kind, words, line, log) if words and written is kind else []
     values = parse_slots(slots, line, log)
     if not words or not values or log.errors:
         return describe(element)
-    if written is kind and all(
-        getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)
-    ):
+    if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
         return line.source
     before, _, after = line.source.partition(line.text)
     return before + rewrite(line.text, element, words, slots, values) + after
@@ -68,8 +63,6 @@ def rewrite(text: str, element: Element, words: list[Word], slots: list[Slot], v
             edits.append((slot.word.column, slot.word.end, None if value is None else field_text(slot.field, element)))
         elif value != values[slot.field.name]:
             edits.append((slot.word.column + slot.start, slot.word.end, slot.field.format(value)))
-    if SPELLINGS[words[0].raw] is not type(element):
-        edits.append((words[0].column, words[0].end, element.code))
     for start, end, replacement in sorted(edits, key=lambda edit: edit[0], reverse=True):  # so columns stay valid
         text = edited(text, start, end, replacement)
     return text

@@ -17,7 +17,7 @@ from minirt.helpers.file_io import reason
 from minirt.materials.pictures import picture
 from minirt.meshes import BY_TRIMESH, load_mesh
 from minirt.scene import Camera, Scene, dump
-from minirt.scene.files import MAX_BYTES, SUFFIX
+from minirt.scene.files import MAX_BYTES, SUFFIX, read
 from minirt.scene.pages import Item
 
 INTERVAL = 0.25  # seconds between two checks of the file
@@ -55,6 +55,13 @@ def save_recovery(scene: Scene, path: Path) -> Path:
     except FileError:
         elsewhere = Path(tempfile.mkdtemp(prefix="minirt-")) / beside.name
         return create_numbered(elsewhere, SUFFIX, data, elsewhere)
+
+
+def is_translated(scene: Scene, path: Path) -> bool:
+    """Whether a file holds other lines than the scene that a lenient reader made of it."""
+    with suppress(SceneError):
+        return read(path) != dump(scene).encode()
+    return False
 
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:

@@ -9,7 +9,8 @@ import pytest
 from PIL import Image
 
 from minirt.errors import SceneError
-from minirt.scene import dialects, dump, load, loads, parse
+from minirt.scene import dialect_tables as dialects
+from minirt.scene import dump, load, loads, parse
 from tests.paths import ROOT
 from tests.scene.examples import AMBIENT, CAMERA, PLANE, SPHERE, scene_with
 
@@ -41,12 +42,28 @@ CASES = [
     ("sp 0,0,20 12.6", "sp 0,0,20 12.6 255,255,255", [dialects.WHITE]),
     ("sp 0,0,20 12.6 rb matte 10,0,255", BALL, [dialects.LEFT_OUT]),
     ("sp 0,0,20 12,6 10,0,255", BALL, [dialects.DECIMALS]),
-    ("sp 0,0,20 12.6 10.4,-0.6,300", BALL, [dialects.CLAMPED]),
-    ("sp 0,0,20 12.6 10,0,255,0", BALL, [dialects.CLAMPED]),
+    ("sp 0,0,20 12.6 10.4,-0.6,300", BALL, [dialects.NEAREST]),
+    ("sp 0,0,20 12.6 10.4,0,254.5e0", BALL, [dialects.NEAREST]),
+    ("sp 0,0,20 12.6 10,0,255,0", BALL, [dialects.FOURTH]),
+    ("sp 0,0,20,1 12.6 10,0,255", BALL, [dialects.FOURTH]),
+    ("pl 0,-1,0 0,1,0,1 200,200,200", FLOOR, [dialects.FOURTH]),
+    ("pl 0,-1,0 0,0,0 200,200,200", FLOOR, [dialects.NOWHERE]),
+    ("pl 0,-1,0 0,0,0,0 200,200,200", FLOOR, [dialects.NOWHERE]),
+    ("dl 0,0,0 1", "dl 0,-1,0 1", [dialects.NOWHERE]),
+    ("sp 0, 0, 20 12.6 10,0,255", BALL, [dialects.JOINED]),
+    ("sp 0 ,0\t,\t20 12.6 10 , 0 , 255", BALL, [dialects.JOINED]),
+    ("sp 0,0,20 12.6 10,0,255 // red", f"{BALL} # red", [dialects.SLASHES]),
+    ("sp 0,0,20 12.6 10,0,255 //# red", f"{BALL} ## red", [dialects.SLASHES]),
+    ("// red", "", [dialects.SLASHES]),
+    (
+        "pl 0, -1, 0 0, 1, 0 199.6, 200 , 200 // floor",
+        f"{FLOOR} # floor",
+        [dialects.JOINED, dialects.NEAREST, dialects.SLASHES],
+    ),
     ("sp 0 0 20 12.6 10 0 255", BALL, [dialects.JOINED]),
-    ("sp (0,0,20), 12.6 10,0,300", BALL, [dialects.CLAMPED]),
+    ("sp (0,0,20), 12.6 10,0,300", BALL, [dialects.NEAREST]),
     ("pl 0,-1,0 0,20,0 200,200,200", FLOOR, [dialects.SCALED]),
-    ("l 0,9,0 3.5 255,255,255 7", "l 0,9,0 1 255,255,255", [dialects.CLAMPED, dialects.LEFT_OUT]),
+    ("l 0,9,0 3.5 255,255,255 7", "l 0,9,0 1 255,255,255", [dialects.NEAREST, dialects.LEFT_OUT]),
     ("cu 0,1,0 2 9,8,7", "bo 0,1,0 0,1,0 2,2,2 9,8,7", [dialects.ORDER, dialects.RENAMED]),
     ("cu 0,1,0 1,0,0 2,3,4 9,8,7", "bo 0,1,0 1,0,0 2,3,4 9,8,7", [dialects.RENAMED]),
     ("ci 0,1,0 0,1,0 2 9,8,7", "di 0,1,0 0,1,0 2 9,8,7", [dialects.RENAMED]),
@@ -56,7 +73,7 @@ CASES = [
     ("box 0,1,0 1,0,0 0,0,1 2,3,4 9,8,7", "bo 0,1,0 0,0,1 2,3,4 9,8,7", [dialects.ORDER, dialects.RENAMED]),
     ("el 0,1,0 2,3,4 9,8,7", "el 0,1,0 0,1,0 2,3,4 9,8,7", [dialects.ORDER]),
     ("tor 0,1,0 0,1,0 2 0.5 9,8,7 marble", "to 0,1,0 0,1,0 2 0.5 9,8,7", [dialects.RENAMED, dialects.LEFT_OUT]),
-    ("sphere | (0.0, 0.0, 20.0) 12.6 | (10, 0, 255)", BALL, [dialects.RENAMED]),
+    ("sphere | (0.0, 0.0, 20.0) 12.6 | (10, 0, 255)", BALL, [dialects.RENAMED, dialects.JOINED]),
     ("ptl 0,9,0 0.5 255,255,255", "l 0,9,0 0.5 255,255,255", [dialects.RENAMED]),
     ("mesh 1,2,3 0,90,0 2,2,2 9,8,7 'ball.obj'", "", [dialects.MISSING]),
     ("obj ball.obj", "", [dialects.MISSING]),

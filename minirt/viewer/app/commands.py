@@ -12,6 +12,7 @@ from pathlib import Path
 from minirt.errors import SceneError
 from minirt.scene import describe, dump, load, parse
 from minirt.scene.files import SUFFIX, check_name
+from minirt.scene.parser import load_for_window
 from minirt.viewer import files
 from minirt.viewer.app.session import Session, title_of
 from minirt.viewer.bindings import platform_spelling as named
@@ -26,6 +27,8 @@ TEXT_STEP = 2**0.25  # factor of a key press
 DELETED = "{} was deleted by another program: {} writes it again"
 MOST_LINES = 20_000  # of files whose versions are merged
 MERGED = "{} was changed by another program; its changes and yours are in other lines, and both are here"
+TRANSLATED = "{} is in the dialect of another program, and is read as --lenient does"
+FOREIGN = "{} is in the dialect of another program: {} again writes it in this format, {} writes a copy"
 UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
@@ -87,12 +90,19 @@ def toggle_full_screen(session: Session) -> None:
 
 
 def save_scene(session: Session) -> None:
-    """Write the scene to its file; if another program has changed the file, copy it first. SceneError, FileError."""
+    """Write the scene to its file; if another program has changed the file, copy it first. SceneError, FileError.
+
+    The first time for a file in another program's dialect, ask with a banner instead.
+    """
     check_name(session.path)
+    question = FOREIGN.format(session.path.name, named("Ctrl+S"), named("Ctrl+Shift+S"))
+    if session.lenient and session.screen.banner != question and files.is_translated(session.saved, session.path):
+        session.screen.banner = question
+        return
     copy = files.back_up(session.path) if session.file.changed else None
     session.state.scene.save(session.path)
     session.file.accept(files.signature(session.path))
-    session.saved = session.state.scene
+    session.saved, session.lenient = session.state.scene, False
     session.screen.banner = ""
     session.found_changes = None
     kept = f"; what another program had written is in {copy}" if copy else ""
@@ -129,7 +139,7 @@ def merge_file(session: Session) -> bool:
     lines = files.merged(*texts) if max(map(len, texts)) <= MOST_LINES else None
     if lines is None:
         return False
-    both = parse("\n".join(lines), session.path, session.lenient).scene
+    both = parse("\n".join(lines), session.path).scene
     both = both.mirrored() if mine.camera.left_handed else both
     session.file.accept(seen)
     session.show_file(state_after_reading(session.state, with_edited_cameras(scene, both, "value"), saved), scene)
@@ -146,7 +156,9 @@ def read_file(session: Session, keep_camera: bool = False) -> None:
 
 def open_another(session: Session, path: Path) -> None:
     """Show another file; write unsaved changes to a recovery file beside the old one. SceneError, FileError."""
-    scene = load(path, session.lenient, session.state.scene.camera.left_handed, new=True).scene
+    left_handed = session.state.scene.camera.left_handed
+    (scene, _), error = load_for_window(path, session.lenient, left_handed, new=True)
+    session.lenient = session.lenient or error is not None
     kept = ""
     if contents_differ(session.state.scene, session.saved):
         kept = f"; the changes that were not saved are in {files.save_recovery(session.state.scene, session.path)}"
@@ -154,6 +166,14 @@ def open_another(session: Session, path: Path) -> None:
     session.watch_file(path)
     session.mlx.mlx_set_window_title(session.window, title_of(path, scene))
     session.show_file(initial_state(scene).with_message(f"opened: {path}{kept}"), scene)
+    tell_dialect(session)
+
+
+def tell_dialect(session: Session) -> None:
+    """Say that the scene was translated from the dialect of another program, if it was."""
+    if session.lenient and files.is_translated(session.saved, session.path):
+        before = f"{session.state.message}\n" if session.state.message else ""
+        session.say(before + TRANSLATED.format(session.path.name))
 
 
 def offer_found(session: Session) -> None:
@@ -166,7 +186,7 @@ def offer_found(session: Session) -> None:
 def take_found(session: Session, found: FoundChanges) -> None:
     """Show the scene with the unsaved changes that were found, as an edit. SceneError where they cannot be read."""
     session.found_changes, session.screen.banner = None, ""
-    scene = parse(found.text, session.path, session.lenient).scene
+    scene = parse(found.text, session.path).scene
     if session.state.scene.camera.left_handed:
         scene = scene.mirrored()
     scene = with_edited_cameras(session.saved, scene, "value")

@@ -33,8 +33,10 @@ WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next pic
 
 
 def title_of(path: Path, scene: Scene) -> str:
-    """Return the title of the window; it tells how many shapes of the file a lenient reader could not read."""
-    return f"miniRT - {path.name}" + f" ({len(scene.missing)} missing)" * bool(scene.missing)
+    """Return the title of the window; it tells which shapes of the file a lenient reader could not read."""
+    names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
+    count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
+    return f"miniRT - {path.name}" + f": {count}: {names}" * bool(names)
 
 
 class Session:

@@ -184,6 +184,39 @@ def test_when_both_changed_a_line_a_banner_asks_and_saving_keeps_a_copy_of_the_o
     assert path.with_name("scene-2.rt").read_text() == BROKEN
 
 
+FOREIGN = TEXT.replace("sp 0,0,0 2 255,0,0", "sp 0, 0, 0 2 255,0,0 100") + "qd 1,2,3 4 9,8,7\nqd 0,0,0 4 9,8,7\n"
+
+
+def test_a_file_in_a_dialect_is_opened_and_saving_asks_before_it_is_written_in_this_format(harness, tmp_path):
+    session, other = harness.session, tmp_path / "other.rt"
+    other.write_text(FOREIGN)
+    drop(harness, other)
+    assert session.window.title == "miniRT - other.rt: 2 shapes are missing: qd"
+    assert session.state.message.startswith("opened: ")
+    assert session.state.message.endswith(
+        "\nother.rt is in the dialect of another program, and is read as --lenient does"
+    )
+    harness.play("press Tab", "press d", SAVE)
+    assert other.read_text() == FOREIGN
+    assert (
+        "other.rt is in the dialect of another program: Ctrl+S again writes it in this format" in session.screen.banner
+    )
+    harness.play(SAVE)
+    assert (session.screen.banner, session.lenient) == ("", False)
+    saved = load(other).scene
+    assert saved == session.state.scene == session.saved
+    assert dump(saved).count("# missing: qd") == 2
+    harness.play("press d", SAVE)  # asks no more
+    assert load(other).scene == session.state.scene
+
+
+def test_a_file_in_this_format_is_saved_without_a_question_also_when_lenient(harness, path):
+    harness.session.lenient = True
+    edited = edit(harness)
+    harness.play(SAVE)
+    assert path.read_text() == edited
+
+
 def test_another_file_is_opened_and_unsaved_changes_are_kept(harness, path, tmp_path, monkeypatch):
     edited, watched, session = edit(harness), [], harness.session
     session.watches_file = True

@@ -59,8 +59,9 @@ def viewing(
     program: str = "minirt",
     text: str | None = WITH_CYLINDER,
     environment: tuple[str, ...] = (),
+    title: str = "",
 ) -> Iterator[Viewer]:
-    """Run the program in a window with the scene `text`; None: with the file as it is.
+    """Run the program in a window with the scene `text`; None: with the file as it is. `title` follows its name.
 
     `cache`: an empty folder, if the program is to compile its kernel, for a processor for which no kernel was compiled
     ahead of time; `options`: further arguments; `program`: the module to run; `environment`: variables, such as A=b.
@@ -72,7 +73,7 @@ def viewing(
     if text is not None:
         path.write_text(text)
     with desktop.program(*command) as process:
-        yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
+        yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}{title}"), path)
 
 
 @pytest.fixture
@@ -237,6 +238,21 @@ def test_keys_edit_and_save_the_scene(viewer):
     viewer.shows(picture(viewer.path))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
+
+
+def test_a_scene_in_a_dialect_opens_says_what_is_missing_and_is_saved_after_a_question(desktop, tmp_path):
+    path, foreign = tmp_path / "other.rt", WITH_CYLINDER + "qd 1,2,3 4 5,6,7\nsp 0,3,0 1 red 100\n"
+    with viewing(desktop, path, text=foreign, title=": 1 shape is missing: qd") as viewer:
+        viewer.key("i", "i", "ctrl+s", "ctrl+shift+s")  # the first one asks
+        until((tmp_path / "other-1.rt").exists, "the copy")
+        assert path.read_text() == foreign
+        viewer.key("ctrl+s")
+        until(lambda: path.read_text() != foreign, "the saved scene")
+        assert minirt.load(path).spheres[-1].specular == minirt.Specular(0.5, 100)
+        viewer.key("Escape")
+        status, told, errors = viewer.end()
+    assert (status, errors[:6], errors.splitlines()[-1][:17]) == (0, "Error\n", "The window shows ")
+    assert [line.split(":")[2] for line in told.splitlines() if line.startswith("notice")] == ["7", "8", "8"]
 
 
 def test_dropped_files_are_opened(viewer, tmp_path):

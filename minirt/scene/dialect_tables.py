@@ -1,0 +1,154 @@
+"""What words of other programs mean: tables for `minirt.scene.dialects`, the most frequent first.
+
+Other first words are those of elements if they have another case, or if the title of one begins so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import radians, tan
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from minirt.fields import clamp
+from minirt.scene.elements import linear_combination
+from minirt.shapes import Cone
+
+# Sorts of changes, as notices tell them.
+LEFT_OUT = "words without a meaning here are left out"
+SETTINGS = "settings of other programs are left out"
+MISSING = "shapes are missing"
+LIGHTS = "lights that cannot be read are left out"
+NEAREST = "numbers become the nearest ones that can be there"
+DECIMALS = "decimal commas become points"
+SCALED = "directions are scaled to length 1"
+NOWHERE = "directions of 0,0,0 become those of this format"
+FOURTH = "fourth components are dropped"
+JOINED = "blanks among three numbers become commas"
+NAMED = "names of colours and materials become their R,G,B"
+WHITE = "what has no colour is white"
+SLASHES = "comments behind // become comments behind #"
+DARK = "there is no ambient light, and what no light reaches is black"
+ORDER = "fields in another order become those of this format, without turns and second axes"
+APEX = "cones begin at their apex and have a diameter; --cone base or --cone angle reads them in another way"
+CONVENTION = "cones are read as --cone says"
+RENAMED = "elements of other names become those of this format"
+EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
+REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
+CHECKERS = "checkers become checker:"
+PICTURES = "pictures behind the colour become texture:, bump: or normal:"
+ABSENT = "pictures that cannot be read are left out"
+HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
+
+NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
+
+# Other names of elements, by their identifiers.
+OTHER_NAMES = {
+    "bo": "cu cb bx cube cub",
+    "ob": "obj",
+    "di": "ci dk ds disk circle",
+    "pa": "pb par",
+    "l": "lpt ptl pt lp",
+    "c": "cam camera",
+    "hy": "hb",
+}
+CODES = {name: code for code, names in OTHER_NAMES.items() for name in names.split()}
+
+# First words of lines that are no shapes.
+LIGHT = r"sun|spot\w*|\w*(?:light|lamp)\w*|a?rl|sl\w?"
+SETTING = (
+    r"@?(?:ma?t|mtl|tex|txt?|xpm|bmp|img|sky|set|render|res|max|aa|alias|win|title|name|depth|sampl|thread|pat)\w*[:=]?"
+    r"|[A-Z]|[a-z]_\w*|[-{}/=*+]+.*|@.*"
+)
+
+
+class Layout(NamedTuple):
+    """Another order of the first fields of an element."""
+
+    code: str
+    pattern: str  # of the letters of the words: v for three numbers, n for one, w for others
+    means: Callable[..., list[str]]  # the words of the format, from all words
+
+
+UP = "0,1,0"
+LAYOUTS = (
+    Layout("bo", "vn(?!n)", lambda centre, edge, *rest: [centre, UP, f"{edge},{edge},{edge}", *rest]),
+    Layout("bo", "vvn(?!n)", lambda centre, axis, edge, *rest: [centre, axis, f"{edge},{edge},{edge}", *rest]),
+    Layout("bo", "vnnn|vvv(?![vn])", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
+    Layout("bo", "vvv(v|nnn)v", lambda centre, _across, axis, *rest: [centre, axis, *rest]),
+    Layout("el", "vvv(?!v)", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
+    Layout("ob", "w$", lambda file: [file, "0,0,0", "1"]),
+    Layout("ob", "wvvv", lambda file, place, _turns, sizes, *rest: [file, place, sizes.split(",")[0], *rest]),
+    Layout("ob", "vvvvw", lambda place, _turns, sizes, colour, file: [file, place, sizes.split(",")[0], colour]),
+)
+
+
+class Row(NamedTuple):
+    """A meaning of one or two words behind the fields."""
+
+    pattern: str  # of the words, with one blank between two
+    means: Callable[..., str]  # attributes, from the groups of the pattern; '' for none
+    sort: str
+
+
+def picture(file: str) -> str:
+    """Return the attribute of a picture, which its name tells."""
+    name = Path(file).stem.lower()
+    key = "normal" if "norm" in name else "bump" if "bump" in name or "height" in name else "texture"
+    return f"{key}:{file}"
+
+
+def highlight(share: float, exponent: float) -> str:
+    """Return the attribute of a highlight; none where it cannot be one."""
+    return f"specular:{clamp(share, 0, 1):g},{exponent:g}" if exponent >= 1 else ""
+
+
+def reflected(share: str) -> str:
+    """Return the attribute of a mirror; none for no share."""
+    value = float(share)
+    return f"mirror:{value / 100 if value > 1 else value:g}" if 0 < value <= 100 else ""  # in percent above 1
+
+
+def two_numbers(first: str, second: str) -> str:
+    """Return attributes for two numbers: a share and an exponent, or an exponent and a share of mirrored light."""
+    a, b = float(first), float(second)
+    if a <= 1 < b:
+        return highlight(a, b)
+    return f"{highlight(0.5, a)} {reflected(second)}".strip() if b <= 1 < a else ""
+
+
+def one_number(text: str) -> str:
+    """Return the attribute for one number: an exponent above 1, a share of mirrored light up to it."""
+    value = float(text)
+    return "" if value == 1 else highlight(0.5, value) if value > 1 else reflected(text)  # 1 may be any switch
+
+
+N, C = r"([-+]?[0-9]*\.?[0-9]+)", r"([0-9.]+,[0-9.]+,[0-9.]+)"
+FILE = r"[\"']?([^\"':=; ]+\.(?:xpm|png|jpe?g|ppm|bmp|tga))[\"']?"
+CHECKER = r"-?-?(?:ch|chk|cb|cd|checker\w*|chess\w*|pattern|pat|damier)"
+
+ROWS = (
+    Row(rf"{N} {N}", two_numbers, EXPONENT),
+    Row(r"([-+]?0*[1-9][0-9]*(?:\.[0-9]*)?)", one_number, EXPONENT),
+    Row(N, one_number, REFLECTIVITY),
+    Row(rf"{CHECKER}[:= ]{C}[:;]{C}(?:[:;]{N})?", lambda _one, two, size: f"checker:{size or 1},{two}", CHECKERS),
+    Row(rf"{CHECKER}[:= ]{C}", lambda colour: f"checker:1,{colour}", CHECKERS),
+    Row(rf"{CHECKER}[:= ]{N}", lambda size: f"checker:{size}", CHECKERS),
+    Row(CHECKER, lambda: "checker", CHECKERS),
+    Row(rf"-?-?(?:b|bu|bum|bump\w*|bm|rb|height\w*)[:= ]{FILE}", lambda file: f"bump:{file}", PICTURES),
+    Row(rf"-?-?(?:n|nm|nor\w*)[:= ]{FILE}", lambda file: f"normal:{file}", PICTURES),
+    Row(rf"(?:-?-?\w+[:= ])?{FILE}", picture, PICTURES),
+    Row(rf"-?-?(?:sh|shin\w*|ns|exp\w*|phong)[:= ]{N}", lambda text: highlight(0.5, float(text)), HIGHLIGHTS),
+    Row(rf"-?-?(?:sp|spc|spec\w*)[:= ]{N}", lambda text: highlight(float(text), 32), HIGHLIGHTS),
+    Row(rf"-?-?(?:re|rf|refl\w*|mir\w*)[:= ]{N}", reflected, HIGHLIGHTS),
+)
+GUESSES = EXPONENT, REFLECTIVITY
+
+# Fields of cones as programs mean them whose point is the centre of the base, or whose diameter is half the angle.
+CONES: dict[str, Callable[[Cone], dict[str, Any]]] = {
+    "base": lambda cone: {
+        "apex": linear_combination(1.0, cone.apex, cone.height, cone.axis),
+        "axis": linear_combination(-1.0, cone.axis, 0.0, cone.axis),
+    },
+    "angle": lambda cone: {"diameter": 2 * cone.height * tan(radians(cone.diameter))},
+}
