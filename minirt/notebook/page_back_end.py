@@ -13,7 +13,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.errors import MlxError
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.events import KEYS, Button, Event, Modifier
 from minirt.mlx.window import Window
@@ -35,11 +34,6 @@ class PageWindow(Window):
     has_overlay = False
 
     display: PageDisplay
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.display.windows:
-            raise MlxError("a page of a notebook has one window")
 
     def blit(self) -> None:
         self.shown.take_changes()

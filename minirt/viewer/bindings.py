@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from minirt.mlx.events import KEYS, Button, Key, Modifier
 from minirt.viewer.language import searchable
@@ -26,6 +26,7 @@ MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT, "Alt": Modifier.AL
 PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
 AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
+Chord = tuple[int | str, Modifier]  # a key, typed text, a mouse button or a drag, and the held modifiers
 KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
 SELECT, LOOK, MOVE, BUILD = "Select", "Look around", "Move and turn", "Build"
 CHANGE, FILE, WINDOW = "Change values", "Save and open", "Window"
@@ -40,13 +41,6 @@ MOUSE: dict[str, Button | str] = {
 }
 
 
-class Chord(NamedTuple):
-    """A key with held modifiers, typed text, a mouse button or the name of a drag."""
-
-    code: int | str
-    modifiers: Modifier = Modifier.NONE
-
-
 def parse_chord(spelling: str) -> Chord:
     """Parse the spelling of a chord of the table. KeyError for an unknown key or modifier."""
     before, plus, name = spelling.rpartition("+")
@@ -56,10 +50,10 @@ def parse_chord(spelling: str) -> Chord:
     for word in filter(None, before.split("+")):
         modifiers |= MODIFIERS[word]
     if name in MOUSE:
-        return Chord(MOUSE[name], modifiers)
+        return MOUSE[name], modifiers
     if len(name) == 1 and not name.isalpha():
-        return Chord(PRINTED[name], modifiers) if modifiers else Chord(name)
-    return Chord(KEYS[name.upper() if len(name) == 1 else name], modifiers)
+        return PRINTED[name] if modifiers else name, modifiers
+    return KEYS[name.upper() if len(name) == 1 else name], modifiers
 
 
 def platform_spelling(spelling: str) -> str:
@@ -194,8 +188,8 @@ def keys_text(layout: str = "auto") -> str:
 def chords_of(binding: Binding, layout: str) -> list[Chord]:
     """All chords that trigger a binding."""
     plain = [parse_chord(spelling) for spelling in binding.spellings(layout)]
-    shifted = [Chord(each.code, each.modifiers | Modifier.SHIFT) for each in plain if not isinstance(each.code, str)]
-    return plain + shifted if binding.fine else plain
+    keys = [(code, modifiers) for code, modifiers in plain if binding.fine and not isinstance(code, str)]
+    return [*plain, *((code, modifiers | Modifier.SHIFT) for code, modifiers in keys)]
 
 
 class Keymap:
@@ -214,4 +208,4 @@ class Keymap:
         if modifiers & ~SIGNIFICANT:
             return None
         # Equal integers are one dictionary key, whatever their enumeration; codes of buttons and keys do not overlap.
-        return self._bindings.get(Chord(code, modifiers))
+        return self._bindings.get((code, modifiers))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import threading
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from itertools import chain, count, pairwise
 from pathlib import Path
@@ -17,7 +17,7 @@ from minirt.helpers.file_io import reason
 from minirt.materials.pictures import picture
 from minirt.meshes import BY_TRIMESH, load_mesh
 from minirt.scene import Camera, Scene, dump
-from minirt.scene.files import MAX_BYTES, SUFFIX, read
+from minirt.scene.files import SUFFIX, read
 from minirt.scene.pages import Item
 
 INTERVAL = 0.25  # seconds between two checks of the file
@@ -40,11 +40,6 @@ def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = N
     except OSError as error:
         raise FileError(first or path.with_suffix(suffix), f"cannot be written: {reason(error)}") from None
     raise AssertionError("there are endlessly many numbers")
-
-
-def back_up(path: Path) -> Path:
-    """Copy a scene file, byte for byte, to a new file beside it; return the new path. FileError."""
-    return create_numbered(path, SUFFIX, file_io.read(path, MAX_BYTES))
 
 
 def save_recovery(scene: Scene, path: Path) -> Path:
@@ -172,20 +167,15 @@ def signature(path: Path) -> Signature:
     return status.st_mtime_ns, status.st_size, status.st_ino
 
 
-def asset_names(scene: Scene, suffixes: Set[str]) -> list[str]:
-    """Return the files with these suffixes, relative to the scene's folder, those in the folder itself first."""
-    top = scene.beside("")
-    files = [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # which passes over what cannot be read
-    return [each.relative_to(top).as_posix() for each in files if each.suffix.lower() in suffixes]
-
-
 def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.0) -> Iterator[str | MeshFile]:
-    """Yield the usable pictures, or meshes, beside the scene; cyclically from the one after a name.
+    """Yield the usable pictures, or meshes, beside the scene and in its folders; cyclically from the one after a name.
 
     In reverse order if `steps` is negative. Names that a scene line cannot spell, and files of wrong content, are left
     out.
     """
-    names = asset_names(scene, MESH_SUFFIXES if is_mesh else PICTURE_SUFFIXES)
+    top, suffixes = scene.beside(""), MESH_SUFFIXES if is_mesh else PICTURE_SUFFIXES
+    files = [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # which passes over what cannot be read
+    names = [each.relative_to(top).as_posix() for each in files if each.suffix.lower() in suffixes]
     if steps < 0:
         names.reverse()
     start = names.index(after) + 1 if after in names else 0

@@ -14,8 +14,9 @@ from minirt.rendering.queries.pick import pick
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import IsWanted
 from tests.waiting import HANG_LIMIT, until
+
+IsWanted = Callable[[], bool]
 
 TEXT = """\
 # a comment

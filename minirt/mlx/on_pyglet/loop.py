@@ -54,12 +54,9 @@ class PygletDisplay(Display):
 
     def _turn(self, _seconds: float) -> None:
         self._requested = False
-        self._take_turn(tick=False)
+        self._take_turn(0.0, tick=False)
 
-    def _tick(self, _seconds: float) -> None:
-        self._take_turn(tick=True)
-
-    def _take_turn(self, *, tick: bool) -> None:
+    def _take_turn(self, _seconds: float, *, tick: bool) -> None:
         """Perform the actions, take a turn, and end pyglet's loop when it is over."""
         if not self.running:
             return  # scheduled in a loop that has ended
@@ -73,7 +70,7 @@ class PygletDisplay(Display):
     def _tick_while(self, busy: bool) -> None:
         """Start or stop the ticks."""
         if busy and not self._ticking:
-            pyglet.clock.schedule_interval(self._tick, TICK)
+            pyglet.clock.schedule_interval(self._take_turn, TICK, tick=True)
         elif self._ticking and not busy:
-            pyglet.clock.unschedule(self._tick)
+            pyglet.clock.unschedule(self._take_turn)
         self._ticking = busy

@@ -10,8 +10,9 @@ from functools import partial
 from pathlib import Path
 
 from minirt.errors import SceneError
+from minirt.helpers import file_io
 from minirt.scene import describe, dump, load, parse
-from minirt.scene.files import SUFFIX, check_name
+from minirt.scene.files import MAX_BYTES, SUFFIX, check_name
 from minirt.scene.parser import load_for_window
 from minirt.viewer import files
 from minirt.viewer.app.session import Session, title_of
@@ -99,7 +100,8 @@ def save_scene(session: Session) -> None:
     if session.lenient and session.screen.banner != question and files.is_translated(session.saved, session.path):
         session.screen.banner = question
         return
-    copy = files.back_up(session.path) if session.file.changed else None
+    file, is_changed = session.path, session.file.changed
+    copy = files.create_numbered(file, SUFFIX, file_io.read(file, MAX_BYTES)) if is_changed else None
     session.state.scene.save(session.path)
     session.file.accept(files.signature(session.path))
     session.saved, session.lenient = session.state.scene, False

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour, Triple
+from minirt.kernel.projection import Grid, projected_rectangle
 from minirt.mlx.text import draw_text, measure
+from minirt.rendering.packing.camera import camera_frame, slopes_at_edges
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Lamp, Scene
 from minirt.scene.elements import linear_combination
@@ -37,7 +39,6 @@ KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and
 LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
 
 PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
-Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are exclusive
 
 
 def draw_marks(
@@ -223,7 +224,7 @@ def outline_pixels(
         y, x = np.ix_(np.arange(-1, height + 1), np.arange(-1, width + 1))
         y, x = y[None], x[None]
     else:
-        left, top, right, bottom = screen_bounds(shape, projection_of(camera, width, height))
+        left, top, right, bottom = screen_bounds(shape, camera, width, height)
         step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
         x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
         grid = covers(shape, camera, width, height, x, y)
@@ -243,20 +244,15 @@ def outline_pixels(
     return (y[outside], x[outside]), (y[inside], x[inside])
 
 
-def screen_bounds(shape: Shape, view: Projection) -> Box:
-    """Return a box of pixels that encloses the projection of a shape; all of them if it is near the eye's plane."""
-    columns, rows = [], []
-    for centre, radius in shape.balls():
-        depth, middle = view.depth(centre), view.pixel(centre)
-        if middle is None or depth <= 2 * radius:
-            return 0, 0, view.width, view.height
-        # A projected sphere is an ellipse, longer the farther it is from the picture's centre; the square bounds it.
-        slant = hypot(*subtract(centre, view.eye)) / depth
-        reach = view.width / 2 / hypot(*view.right) * radius / (depth - radius) * slant + MARGIN
-        columns += [middle[0] - reach, middle[0] + reach]
-        rows += [middle[1] - reach, middle[1] + reach]
-    if not columns:
-        return 0, 0, view.width, view.height
-    left, right = (round(min(max(each, 0), view.width)) for each in (min(columns), max(columns)))
-    top, bottom = (round(min(max(each, 0), view.height)) for each in (min(rows), max(rows)))
-    return left, top, right, bottom
+def screen_bounds(shape: Shape, camera: Camera, width: int, height: int) -> tuple[int, int, int, int]:
+    """Return left, top, right and bottom of the pixels that enclose the projection of a shape and MARGIN around it."""
+    spheres = np.array([(*centre, radius) for centre, radius in shape.balls()])
+    if not len(spheres):
+        return 0, 0, width, height
+    right, up, forward = camera_frame(camera)
+    frames = np.array([[right, np.negative(up), forward]])
+    across, down = slopes_at_edges(camera, width, height)
+    x, y = width / 2, height / 2
+    grid = Grid(frames, width, height, x / across, x, y / down, y, MARGIN, width * height)
+    left, top, columns, rows = projected_rectangle(camera.position, grid, 0, spheres, 0, len(spheres), 0.0)
+    return left, top, left + columns, top + rows

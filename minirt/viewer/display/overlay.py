@@ -14,7 +14,7 @@ from minirt.scene.writer import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import Value
-from minirt.viewer.language import translated
+from minirt.viewer.language import GAP, translated
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
 MARGIN, PADDING = 10, 4  # pixels
@@ -22,7 +22,6 @@ TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the leas
 USUAL_WINDOW = 1920, 1080  # pixels: in larger windows text is larger, too
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
-GAP = "    "  # between groups of words
 ROW_COLOUR = 0xC0C0C0  # of the rows that are not chosen
 PANEL_BACKGROUND = 0xC0000000  # with its opacity
 TOP, BOTTOM = 2, 2  # lines above and below the panel, which belong to the information and to messages
@@ -54,19 +53,16 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLeve
     `rate`: primary rays per second, 0 if unknown. Returns the height in pixels of the text at the bottom.
     """
     width = pixels.shape[1]
-    if level == HudLevel.NOTHING:
-        return 0
     keys = hints(state, every=level == HudLevel.ALL)
     if level == HudLevel.LINE:
-        rendered = f"    {status(shown)}" if shown else ""
-        line = fit_width(f"{element_line(state)}    {translated(keys + rendered)}", width, size)
+        rendered = f"{GAP}{status(shown)}" if shown else ""
+        line = fit_width(f"{element_line(state)}{GAP}{translated(keys + rendered)}", width, size)
         draw_lines(pixels, MARGIN, line, TEXT_COLOUR, size)
         return 0
     position = f"element {state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
     max_lines = max(2, (pixels.shape[0] // 3 - 4 * PADDING) // measure(" ", size)[1])  # in a third of the window
-    top = wrap(f"{element_line(state)}\n{translated(f'{keys}    {position}')}", width, size).split("\n")[
-        : max_lines - 1
-    ]
+    lines = wrap(f"{element_line(state)}\n{translated(f'{keys}{GAP}{position}')}", width, size).split("\n")
+    top = lines[: max_lines - 1]
     draw_lines(pixels, MARGIN, "\n".join(top), TEXT_COLOUR, size)
     bottom = wrap(translated("\n".join((*shown.about, status(shown, rate)))), width, size) if shown else ""
     bottom = last_lines(bottom, max_lines - len(top))
@@ -98,10 +94,8 @@ def element_line(state: State) -> str:
 
 def bracketed(text: str, part: int | None) -> str:
     """Put brackets around a field, or around one of its components."""
-    if part is None:
-        return f"[{text}]"
     parts = text.split(",")
-    if part >= len(parts):  # the component is at its default and so not written
+    if part is None or part >= len(parts):  # a component at its default is not written
         return f"[{text}]"
     return ",".join([*parts[:part], f"[{parts[part]}]", *parts[part + 1 :]])
 
@@ -128,8 +122,8 @@ def wrap(text: str, width: int, size: int) -> str:
 
 def fit_width(text: str, width: int, size: int) -> str:
     """Drop groups of words from the end until the text fits on a line; wrap the first group if it does not fit."""
-    while measure(text, size)[0] > width - 2 * MARGIN and "    " in text:
-        text = text.rpartition("    ")[0]
+    while measure(text, size)[0] > width - 2 * MARGIN and GAP in text:
+        text = text.rpartition(GAP)[0]
     return wrap(text, width, size)
 
 

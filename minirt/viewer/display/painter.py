@@ -22,7 +22,6 @@ from minirt.rendering.sampling.packets import estimated_error
 from minirt.scene import Scene
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
-IsWanted: TypeAlias = Callable[[], bool]  # whether a picture is still wanted
 
 PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview appears: loading one takes less
 NICENESS = 10  # of rendering: keys and the window are served first
@@ -106,16 +105,10 @@ class Painter:
 
 
 def paint(
-    renderer: Renderer,
-    job: Job,
-    base: Pixels | None = None,
-    is_wanted: IsWanted = lambda: True,
-    preview: bool = False,
+    renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: Callable[[], bool] = lambda: True
 ) -> Outcome:
-    """Render a job: all pixels, or only the edges in a copy of `base`; or its preview, while its kernel is missing."""
+    """Render a job: all pixels, or only the edges in a copy of `base`."""
     try:
-        if preview:
-            return Outcome(job, renderer.preview(job.scene, job.width, job.height), preview=True)
         pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
         done = renderer.render(job.scene, pixels, job.samples, is_wanted=is_wanted, edges_only=base is not None)
     except Exception as error:  # of any kind: the session raises it in the main thread
@@ -195,8 +188,11 @@ class BackgroundPainter(Painter):
     def _render(self, job: Job) -> Outcome | None:
         """Render a job, or its preview while its kernel is missing; None if it has neither."""
         if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
-            outcome = paint(self.renderer, job, preview=True)
-            return outcome if outcome.pixels is not None or outcome.error else None
+            try:
+                pixels = self.renderer.preview(job.scene, job.width, job.height)
+            except Exception as error:
+                return Outcome(job, error=error)
+            return None if pixels is None else Outcome(job, pixels, preview=True)
         start = time.perf_counter()
         outcome = paint(self.renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
         return replace(outcome, seconds=time.perf_counter() - start)
@@ -234,6 +230,4 @@ class BackgroundPainter(Painter):
     def _is_superseded(self, job: Job) -> bool:
         """Whether a newer request makes this picture useless."""
         waiting = self._waiting
-        if waiting is None:
-            return False
-        return not job.urgent or (job.width, job.height) != (waiting.width, waiting.height)
+        return waiting is not None and not (job.urgent and job.shows(job.scene, waiting.width, waiting.height))

@@ -81,11 +81,12 @@ class Value(NamedTuple):
         if self.channel is None or isinstance(field, Colour | Lengths):
             new = field.nudge(old, steps)
             return self.replaced(element, new if self.channel is None else new[self.channel])
-        angle = self.channel >= Three.width
-        step = stride if isinstance(field, Point) else ANGLE_STEP if angle else PART_STEP
-        ends = (-FARTHEST, FARTHEST) if isinstance(field, Point) else (-1.0, 1.0)
-        new = self.current(element) + steps * step
-        return self.replaced(element, turned_angle(self.channel, new) if angle else clamp(new, *ends))
+        if self.channel >= Three.width:  # an angle: a heading goes round, an elevation stops at the vertical
+            angle = self.current(element) + steps * ANGLE_STEP
+            is_heading = self.channel == Three.width
+            return self.replaced(element, (angle + 180) % 360 - 180 if is_heading else clamp(angle, -90.0, 90.0))
+        step, end = (stride, FARTHEST) if isinstance(field, Point) else (PART_STEP, 1.0)
+        return self.replaced(element, clamp(self.current(element) + steps * step, -end, end))
 
     def replaced(self, element: Element, new: Any) -> Any:
         """The field's value with another current value. FieldError for a direction that would point nowhere."""
@@ -121,11 +122,6 @@ def angles_of(direction: Triple) -> tuple[float, float]:
     x, y, z = direction
     heading = degrees(atan2(x, z)) if x or z else 0.0
     return tuple(round(angle, ANGLE_DECIMALS) + 0.0 for angle in (heading, degrees(asin(clamp(y, -1, 1)))))  # type: ignore[return-value]
-
-
-def turned_angle(channel: int, angle: float) -> float:
-    """An angle of a direction in its range: a heading goes round, an elevation stops at the vertical."""
-    return (angle + 180) % 360 - 180 if channel == Three.width else clamp(angle, -90.0, 90.0)
 
 
 def with_part(triple: Triple, channel: int, new: Any) -> Triple:

@@ -118,7 +118,6 @@ def test_the_line_level_draws_one_line():
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:20].any()
     assert not changed[40:].any()
-    assert draw_hud(blank(), initial_state(scene()), None, HudLevel.NOTHING, 0.0, 16) == 0
 
 
 def test_a_message_is_wrapped_and_drawn_above_the_status():
