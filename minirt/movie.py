@@ -145,7 +145,6 @@ class LoopFilm:
         self.last = picture
 
     def data(self) -> bytes:
-        """Return the bytes of the file."""
         first, *others = self.pictures
         durations = [min(each, LONGEST[self.name]) for each in self.durations]
         buffer = io.BytesIO()
@@ -197,7 +196,6 @@ class VideoFilm:
         return stream
 
     def data(self) -> bytes:
-        """Return the bytes of the file, after what the codec still holds."""
-        self.film.mux(self.stream.encode())
+        self.film.mux(self.stream.encode())  # what the codec still holds
         self.film.close()
         return self.buffer.getvalue()

@@ -87,7 +87,6 @@ class Canvas:
         return changes
 
     def _merge_points(self) -> None:
-        """Blend the single pixels into the canvas."""
         if self._right:
             left, top, right, bottom = self._left, self._top, self._right, self._bottom
             if self._alpha:

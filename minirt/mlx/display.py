@@ -101,7 +101,6 @@ class Display(Host):
         return "loop" in self.hooks or (self.autorepeat and any(each.keyboard.repeating for each in self.windows))
 
     def perform_actions(self) -> None:
-        """Perform the actions of `do`."""
         while self.actions:
             self.actions.popleft()()
 

@@ -47,7 +47,6 @@ class MemoryWindow(Window):
         self.picture = self.display.last = stretch(self.shown.pixels, *self._size)
 
     def resize(self, width: int, height: int) -> None:
-        """Give the window another size on the screen."""
         self._size = width, height
         self.on_resize(width, height)
 
@@ -123,7 +122,6 @@ class Memory(Display):
         self.do(lambda: self.window.on_scroll(0, up, x, y))
 
     def drop(self, *files: str) -> None:
-        """Drop files on the window."""
         self.do(lambda: self.window.on_drop(files))
 
     def resize(self, width: int, height: int) -> None:
@@ -187,7 +185,6 @@ class Memory(Display):
             self.turn(tick=False)
 
     def _advance(self, seconds: float) -> None:
-        """Advance simulated time, in ticks of at most TICK seconds."""
         ticks = max(1, math.ceil(seconds / TICK - 1e-9))
         for _ in range(ticks):
             if not self.over:

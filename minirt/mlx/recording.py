@@ -102,18 +102,15 @@ class Line:
         return [*codes, KEYS[name]]
 
     def modifier(self, name: str, index: int) -> int:
-        """Return the key of a modifier."""
         if name not in MODIFIERS:
             self.unknown_key(name, index)
         return Key.COMMAND_L if name == "Ctrl" and self.types and sys.platform == "darwin" else MODIFIERS[name]
 
     def unknown_key(self, name: str, index: int) -> NoReturn:
-        """Refuse a key or a modifier."""
         hint = did_you_mean(name, (*KEYS, *MODIFIERS))
         self.fail(index, f"unknown key {quoted(name)}{hint}; expected a key like Tab, a, F5, Ctrl+S or 65307")
 
     def seconds(self, index: int) -> float:
-        """Parse a time in seconds."""
         try:
             value = float(self.words[index])
         except ValueError:
@@ -140,7 +137,6 @@ def press(user: Memory, keys: Keys | str) -> None:
 
 
 def hold(user: Memory, keys: Keys, seconds: float) -> None:
-    """Hold keys down for some seconds."""
     user.press(*keys)
     user.wait(seconds)
     user.release(*reversed(keys))

@@ -121,7 +121,6 @@ def _without_accents(line: str) -> tuple[str, list[tuple[int, str]]]:
 
 
 def _line_height(size: int) -> int:
-    """Height of a line in pixels."""
     return int(sum(_font(size).getmetrics()))
 
 

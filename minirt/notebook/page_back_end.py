@@ -29,8 +29,6 @@ Message = dict[str, Any]
 
 
 class PageWindow(Window):
-    """The window in the page."""
-
     has_overlay = False
 
     display: PageDisplay
@@ -193,7 +191,6 @@ def code_of(event: Message) -> int | None:
 
 
 def modifiers_of(event: Message) -> Modifier:
-    """Return the modifiers that are held."""
     return Modifier(sum({modifier for name, modifier in MODIFIERS.items() if event[name]}))
 
 

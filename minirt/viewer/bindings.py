@@ -186,7 +186,6 @@ def keys_text(layout: str = "auto") -> str:
 
 
 def chords_of(binding: Binding, layout: str) -> list[Chord]:
-    """All chords that trigger a binding."""
     plain = [parse_chord(spelling) for spelling in binding.spellings(layout)]
     keys = [(code, modifiers) for code, modifiers in plain if binding.fine and not isinstance(code, str)]
     return [*plain, *((code, modifiers | Modifier.SHIFT) for code, modifiers in keys)]

@@ -146,7 +146,6 @@ class WatchedFile:
         threading.Thread(target=work, name="minirt-watch", daemon=True).start()
 
     def close(self) -> None:
-        """Stop watching."""
         self._closed.set()
 
     def check(self) -> bool:

@@ -106,7 +106,6 @@ class Recovery:
         self._written = version
 
     def _delete(self) -> None:
-        """Delete the file, if there is one."""
         if self.path:
             os.close(self._lock)
             file_io.delete(self.path, self.path.with_suffix(".lock"))

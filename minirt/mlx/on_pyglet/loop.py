@@ -68,7 +68,6 @@ class PygletDisplay(Display):
             pyglet.app.event_loop.exit()
 
     def _tick_while(self, busy: bool) -> None:
-        """Start or stop the ticks."""
         if busy and not self._ticking:
             pyglet.clock.schedule_interval(self._take_turn, TICK, tick=True)
         elif self._ticking and not busy:

@@ -48,7 +48,6 @@ class PygletWindow(pyglet.window.Window):  # type: ignore[misc]
 
 
 def new_cursor(window: PygletWindow, cursor: Cursor) -> Any:
-    """Return a pointer of a shape."""
     if cursor is Cursor.TURN and is_x11(window):
         from pyglet.libs.x11 import xlib
         from pyglet.window.xlib import XlibMouseCursor
@@ -172,7 +171,6 @@ class Triangles:
         return int(number.value)
 
     def delete(self, texture: int) -> None:
-        """Free a texture."""
         gl.glDeleteTextures(1, ctypes.byref(gl.GLuint(texture)))
 
     def draw(self, vertices: int, vertex_count: int, indices: int, index_count: int, runs: Sequence[Run]) -> None:

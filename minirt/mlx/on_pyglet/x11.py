@@ -90,8 +90,6 @@ KEY_PRESS, KEY_RELEASE = 2, 3  # X11's numbers
 
 
 class KeyEvent(NamedTuple):
-    """A press or a release of a key."""
-
     pressed: bool
     code: int  # from the first column of the keyboard map
     letter: int | None  # Latin letter that the key stands for, where it prints none

@@ -55,7 +55,6 @@ def screenshot(session: Session) -> None:
 
 
 def copy_camera(session: Session) -> None:
-    """Copy the camera's line of the scene to the clipboard."""
     line = describe(session.state.scene.camera)
     session.mlx.mlx_set_clipboard(session.window, line)
     session.say(f"copied: {line}")
@@ -85,7 +84,6 @@ def scale_text(session: Session, factor: float) -> None:
 
 
 def toggle_full_screen(session: Session) -> None:
-    """Let the window fill the screen, or give it its former size."""
     session.full_screen = not session.full_screen
     session.mlx.mlx_set_fullscreen(session.window, session.full_screen)
 

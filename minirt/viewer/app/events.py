@@ -15,7 +15,6 @@ from minirt.viewer.app.panels import ADDING, HELP, LISTS, TYPE, Choosing, Help, 
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
-from minirt.viewer.editing.state import State
 from minirt.viewer.recovery import remember_panel
 
 if TYPE_CHECKING:
@@ -136,7 +135,7 @@ class EventDispatcher:
         session = self.session
         if held := session.held_keys.pop(code, None):
             steps = max(1.0, held.steps(session.now))
-            self.continue_with(held.advance(session.state, steps, session.step, session.now))
+            session.show(held.advance(session.state, steps, session.step, session.now))
         self._unbound = None if code == self._unbound else self._unbound
         session.update()
 
@@ -147,7 +146,7 @@ class EventDispatcher:
         state, now = session.state, session.now
         for held in session.held_keys.values():
             state = held.advance(state, held.steps(now), session.step, now)
-        self.continue_with(state)
+        session.show(state)
         if waited:
             session.draw_late_words()
         if self.panel and self.panel.is_busy:
@@ -223,12 +222,7 @@ class EventDispatcher:
         session = self.session
         session.release_button()
         session.held_keys[key] = held = HeldKey(binding.action, session.now, session.step, is_typed)
-        self.continue_with(held.advance(session.state, FIRST_PART, session.step, session.now))
-
-    def continue_with(self, state: State) -> None:
-        """Show the state after steps of held keys, if there were any."""
-        if state is not self.session.state:
-            self.session.show(state)
+        session.show(held.advance(session.state, FIRST_PART, session.step, session.now))
 
     def as_hook(self, handler: Callable[..., object]) -> Callable[..., object]:
         """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.

@@ -39,7 +39,6 @@ class Typing:
 
     @property
     def is_open(self) -> bool:
-        """Whether a value is being typed."""
         return bool(self.text)
 
     def begin(self, character: str) -> None:
@@ -91,7 +90,6 @@ class Help:
 
     @property
     def is_open(self) -> bool:
-        """Whether the help is shown."""
         return self.session.screen.help > 0
 
     def takes(self, key: int, pressed: Binding | None) -> bool:
@@ -126,7 +124,6 @@ class Choosing:
 
     @property
     def is_open(self) -> bool:
-        """Whether the list is open."""
         last = self.session.state.last_change
         return self._before is not None and last is not None and last[0] == self._group
 

@@ -196,7 +196,6 @@ class Session:
             self.file.watch(lambda: self.mlx.mlx_wake(self.display))
 
     def quit(self) -> None:
-        """End the event loop."""
         self.mlx.mlx_loop_exit(self.display)
 
     @property
@@ -218,7 +217,6 @@ class Session:
 
     @property
     def view(self) -> Projection:
-        """The projection of the current scene to the window."""
         return projection_of(self.state.scene.camera, self.window.width, self.window.height)
 
     @property
@@ -233,7 +231,6 @@ class Session:
 
     @property
     def modifiers(self) -> Modifier:
-        """The modifier keys that are down."""
         return self.mlx.mlx_get_modifiers(self.window)
 
     @property

@@ -90,7 +90,6 @@ class Painter:
         self.outcomes: list[Outcome] = []
 
     def request(self, job: Job) -> None:
-        """Request a picture."""
         self.outcomes.append(paint(self.renderer, job))
         self.notify()
 

@@ -57,7 +57,6 @@ class HeldKey:
     first: tuple[State, State] | None = None  # states before the first step and after a part of it
 
     def steps(self, now: float) -> float:
-        """Return the steps until now."""
         seconds = now - self.since
         steps = RATE * (seconds + GROWTH / 2 * max(0.0, seconds - PATIENCE) ** 2)
         return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
@@ -105,7 +104,6 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 
 
 def change_value(sign: float, state: State, amount: float, now: float) -> State:
-    """Change the active value of the selected element."""
     active = state.active
     if active is None:
         return state.with_message(f"{state.element.title} has no size")
@@ -141,7 +139,6 @@ def next_value(step: int, state: State, _amount: float, _now: float) -> State:
 
 
 def next_frame(state: State, _amount: float, _now: float) -> State:
-    """Switch to the next frame of movement: the view, X, Y, Z."""
     frames = list(Frame)
     return replace(state, frame=frames[(frames.index(state.frame) + 1) % len(frames)], last_change=None)
 

@@ -61,8 +61,11 @@ def rotate(element: Element, axis: Triple, angle: float) -> Element:
 
     angle: degrees. The roll of the element keeps its frame whole.
     """
-    directions = {name: getattr(element, name) for name in field_names(type(element), Direction)}
-    changes: dict[str, Any] = {name: neat_rotation(each, axis, angle) for name, each in directions.items()}
+    changes: dict[str, Any] = {}
+    for name in field_names(type(element), Direction):
+        old = getattr(element, name)
+        new = unit(rodrigues(old, axis, angle))  # a direction along the axis keeps all its digits
+        changes[name] = old if dist(new, old) < NOISE else neat_direction(new, keep_heading=False)
     if isinstance(element, Oriented) and shows_roll(element):
         # Compared with the frame without a roll about the new axis, however far that is from the one before.
         u, v, _ = frame_of(element.replace(**changes, roll=0.0))
@@ -100,12 +103,6 @@ def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kin
             seen = handedness(camera) * (-angle if axis == RIGHT else angle)
             element = rotate(element, turn_axis(camera, axis), seen)
     return state.edit_element(element, kind, now)
-
-
-def neat_rotation(direction: Triple, axis: Triple, angle: float) -> Triple:
-    """Rotate a unit vector about another, and round it; a direction along the axis keeps all its digits."""
-    rotated = unit(rodrigues(direction, axis, angle))
-    return direction if dist(rotated, direction) < NOISE else neat_direction(rotated, keep_heading=False)
 
 
 def turn_camera(camera: Camera, right: float, up: float) -> Camera:
@@ -201,7 +198,6 @@ def approach(state: State, steps: float, now: float) -> State:
 
 
 def next_tone(state: State, _amount: float, now: float) -> State:
-    """Switch to the next tone of the picture."""
     camera = state.scene.camera
     tone = TONES[(TONES.index(camera.tone) + 1) % len(TONES)]
     return state.edit_camera(camera.replace(tone=tone), "tone", now).with_message(f"tone: {tone}")
@@ -219,7 +215,6 @@ def focus(state: State, point: Triple | None, now: float) -> State:
 
 
 def reset_camera(state: State, _amount: float, now: float) -> State:
-    """Reset the camera to that of the file."""
     scene = state.scene
     in_file = state.file_cameras[scene.shown] if scene.shown < len(state.file_cameras) else scene.camera
     return state if scene.camera == in_file else state.change(scene.replace(scene.camera, in_file), "", now)

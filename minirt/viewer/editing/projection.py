@@ -90,12 +90,10 @@ def projection_of(camera: Camera, width: int, height: int) -> Projection:
 
 
 def dot(a: Triple, b: Triple) -> float:
-    """Dot product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def subtract(a: Triple, b: Triple) -> Triple:
-    """Difference a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
@@ -110,7 +108,6 @@ def extent(element: Element) -> Extent | None:
 
 
 def middle_of(shape: Shape) -> Extent:
-    """Middle and radius of a bounded shape."""
     found = extent(shape)
     assert found
     return found

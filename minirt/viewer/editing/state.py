@@ -57,7 +57,6 @@ class State:
 
     @property
     def element(self) -> Element:
-        """The selected element."""
         return self.scene.elements[self.selected]
 
     @property
@@ -73,7 +72,6 @@ class State:
 
     @property
     def snapshot(self) -> Snapshot:
-        """The current scene and selection."""
         return Snapshot(self.scene.drop_caches(), self.selected)
 
     def index_in(self, scene: Scene) -> int | None:
@@ -152,7 +150,6 @@ class Hidden(Element):
 
 
 def without_hidden(scene: Scene, hidden: frozenset[int]) -> Scene:
-    """The scene that the window shows."""
     for index in hidden:
         scene = scene.edit(index, Hidden())
     return scene
