@@ -183,7 +183,7 @@ def full_screen_without_a_window_manager_and_back(harness: Harness) -> None:
 
     if not isinstance(harness.mlx, Memory):
         native = importlib.import_module("minirt.mlx.on_pyglet.native")
-        harness.undo.enter_context(patch.object(native, "request_full_screen", lambda *_: False))
+        harness.undo.enter_context(patch.object(native.x11, "request_full_screen", lambda *_: False))
     full_screen(harness, toggle)
 
 

@@ -13,15 +13,8 @@ from pyglet.window import mouse as pyglet_mouse
 from minirt.errors import MlxError
 from minirt.mlx.display import ADVICE
 from minirt.mlx.events import Button, Cursor, Event, Key, Modifier
+from minirt.mlx.on_pyglet import x11
 from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow, Triangles, new_cursor
-from minirt.mlx.on_pyglet.x11 import (
-    KeyEvent,
-    fix_drag_enter,
-    is_x11,
-    report_key_events,
-    request_full_screen,
-    set_icon,
-)
 from minirt.mlx.window import Window
 
 BUTTONS = {
@@ -66,8 +59,8 @@ class NativeWindow(Window):
                 file_drops=True,
                 vsync=False,  # a buffer swap of a hidden window may take a second: never wait for it
             )  # fmt: skip
-            fix_drag_enter(self.pyglet)
-            report_key_events(self.pyglet, self._on_key_event)
+            x11.fix_drag_enter(self.pyglet)
+            x11.report_key_events(self.pyglet, self._on_key_event)
             # pyglet refers to methods weakly, which those of an integer cannot be.
             names = set(dir(self)).intersection(PygletWindow.event_types)
             self.pyglet.push_handlers(
@@ -103,8 +96,8 @@ class NativeWindow(Window):
         self.pyglet.set_caption(self.title)
 
     def set_icons(self) -> None:
-        if self.icons and is_x11(self.pyglet):  # pyglet takes a tenth of a second for it
-            set_icon(self.pyglet, [each.pixels for each in self.icons])
+        if self.icons and x11.is_x11(self.pyglet):  # pyglet takes a tenth of a second for it
+            x11.set_icon(self.pyglet, [each.pixels for each in self.icons])
         elif self.icons:
             pixels = ((each.width, each.height, "BGRA", each.pixels.tobytes(), -4 * each.width) for each in self.icons)
             self.pyglet.set_icon(*(ImageData(*each) for each in pixels))
@@ -191,7 +184,7 @@ class NativeWindow(Window):
         """
         if not self.is_open:
             return
-        if self.resizable and not self.pyglet.fullscreen and request_full_screen(self.pyglet, on):
+        if self.resizable and not self.pyglet.fullscreen and x11.request_full_screen(self.pyglet, on):
             return
         self.pyglet.set_fullscreen(on)
         self.set_icons()
@@ -199,7 +192,7 @@ class NativeWindow(Window):
         self.keyboard.release_all()
         self.on_resize(0, 0)
 
-    def _on_key_event(self, event: KeyEvent | None) -> None:
+    def _on_key_event(self, event: x11.KeyEvent | None) -> None:
         """Report a key event before pyglet handles it, if pyglet would report another key; None: it has handled it."""
         code = event and (event.letter if self.display.options.symbols else event.code)
         self._is_reported = bool(code)

@@ -16,7 +16,8 @@ from minirt.viewer.display.marks import SIZE, arrow_tip, arrows, visible_icons
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, handle_at, handles_of, pull
 from minirt.viewer.editing.motion import look_at
-from minirt.viewer.editing.projection import AHEAD, Aim, aim, aim_at_top, position_of
+from minirt.viewer.editing.placing import AHEAD, aim, aim_at_top
+from minirt.viewer.editing.projection import Aim, position_of
 from minirt.viewer.editing.state import index_of
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click

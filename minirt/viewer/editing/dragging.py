@@ -19,26 +19,15 @@ from minirt.scene.elements import Camera, linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, rotate, shifted
-from minirt.viewer.editing.placing import dropped, keep_standing, lowest_along, settled
-from minirt.viewer.editing.projection import (
-    PARALLEL,
-    UP,
-    Pixel,
-    Projection,
-    aim,
-    dot,
-    extent,
-    middle_of,
-    position_of,
-    scene_centre,
-    subtract,
-)
+from minirt.viewer.editing.placing import aim, dropped, keep_standing, lowest_along, middle_of, settled
+from minirt.viewer.editing.projection import UP, Pixel, Projection, dot, extent, position_of, scene_centre, subtract
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value, values
 
 PIXEL_CENTRE = 0.5  # pixels
 CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
 SNAP_ANGLE = 15.0  # degrees
+LEVEL = 1e-6  # in place of the slope of a level ray
 TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
 
 # Handles: arrows along the axes move the element, a square in two; rings turn it, boxes resize it.
@@ -135,7 +124,7 @@ def pull(state: State, start: DragStart, x: int, y: int) -> State:
         angle = snapped((first - last) * facing, SNAP_ANGLE * start.snaps)
         return state.edit_element(rotate(element, axis, angle), *CHANGE)
     if handle.kind == SLIDE:  # in the level plane
-        depths = [(centre[1] - view.eye[1]) / (ray[1] or PARALLEL) for ray in (view.ray(*at) for at in ends)]
+        depths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in (view.ray(*at) for at in ends)]
         ways = [linear_combination(depth, view.ray(*at), 0.0, centre) for depth, at in zip(depths, ends, strict=True)]
         offset = subtract(ways[1], ways[0]) if min(depths) > 0 else (0.0, 0.0, 0.0)
     else:

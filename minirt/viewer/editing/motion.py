@@ -34,15 +34,10 @@ def translate(element: Moved, axis: Triple, distance: float) -> tuple[Moved, boo
     """Move all points of an element along `axis`, clamped to the format's range. Returns whether it was clamped."""
     points = {name: getattr(element, name) for name in field_names(type(element), Point)}
     offset = [distance * part for part in axis]
-    clamped = [
-        clamp(part, -FARTHEST - min(coordinates), FARTHEST - max(coordinates))
-        for part, coordinates in zip(offset, zip(*points.values(), strict=True), strict=True)
-    ]
-    moved = {
-        name: clamp_point(linear_combination(1.0, point, 1.0, (clamped[0], clamped[1], clamped[2])))
-        for name, point in points.items()
-    }
-    return element.replace(**moved), clamped != offset
+    limits = ((-FARTHEST - min(each), FARTHEST - max(each)) for each in zip(*points.values(), strict=True))
+    x, y, z = (clamp(part, *limit) for part, limit in zip(offset, limits, strict=True))
+    moved = {name: clamp_point(linear_combination(1.0, point, 1.0, (x, y, z))) for name, point in points.items()}
+    return element.replace(**moved), [x, y, z] != offset
 
 
 def clamp_point(point: Triple) -> Triple:

@@ -1,26 +1,104 @@
-"""Place shapes: on the surface that is aimed at, along its normal; on what lies beneath; and on a grid."""
+"""Aim at a place for a shape; place it on the surface there, along its normal, on what lies beneath, or on a grid."""
 
 from __future__ import annotations
 
-from math import copysign, dist, hypot, isfinite
+from math import copysign, dist, hypot, inf, isfinite
 
 from minirt.element import Element, fields_of
-from minirt.fields import Direction, Point, Triple, neat
-from minirt.rendering.queries.pick import clearance
-from minirt.scene import Scene
+from minirt.fields import Direction, Point, Triple, clamp_length, neat
+from minirt.rendering.queries.pick import clearance, first_hit, surface_normal
+from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 from minirt.shapes.shape import Oriented
+from minirt.viewer.editing import projection
 from minirt.viewer.editing.motion import frame_of, shifted
-from minirt.viewer.editing.projection import TOP, UP, Aim, dot, field_names, middle_of, position_of, subtract
+from minirt.viewer.editing.projection import STEP_SHARE, UP, Aim, Projection, dot, field_names, position_of, subtract
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import round_point
+from minirt.viewer.editing.values import nice_number, round_point
 
 LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes without an axis still come to rest
 POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a standing shape are rounded
 SAME = 1 / 50  # of a step: positions closer than this differ by rounding
 FLAT_LIFT = 0.01  # of its radius: how far above a surface a flat shape lies
 DOWN = (0.0, -1.0, 0.0)
+GRID_REACH = 3.0  # cells of the grid between a point of a surface and the next one on the grid
+AHEAD = 0.55  # of the picture's height: where an element goes while there is no pointer
+PICTURE = 640, 360  # pixels of a usual window, where none is known
+BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
+SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
+TOP = 0.7  # cosine of the slope, of 45 degrees, up to which a surface is the top of its shape
+TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a new element on its top, or elsewhere
+
+
+def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, point: Triple | None) -> Aim:
+    """Aim through a point of the picture, at the `point` of a shape, at the ground y = 0, or at `size` from the eye.
+
+    size: of the scene. On surfaces the aim is at the nearest point whose coordinates along them are on a grid.
+    """
+    ray, height = view.ray(x, y), view.eye[1]
+    to_ground = -height / ray[1] if height * ray[1] < 0 else inf
+    normal: Triple | None = None
+    if shape and point and dist(view.eye, point) <= BACKGROUND * size:
+        normal = surface_normal(shape, point, ray)
+    elif shape or to_ground > BACKGROUND * size:
+        shape, point = None, linear_combination(1.0, view.eye, size, ray)
+    else:
+        x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
+        point, normal = (x, 0.0, z), UP if height > 0 else (0.0, -1.0, 0.0)
+    length = length_at(view, shape, point, normal)
+    if normal:
+        point, normal = on_grid(shape, point, normal, nice_number(min(STEP_SHARE * size, length / 2)))
+        length = length_at(view, shape, point, normal)
+    return Aim(view.eye, point, normal, length)
+
+
+def aim_at_top(view: Projection, shape: Shape) -> Aim:
+    """Aim at the top of a bounded shape, above its middle."""
+    box, ((x, _, z), radius) = shape.bounds(), middle_of(shape)
+    assert box
+    found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
+    point, normal = found or ((x, box[1][1], z), UP)
+    return Aim(view.eye, point, normal, length_at(view, shape, point, normal))
+
+
+def length_at(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
+    """Length of a new element at a point: SHARE of the picture, and at most a share of the shape it stands on."""
+    length = 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up))
+    box = shape.bounds() if shape and normal else None
+    if box and normal:
+        breadth = sorted(subtract(box[1], box[0]))[1]
+        length = min(abs(length), breadth * (TOP_SHARE if normal[1] > TOP else SIDE_SHARE))
+    return clamp_length(length)
+
+
+def on_grid(shape: Shape | None, point: Triple, normal: Triple, grid: float) -> tuple[Triple, Triple]:
+    """The point of a surface, and its normal, next to `point` with two coordinates on a grid; the same without one.
+
+    The third coordinate is the one along which the normal is longest. The ground y = 0 is no shape.
+    """
+    along = max(range(3), key=lambda axis: abs(normal[axis]))
+    way, reach = [0.0, 0.0, 0.0], GRID_REACH * grid
+    way[along] = -copysign(1.0, normal[along])
+    down = way[0], way[1], way[2]
+    x, y, z = (part if axis == along else grid * round(part / grid) for axis, part in enumerate(point))
+    if shape is None:
+        return (x, y, z), normal
+    start = linear_combination(1.0, (x, y, z), -reach, down)
+    found = first_hit(shape, start, down)
+    return found if found and dist(found[0], start) <= 2 * reach else (point, normal)
+
+
+def aim_ahead(camera: Camera, size: float) -> Aim:
+    """Aim through the middle of the picture, a little below it, without a look at the shapes."""
+    width, height = PICTURE
+    return aim(projection.projection_of(camera, width, height), size, width / 2, AHEAD * height, None, None)
+
+
+def middle_of(shape: Shape) -> projection.Extent:
+    found = projection.extent(shape)
+    assert found
+    return found
 
 
 def settled(shape: Shape, aim: Aim, scene: Scene, stride: float) -> Shape:

@@ -1,20 +1,18 @@
-"""Geometry of the view: pixels and points of the scene, sizes of elements and scenes, and the aim of the pointer."""
+"""Geometry of the view: pixels and points of the scene, and sizes of elements and scenes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import copysign, dist, hypot, inf
+from math import dist, hypot
 from statistics import median
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
 from minirt.fields import Point, Triple, clamp_length, unit
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.queries.pick import first_hit, surface_normal
 from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
-from minirt.viewer.editing.values import nice_number
 
 Pixel = tuple[float, float]
 
@@ -25,14 +23,7 @@ UP: Triple = (0.0, 1.0, 0.0)
 FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
 UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
 SAMPLE_SIZE = 4096  # elements, evenly spaced in the file; their median is within some per cent of that of a million
-BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
-SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
-TOP = 0.7  # cosine of the slope, of 45 degrees, up to which a surface is the top of its shape
-TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a new element on its top, or elsewhere
 STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
-GRID_REACH = 3.0  # cells of the grid between a point of a surface and the next one on the grid
-AHEAD = 0.55  # of the picture's height: where an element goes while there is no pointer
-PICTURE = 640, 360  # pixels of a usual window, where none is known
 
 
 class Projection(NamedTuple):
@@ -107,12 +98,6 @@ def extent(element: Element) -> Extent | None:
     return (point, 0.0) if point else None
 
 
-def middle_of(shape: Shape) -> Extent:
-    found = extent(shape)
-    assert found
-    return found
-
-
 def field_names(kind: type[Element], field_type: type[Any]) -> tuple[str, ...]:
     """Names of the fields of a type, such as the points or the directions."""
     return tuple(each.name for each in fields_of(kind) if isinstance(each, field_type))
@@ -175,67 +160,3 @@ class Aim(NamedTuple):
     point: Triple
     normal: Triple | None  # of the surface there, towards the eye; None in the air
     size: float  # of an element there: it fills SHARE of the picture, and is a share of what it stands on
-
-
-def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, point: Triple | None) -> Aim:
-    """Aim through a point of the picture, at the `point` of a shape, at the ground y = 0, or at `size` from the eye.
-
-    size: of the scene. On surfaces the aim is at the nearest point whose coordinates along them are on a grid.
-    """
-    ray, height = view.ray(x, y), view.eye[1]
-    to_ground = -height / ray[1] if height * ray[1] < 0 else inf
-    normal: Triple | None = None
-    if shape and point and dist(view.eye, point) <= BACKGROUND * size:
-        normal = surface_normal(shape, point, ray)
-    elif shape or to_ground > BACKGROUND * size:
-        shape, point = None, linear_combination(1.0, view.eye, size, ray)
-    else:
-        x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
-        point, normal = (x, 0.0, z), UP if height > 0 else (0.0, -1.0, 0.0)
-    length = length_at(view, shape, point, normal)
-    if normal:
-        point, normal = on_grid(shape, point, normal, nice_number(min(STEP_SHARE * size, length / 2)))
-        length = length_at(view, shape, point, normal)
-    return Aim(view.eye, point, normal, length)
-
-
-def aim_at_top(view: Projection, shape: Shape) -> Aim:
-    """Aim at the top of a bounded shape, above its middle."""
-    box, ((x, _, z), radius) = shape.bounds(), middle_of(shape)
-    assert box
-    found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
-    point, normal = found or ((x, box[1][1], z), UP)
-    return Aim(view.eye, point, normal, length_at(view, shape, point, normal))
-
-
-def length_at(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
-    """Length of a new element at a point: SHARE of the picture, and at most a share of the shape it stands on."""
-    length = 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up))
-    box = shape.bounds() if shape and normal else None
-    if box and normal:
-        breadth = sorted(subtract(box[1], box[0]))[1]
-        length = min(abs(length), breadth * (TOP_SHARE if normal[1] > TOP else SIDE_SHARE))
-    return clamp_length(length)
-
-
-def on_grid(shape: Shape | None, point: Triple, normal: Triple, grid: float) -> tuple[Triple, Triple]:
-    """The point of a surface, and its normal, next to `point` with two coordinates on a grid; the same without one.
-
-    The third coordinate is the one along which the normal is longest. The ground y = 0 is no shape.
-    """
-    along = max(range(3), key=lambda axis: abs(normal[axis]))
-    way, reach = [0.0, 0.0, 0.0], GRID_REACH * grid
-    way[along] = -copysign(1.0, normal[along])
-    down = way[0], way[1], way[2]
-    x, y, z = (part if axis == along else grid * round(part / grid) for axis, part in enumerate(point))
-    if shape is None:
-        return (x, y, z), normal
-    start = linear_combination(1.0, (x, y, z), -reach, down)
-    found = first_hit(shape, start, down)
-    return found if found and dist(found[0], start) <= 2 * reach else (point, normal)
-
-
-def aim_ahead(camera: Camera, size: float) -> Aim:
-    """Aim through the middle of the picture, a little below it, without a look at the shapes."""
-    width, height = PICTURE
-    return aim(projection_of(camera, width, height), size, width / 2, AHEAD * height, None, None)

@@ -195,17 +195,14 @@ def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: flo
 
     The active value, and where the element stands, stay if the selected element stays.
     """
-    stack: tuple[Snapshot, ...] = getattr(state, f"{taken}_stack")
+    stack, other = getattr(state, f"{taken}_stack"), getattr(state, f"{given}_stack")
     if not stack:
         return state.with_message(f"nothing to {taken}")
     scene, selected = stack[-1]
-    stacks: dict[str, Any] = {
-        f"{taken}_stack": stack[:-1],
-        f"{given}_stack": (*getattr(state, f"{given}_stack"), state.snapshot),
-    }
-    stacks["hidden"] = state.hidden_in(scene)
+    stacks = {f"{taken}_stack": stack[:-1], f"{given}_stack": (*other, state.snapshot)}
+    hidden = state.hidden_in(scene)
     state = state if selected == state.selected else state.select(selected)
-    return replace(state, scene=scene, last_change=None, **stacks)
+    return replace(state, scene=scene, hidden=hidden, last_change=None, **stacks)
 
 
 undo, redo = partial(travel, "undo", "redo"), partial(travel, "redo", "undo")

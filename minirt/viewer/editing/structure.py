@@ -23,8 +23,8 @@ from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
 from minirt.viewer.editing.motion import clamp_point
-from minirt.viewer.editing.placing import settled
-from minirt.viewer.editing.projection import UP, aim_ahead, field_names
+from minirt.viewer.editing.placing import aim_ahead, settled
+from minirt.viewer.editing.projection import UP, field_names
 from minirt.viewer.editing.state import State, can_edit, index_of
 from minirt.viewer.editing.values import RecordType, leading_decimal, nice_number, round_length, round_point, values
 from minirt.viewer.files import usable_files

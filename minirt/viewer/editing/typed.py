@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
 from math import isfinite
 from operator import add, mul, sub, truediv
 from typing import Any
@@ -21,12 +20,7 @@ from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value
 
-OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
-    ast.Mult: mul,
-    ast.Div: truediv,
-    ast.Add: add,
-    ast.Sub: sub,
-}
+OPERATIONS = {ast.Mult: mul, ast.Div: truediv, ast.Add: add, ast.Sub: sub}
 CHARACTERS = "0123456789.,+-*/=()"  # of which typed values are made
 PRESENT = "x"  # stands for the present value in a sum
 SIGNS = tuple("*/+-")
@@ -104,7 +98,7 @@ def result(node: ast.expr, present: float) -> float:
     """The result of a node of a parsed sum; SyntaxError for anything that is no arithmetic."""
     match node:
         case ast.BinOp(left, operator, right) if type(operator) in OPERATIONS:
-            return OPERATIONS[type(operator)](result(left, present), result(right, present))
+            return float(OPERATIONS[type(operator)](result(left, present), result(right, present)))
         case ast.UnaryOp(ast.USub(), operand):
             return -result(operand, present)
         case ast.UnaryOp(ast.UAdd(), operand):

@@ -12,24 +12,9 @@ from math import asin, atan2, degrees, floor, hypot, log10
 from typing import Any, NamedTuple, TypeVar
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import (
-    FARTHEST,
-    Angle,
-    Colour,
-    Direction,
-    Factor,
-    Field,
-    Length,
-    Lengths,
-    MeshField,
-    Point,
-    Real,
-    Three,
-    Triple,
-    clamp,
-    cos_and_sin,
-    neat,
-)
+from minirt.fields import Angle, Colour, Direction, Field, Length, Lengths, MeshField, Point, Real, Three, Triple
+from minirt.fields.directions import cos_and_sin, neat
+from minirt.fields.scalars import FARTHEST, Factor, clamp
 from minirt.shapes.shape import Oriented
 
 CHANNELS = "red", "green", "blue"

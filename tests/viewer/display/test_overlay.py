@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
-from minirt.viewer.display.help import Column, draw_help, help_pages, width_of
 from minirt.viewer.display.overlay import (
     MARGIN,
     MESSAGE_COLOUR,
@@ -28,6 +27,7 @@ from minirt.viewer.display.overlay import (
     wrap,
 )
 from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.screen import Column, draw_help, help_pages, width_of
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import TEXT, scene

@@ -23,8 +23,8 @@ from minirt.shapes.mesh import Mesh
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.triangle import Triangle
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.placing import dropped, stand
-from minirt.viewer.editing.projection import SHARE, aim, looked_at_distance, middle_of, projection_of
+from minirt.viewer.editing.placing import SHARE, aim, dropped, middle_of, stand
+from minirt.viewer.editing.projection import looked_at_distance, projection_of
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ELEMENT, addable_kinds, choices, default_element
 from tests.viewer.fake import scene
