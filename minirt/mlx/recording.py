@@ -13,6 +13,7 @@ import re
 import sys
 from collections.abc import Callable, Iterable
 from functools import partial
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -54,10 +55,9 @@ class Line:
         self.number = number_in_file
         self.text = text.rstrip("\r\n")
         self.types = types
-        matches = list(WORD.finditer(self.text))
-        end = next((index for index, word in enumerate(matches) if word[0].startswith("#")), len(matches))
-        self.words = [word[0] for word in matches[:end]]
-        self.columns = [word.start() + 1 for word in matches[:end]]
+        found = list(takewhile(lambda word: word[0][0] != "#", WORD.finditer(self.text)))
+        self.words = [word[0] for word in found]
+        self.columns = [word.start() + 1 for word in found]
 
     def arguments(self, usage: str) -> list[Any]:
         """Return the values of the arguments that a usage names; those in brackets may be missing."""

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from minirt.fields import Triple
+from minirt.kernel.projection import Grid, projected_rectangle
 from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.trace import COINCIDENT, closer_hit
 from minirt.lanes import Vec
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import camera_frame, camera_numbers, pixel_rays, slopes_at_edges
 from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera, Scene
@@ -82,6 +83,22 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
         return inside & (covered is not None and covered[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)])
     distances = distances_of(shape, *camera_ray(camera, width, height, x + 0.5, y + 0.5))
     return np.broadcast_to(distances < np.inf, x.shape)
+
+
+def enclosing_rectangle(
+    shape: Shape, camera: Camera, width: int, height: int, margin: float
+) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of the pixels that enclose a shape and a margin; the picture for an unbounded one."""
+    spheres = np.array([(*centre, radius) for centre, radius in shape.balls()])
+    if not len(spheres):
+        return 0, 0, width, height
+    right, up, forward = camera_frame(camera)
+    across, down = slopes_at_edges(camera, width, height)
+    x, y = width / 2, height / 2
+    frames = np.array([[right, np.negative(up), forward]])
+    grid = Grid(frames, width, height, x / across, x, y / down, y, margin, width * height)
+    left, top, columns, rows = projected_rectangle(camera.position, grid, 0, spheres, 0, len(spheres), 0.0)
+    return left, top, left + columns, top + rows
 
 
 def clearance(shape: Shape, others: Iterable[Shape]) -> tuple[float, Shape | None]:

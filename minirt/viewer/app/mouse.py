@@ -60,8 +60,7 @@ class Mouse:
     def grab(self, x: int, y: int) -> bool:
         """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
         session, state, screen = self.session, self.session.state, self.session.screen
-        shows = screen.level > HudLevel.NOTHING and not session.modifiers & (Modifier.SHIFT | Modifier.ALT)
-        if not shows:
+        if screen.level == HudLevel.NOTHING or session.modifiers & (Modifier.SHIFT | Modifier.ALT):
             return False
         for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
             tip = arrow_tip(way, session.window.width, session.window.height, screen.scale)

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour, Triple
-from minirt.kernel.projection import Grid, projected_rectangle
 from minirt.mlx.text import draw_text, measure
-from minirt.rendering.packing.camera import camera_frame, slopes_at_edges
-from minirt.rendering.queries.pick import covers
+from minirt.rendering.queries.pick import covers, enclosing_rectangle
 from minirt.scene import Camera, Lamp, Scene
 from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
@@ -224,7 +222,7 @@ def outline_pixels(
         y, x = np.ix_(np.arange(-1, height + 1), np.arange(-1, width + 1))
         y, x = y[None], x[None]
     else:
-        left, top, right, bottom = screen_bounds(shape, camera, width, height)
+        left, top, right, bottom = enclosing_rectangle(shape, camera, width, height, MARGIN)
         step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
         x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
         grid = covers(shape, camera, width, height, x, y)
@@ -242,17 +240,3 @@ def outline_pixels(
     outside, inside = np.logical_or.reduce(around) & ~middle, middle & ~np.logical_and.reduce(around)
     y, x = y[:, 1:-1, 1:-1], x[:, 1:-1, 1:-1]
     return (y[outside], x[outside]), (y[inside], x[inside])
-
-
-def screen_bounds(shape: Shape, camera: Camera, width: int, height: int) -> tuple[int, int, int, int]:
-    """Return left, top, right and bottom of the pixels that enclose the projection of a shape and MARGIN around it."""
-    spheres = np.array([(*centre, radius) for centre, radius in shape.balls()])
-    if not len(spheres):
-        return 0, 0, width, height
-    right, up, forward = camera_frame(camera)
-    frames = np.array([[right, np.negative(up), forward]])
-    across, down = slopes_at_edges(camera, width, height)
-    x, y = width / 2, height / 2
-    grid = Grid(frames, width, height, x / across, x, y / down, y, MARGIN, width * height)
-    left, top, columns, rows = projected_rectangle(camera.position, grid, 0, spheres, 0, len(spheres), 0.0)
-    return left, top, left + columns, top + rows

@@ -164,9 +164,8 @@ draw_on_dark = partial(draw_text, background=PANEL_BACKGROUND, padding=PADDING)
 def draw_tab(pixels: Pixels, size: int) -> None:
     """Draw the tab at the right edge that opens the panel."""
     width, height = measure(TAB, size)
-    draw_on_dark(
-        pixels, pixels.shape[1] - width - PADDING, (pixels.shape[0] - height) // 2, TAB, MESSAGE_COLOUR, size=size
-    )
+    left, top = pixels.shape[1] - width - PADDING, (pixels.shape[0] - height) // 2
+    draw_on_dark(pixels, left, top, TAB, MESSAGE_COLOUR, size=size)
 
 
 class Panel(NamedTuple):

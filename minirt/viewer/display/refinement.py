@@ -131,9 +131,8 @@ class AdaptiveResolution:
         """
         if self._chosen == 1 and seconds > self._time:
             return least_divisor(seconds * (median_low(self._excesses) if self._excesses else 1.0), self._time)
-        better = min(
-            max(self._chosen, least_divisor(seconds, self._time)), least_divisor(seconds, self._time * FINER_SHARE)
-        )
+        fitting, easy = (least_divisor(seconds, self._time * share) for share in (1.0, FINER_SHARE))
+        better = min(max(self._chosen, fitting), easy)
         possible = least_divisor(seconds, self._time * TRIAL_EXCESS)
         self._candidates = self._candidates + 1 if possible < better == self._chosen else 0
         if self._candidates < self._trial_interval:

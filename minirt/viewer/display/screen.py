@@ -200,9 +200,8 @@ def filled_columns(layout: str, search: str, width: int, size: int, capacity: in
 def wrapped(row: tuple[str, str], width: int, size: int) -> list[tuple[str, str]]:
     """Return the lines of a row whose texts are wrapped where they take more than their share of a narrow window."""
     share = (width - 2 * MARGIN - 2 * size) // 5
-    keys, help = (
-        wrap(text, part * share + 2 * MARGIN, size).split("\n") for text, part in zip(row, (2, 3), strict=True)
-    )
+    widths = (part * share + 2 * MARGIN for part in (2, 3))
+    keys, help = (wrap(text, each, size).split("\n") for text, each in zip(row, widths, strict=True))
     keys = [INDENT + keys[0].strip(), *(2 * INDENT + line.strip() for line in keys[1:])]
     return list(zip_longest(keys, help, fillvalue=""))
 

@@ -107,8 +107,8 @@ def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -
 def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
     """The way of the pointer to x, y, at the depth of `point`."""
     view, depth = start.projection, start.projection.depth(point)
-    here = view.point_at_depth(start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE, depth)
-    return subtract(view.point_at_depth(x + PIXEL_CENTRE, y + PIXEL_CENTRE, depth), here)
+    here = view.direction_through(start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE)
+    return linear_combination(depth, view.direction_through(x + PIXEL_CENTRE, y + PIXEL_CENTRE), -depth, here)
 
 
 def pull(state: State, start: DragStart, x: int, y: int) -> State:

@@ -49,10 +49,6 @@ class Projection(NamedTuple):
         """Depth of a point: its distance from the eye along `forward`, negative behind the eye."""
         return dot(subtract(point, self.eye), self.forward)
 
-    def point_at_depth(self, x: float, y: float, depth: float) -> Triple:
-        """The point of the scene at this depth that projects to a point of the picture."""
-        return linear_combination(1.0, self.eye, depth, self.direction_through(x, y))
-
     def pixel(self, point: Triple) -> Pixel | None:
         """Project a point of the scene, also to outside the picture. None if it is not in front of the eye."""
         offset = subtract(point, self.eye)

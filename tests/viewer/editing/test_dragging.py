@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from minirt.mlx import Key
 from minirt.rendering.queries.pick import pick
 from minirt.scene import Camera
+from minirt.scene.elements import linear_combination
 from minirt.viewer.editing.projection import dot, projection_of, scene_centre
 from tests.viewer.fake import played, scene
 from tests.viewer.session_harness import SessionHarness
@@ -28,10 +29,12 @@ numbers = st.floats(-1, 1, allow_nan=False)
 def test_projecting_to_pixels_and_back_is_the_identity(x, y, z, fov, roll, at):
     projection = projection_of(Camera((x, y, z), (x, y, z), fov, roll), 640, 360)
     pixel = 640 * (at[0] + 1) / 2, 360 * (at[1] + 1) / 2
-    point = projection.point_at_depth(*pixel, 7.0)
-    assert projection.depth(point) == pytest.approx(7)
-    assert projection.pixel(point) == pytest.approx(pixel, abs=1e-6)
-    assert projection.pixel(projection.point_at_depth(*pixel, -7.0)) is None
+    before, behind = (
+        linear_combination(1.0, projection.eye, depth, projection.direction_through(*pixel)) for depth in (7.0, -7.0)
+    )
+    assert projection.depth(before) == pytest.approx(7)
+    assert projection.pixel(before) == pytest.approx(pixel, abs=1e-6)
+    assert projection.pixel(behind) is None
 
 
 def test_the_point_under_the_pointer_stays_there():
