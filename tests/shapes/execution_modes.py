@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from functools import cache
+from hashlib import sha256
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +15,13 @@ from numba import njit
 import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import scene_arrays
 from minirt.kernel.compiler.pipeline import FLAGS
+from minirt.kernel.machine_code.fingerprint import NATIVE, fingerprint_of
+from minirt.kernel.machine_code.library import Call, Library, identity_of
 from minirt.lanes import Vec, lane, load, save, where, width
 from minirt.rendering.packing.shape_arrays import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
+from tests.kernel.machine_code import small_kernels
+from tests.kernel.machine_code.small_kernels import Compiler
 from tests.shapes.regimes import RAYS, Array
 
 U = 2.0**-53
@@ -108,28 +115,35 @@ def component_arrays(points: Array) -> Array:
     return np.ascontiguousarray(points.reshape(-1, 3).T, np.float64)
 
 
-@cache
-def kernel() -> Any:
-    """`intersect`, compiled with the flags of the renderer."""
+def closest(table: Any, each: int, o: Any, d: Any, t: Any) -> None:
+    """Store t of rays, `each` of which go for one row of a table of shapes: what `compiled` compiles."""
+    for i in range(0, t.shape[0], width(t)):
+        origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
+        direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
+        hit, at = scene_arrays.intersect(scene_arrays.read(table, i // each), origin, direction)
+        at = where(hit, at, np.inf)
+        for ray in range(width(t)):
+            t[i + ray] = lane(at, ray)
 
-    def run(table: Any, each: Any, o: Any, d: Any, t: Any) -> None:
-        for i in range(0, t.size, width(t)):
-            origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
-            direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
-            hit, at = scene_arrays.intersect(scene_arrays.read(table, i // each), origin, direction)
-            at = where(hit, at, np.inf)
-            for ray in range(width(t)):
-                t[i + ray] = lane(at, ray)
 
-    return njit(**FLAGS)(run)
+class SharedKernels(Library):
+    """Kernels of this file, which are compiled once for all processes and runs until it or the library changes."""
+
+    source = sha256(Path(__file__).read_bytes()).hexdigest()
+
+    def identity(self, call: Call) -> str:
+        return identity_of(*call, f"{fingerprint_of(os.environ.get('NUMBA_CPU_NAME', NATIVE))} {self.source}")
+
+
+KERNELS = SharedKernels()
 
 
 def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """t of rays (m, n, 3) against m shapes, compiled; n is a multiple of the rays of a packet."""
+    """t of rays (m, n, 3) against m shapes, compiled as the renderer's; n is a multiple of the rays of a packet."""
     t = np.empty(origins.shape[:2])
-    kernel()(
-        shape_rows(shapes), origins.shape[1], component_arrays(origins), component_arrays(directions), t.reshape(-1)
-    )
+    rays = component_arrays(origins), component_arrays(directions)
+    arguments = shape_rows(shapes), origins.shape[1], *rays, t.reshape(-1)
+    small_kernels.compiled(KERNELS, (f"{__name__}:closest", arguments), Compiler())(*arguments)
     return t
 
 
