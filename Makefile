@@ -11,6 +11,9 @@ PYTEST  := $(VENV)/bin/python -m pytest --numprocesses $(WORKERS)
 SCENE   ?= scenes/opening.rt
 SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 
+# Else each process of the tests would compile all of them, and each program what it imports.
+unexport PYTHONDONTWRITEBYTECODE
+
 # The program is installed in editable mode, so only a change of its dependencies installs it again. The path to the
 # sources is relative: Python reads it in the encoding of the locale, and an absolute one with an umlaut would keep Python
 # from starting under LC_ALL=C.
@@ -28,7 +31,7 @@ $(NAME): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling editables  # what builds the project
 	$(call INSTALL,.)
-	$(VENV)/bin/python -m compileall -q minirt  # also where PYTHONDONTWRITEBYTECODE would have each start compile it
+	$(VENV)/bin/python -m compileall -q minirt  # also for users who cannot write there
 	$(MAKE) --no-print-directory -j2 further-packages first-kernels
 	touch $@
 
@@ -70,14 +73,15 @@ quick: $(DEV)  ## run the tests that take a minute in all
 pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each other Python of this machine, in new environments
 	$(VENV)/bin/python -m tests.pythons
 
-newest: $(NAME)  ## the same with the newest of them alone
+newest: $(NAME)  ## run what may depend on the version of Python, with the newest of them alone
 	$(VENV)/bin/python -m tests.pythons newest
 
-FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
-            tests/kernel/shading/test_lights.py
+FORMULAS := tests/lanes tests/kernel/test_features.py tests/kernel/test_frame.py \
+            $(addprefix tests/shapes/test_,protocol.py mapping.py known_answers.py torus.py triangle.py)
 # Formulas of single numbers, of numpy's arrays and of the interpreter are the same on each processor, and so is the
 # distance of single precision from double.
-COMPILED := $(FORMULAS) -k "not numbers] and not arrays] and not interpreted- and not random_scenes"
+COMPILED := $(FORMULAS) -k "not numbers] and not arrays] and not interpreted- and not random_scenes \
+                            and not each_feature and not packet"
 
 OWN = $(shell $(VENV)/bin/python -c 'from minirt.kernel.machine_code.fingerprint import level; print(level())')
 

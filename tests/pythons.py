@@ -1,8 +1,9 @@
 """Run the quick tests, a film, a window and a notebook with each other Python that the machine has: `make pythons`.
 
-Each gets a new environment in .venv/pythons, with the newest versions of all packages, and compiles its own kernels.
-`python -m tests.pythons newest` takes the newest of them alone, for `make newest`; `python -m tests.pythons lowest`
-prints the lowest versions of the dependencies as arguments of pip, for `make lowest`.
+Each gets a new environment in .venv/pythons, with the newest versions of all packages, and a cache of kernels.
+`python -m tests.pythons newest` takes the newest of them alone, and only tests of what may depend on Python, for
+`make newest`; `python -m tests.pythons lowest` prints the lowest versions of the dependencies as arguments of pip, for
+`make lowest`.
 The Pythons are those that pyproject.toml names, but for the one of .venv, with which `make test` runs all tests.
 """
 
@@ -21,6 +22,12 @@ from tests.paths import ROOT
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 FOLDER = Path(".venv/pythons")
 TESTS = "not window and not slow or each_python"  # the quick ones, a film, a window and a notebook
+# Records and their copies, the compiler of formulas and of small kernels, forks, pictures, and each way to use miniRT.
+OF_PYTHON = [f"tests/{name}.py" for name in (
+    "test_records", "test_library", "test_goldens", "scene/test_save", "shapes/test_protocol", "kernel/test_compiler",
+    "helpers/test_fork_safety", "formats/test_films", "cli/test_habits", "mlx/test_memory", "viewer/app/test_session",
+    "viewer/app/test_real_window", "notebook/test_notebook",
+)]  # fmt: skip
 
 
 def named() -> list[str]:
@@ -46,14 +53,15 @@ def find(version: str) -> Path | None:
     return None
 
 
-def passes(version: str, python: Path) -> bool:
+def passes(version: str, python: Path, newest: bool) -> bool:
     """Run the tests with a Python in a new environment; return whether all pass."""
     folder = FOLDER / version
     shutil.rmtree(ROOT / folder, ignore_errors=True)
     cache = ROOT / folder / "cache"
     cache.mkdir(parents=True)
-    make = ["make", "--no-print-directory", "quick", f"VENV={folder}", f"PYTHON={python}", f"QUICK={TESTS}"]
-    environment = os.environ | {"XDG_CACHE_HOME": str(cache)}
+    make = ["make", "--no-print-directory", "quick", f"VENV={folder}", f"PYTHON={python}"]
+    make += ["QUICK=not window or each_python", f"TESTS={' '.join(OF_PYTHON)}"] if newest else [f"QUICK={TESTS}"]
+    environment = os.environ | {"XDG_CACHE_HOME": str(cache), "MAKEFLAGS": ""}
     return subprocess.run(make, cwd=ROOT, env=environment, check=False).returncode == 0
 
 
@@ -64,7 +72,7 @@ def main(newest: bool) -> int:
     found = {version: python for version in others if (python := find(version))}
     for version, python in list(found.items())[-1 if newest else 0 :]:
         print(f"Python {version}: {python}", flush=True)
-        told[version] = "passed" if passes(version, python) else "FAILED"
+        told[version] = "passed" if passes(version, python, newest) else "FAILED"
     told |= dict.fromkeys([version for version in found if "not found" in told[version]], "left out")
     print(*(f"Python {version}: {what}" for version, what in told.items()), sep="\n")
     return int("FAILED" in told.values())
