@@ -55,7 +55,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark slow tests, and sort the largest groups first, so that no process starts one when the others are idle."""
+    """Mark slow tests, and sort the largest groups first."""
     for item in items:
         if scheduling.is_slow(item.nodeid):
             item.add_marker(pytest.mark.slow)

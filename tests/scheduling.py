@@ -14,7 +14,8 @@ import pytest
 from tests.paths import ROOT
 
 WINDOWS, SCENES = "windows", "scenes"
-LARGEST = (WINDOWS, SCENES)  # the groups that take longest start first
+# The groups and files that take longest start first, so that no process starts one when the others are idle.
+LARGEST = (WINDOWS, SCENES, "tests/stability/test_regimes.py", "tests/newcomer/test_newcomer.py")
 SCENE_TESTS = {
     "tests/test_goldens.py",
     "tests/rendering/packing/test_generic_kernels.py",

@@ -11,8 +11,8 @@ from PIL import Image
 
 from tests.bench import charts, scenes
 from tests.bench.__main__ import MiniRT
-from tests.bench.measure import Cells, MissingError, Setting, table, take_turns
-from tests.bench.starts import HEIGHT, WIDTH, Start, WindowStart, right_picture, shows, virtual_screen
+from tests.bench.measure import Cells, Setting, table, take_turns
+from tests.bench.starts import Start, right_picture, shows
 
 ONE = scenes.HERE / "one.rt"
 
@@ -45,14 +45,3 @@ def test_the_table_and_the_charts_of_a_small_run_show_its_medians_and_ratios(tmp
     assert middle - near > 100
     charts.growth({("miniRT double", str(n)): [n**0.4] for n in (10, 100, 1000)}, tmp_path / "growth.png")
     assert np.asarray(Image.open(tmp_path / "growth.png")).std() > 0
-
-
-@pytest.mark.window
-def test_a_window_starts_until_it_shows_the_right_picture(tmp_path: Path) -> None:
-    try:
-        with virtual_screen(WIDTH, HEIGHT) as screen:
-            start = WindowStart(Setting(WIDTH, HEIGHT, 2, tmp_path), False, screen)
-            assert start.frame_times(ONE, 0)[0] > 0
-            assert not shows(start.pixels, right_picture(ONE))  # the next start finds an empty screen
-    except MissingError as reason:
-        pytest.skip(str(reason))

@@ -28,7 +28,7 @@ from tests.shapes.mapping_checks import (
 )
 from tests.shapes.regimes import GREY
 
-SIZES = [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e6), (1e-6, 1.0)]
+SIZES = [(1.0, 0.0), (1e6, 0.0), (1e-6, 1.0)]
 CHECKS = (check_places, check_tangents)
 ALL = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 EITHER = pytest.mark.parametrize("evaluate", MODES.values(), ids=MODES)
@@ -38,12 +38,10 @@ UP, DOWN = (0, 1, 0), (0, -1, 0)
 @ALL
 @EITHER
 @pytest.mark.parametrize(("size", "offset"), SIZES)
-@pytest.mark.parametrize("check", CHECKS)
-def test_random_shapes_agree_with_the_reference(
-    kind: Kind, evaluate: Evaluate, size: float, offset: float, check: Any
-) -> None:
+def test_random_shapes_agree_with_the_reference(kind: Kind, evaluate: Evaluate, size: float, offset: float) -> None:
     for case in cases(kind, size, offset):
-        check(case, evaluate, size)
+        for check in CHECKS:
+            check(case, evaluate, size)
 
 
 TIPS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
@@ -62,17 +60,14 @@ TIPS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
 
 @EITHER
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
-@pytest.mark.parametrize(("shape", "point", "normal"), TIPS)
-def test_at_poles_and_apexes_all_is_finite(
-    shape: Shape, point: Any, normal: Any, dtype: Any, evaluate: Evaluate
-) -> None:
+def test_at_poles_and_apexes_all_is_finite(dtype: Any, evaluate: Evaluate) -> None:
     # The tip itself and places a little or next to nothing aside.
     aside = np.zeros((32, 3))
     aside[1:16, 0], aside[16:, 2] = 10.0 ** -np.arange(15), 10.0 ** -np.arange(16.0)
-    points, normals = np.array(point) + aside, np.tile(np.array(normal, float), (32, 1))
-    got = evaluate(shape, points.astype(dtype), normals.astype(dtype))
-    for each in got:
-        assert np.isfinite(each).all()
+    for shape, point, normal in TIPS:
+        points, normals = np.array(point) + aside, np.tile(np.array(normal, float), (32, 1))
+        got = evaluate(shape, points.astype(dtype), normals.astype(dtype))
+        assert all(np.isfinite(each).all() for each in got), shape
 
 
 @ALL
@@ -121,7 +116,7 @@ def fails(cases: list[Case], formula: Any) -> bool:
 
 
 @ALL
-@pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_mapping_does_not_pass(kind: Kind, name: str) -> None:
+def test_a_wrong_mapping_does_not_pass(kind: Kind) -> None:
     assert not fails(cases(kind, 1.0, 0.0), kind.mapping)
-    assert fails(cases(kind, 1.0, 0.0), lambda *given: WRONG[name](*kind.mapping(*given)))
+    for name, wrong in WRONG.items():
+        assert fails(cases(kind, 1.0, 0.0), lambda *given, wrong=wrong: wrong(*kind.mapping(*given))), name

@@ -196,21 +196,23 @@ def wrong(
     return judged(shape, origins, directions, intersect([shape], origins[None], directions[None])[0], most)
 
 
-def wrong_of(rays: Rays, *answers: Array) -> list[Wrong]:
-    """The rays to which one of several answers t, (m, n) each, is wrong."""
+def wrong_of(rays: Rays, *answers: Array, most: int | None = None) -> list[Wrong]:
+    """The rays to which one of several answers t, (m, n) each, is wrong, of each shape at most so many."""
     parts = [rays.origins, rays.directions, *answers]
     found = []
     for i, shape in enumerate(rays.shapes):
         origins, directions, *ts = (part[i] for part in parts)
         given = (np.tile(part, (len(ts), 1)) for part in (origins, directions))
-        found += judged(shape, *given, np.concatenate(ts))
+        found += judged(shape, *given, np.concatenate(ts), most)
     return found
 
 
-def wrong_in(regime: Regime, t: Array) -> list[str]:
-    """Complaints about answers t to the rays of a regime. A sheet holds the backward bound without its size."""
-    rays = rays_of(regime)
-    found = [*map(str, wrong_of(rays, t)), *away_from_surface(rays, t)]
+def wrong_in(regime: Regime, *answers: Array, most: int | None = None) -> list[str]:
+    """Complaints about several answers t to the rays of a regime, judged at once; see `wrong_of`. A sheet holds the
+    backward bound without its size."""
+    rays, t = rays_of(regime), np.concatenate(answers, axis=1)
+    rays = Rays(rays.shapes, *(np.tile(part, (1, len(answers), 1)) for part in rays[1:]))
+    found = [*map(str, wrong_of(rays, t, most=most)), *away_from_surface(rays, t)]
     for i, (shape, origins, directions) in enumerate(zip(*rays, strict=True)):
         ray = crossed(shape, origins, directions)
         with np.errstate(all="ignore"):

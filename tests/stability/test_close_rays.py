@@ -1,15 +1,9 @@
 """Rays from points on a surface or within 1e-9 of it, rays at the rims of small shapes far away, and rays sent on from
-hits: how exact they are, and whether they hit the surface again that they leave.
-
-`python -m tests.stability.test_close_rays [--seed N] [--shapes N] [WORD ...]` prints the table of all cases, or of
-those whose names contain a word.
-"""
+hits: how exact they are, and whether they hit the surface again that they leave."""
 
 from __future__ import annotations
 
-import argparse
 import random as system_random
-import sys
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, NamedTuple
@@ -245,24 +239,3 @@ def test_flat_solids_have_no_holes(title: str, intersect: Intersect) -> None:
 def test_a_flat_paraboloid_whose_intervals_must_overlap_has_holes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(quadrics, "BESIDE", 0.0)
     assert holes("paraboloid", on_arrays) > 0
-
-
-def main() -> None:
-    """Print the table of the cases that the command line asks for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("words", nargs="*", help="of the names of the cases")
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--shapes", type=int, default=125, help=f"of each case, {RAYS} rays each")
-    parser.add_argument("--worst", action="store_true", help="show a ray of each case that fails")
-    chosen = parser.parse_args()
-    print(f"{f'seed {chosen.seed}':60s}" + "".join(f"{name:>9s}" for name in Row._fields[:-1]))
-    for case in CASES:
-        if not chosen.words or any(word in case.name for word in chosen.words):
-            *figures, complaint = measured(case, chosen.seed, chosen.shapes)
-            print(f"{case.name:60s}" + "".join(f"{figure:9.3g}" for figure in figures), flush=True)
-            if chosen.worst and complaint:
-                print("    " + complaint)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

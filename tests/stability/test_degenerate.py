@@ -13,23 +13,26 @@ import pytest
 
 from minirt.shapes import KINDS, Kind
 from tests.shapes.execution_modes import Intersect
+from tests.shapes.regimes import Rays
 from tests.stability import mutants
 from tests.stability.common import MODES
-from tests.stability.degenerate import groups, wrong
+from tests.stability.degenerate import groups, wrong_of
 from tests.stability.places import places, pose
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 SEED, SHAPES, RAYS = 5, 24, 256
 
 
-def complaints(intersect: Intersect, kind: Kind, shapes: int = SHAPES) -> Iterator[str]:
-    return (str(each) for group in groups(kind, SEED, shapes, RAYS) for each in wrong(intersect, *group, most=4))
+def complaints(kind: Kind, *ways: Intersect, shapes: int = SHAPES) -> Iterator[str]:
+    """Complaints about the answers of several ways to intersect, which are judged at once."""
+    for shape, *rays in groups(kind, SEED, shapes, RAYS):
+        given = Rays([shape], *(part[None] for part in rays))
+        yield from map(str, wrong_of(given, *(intersect(*given) for intersect in ways), most=4))
 
 
 @KIND
-@pytest.mark.parametrize("mode", ["arrays", "traced"])
-def test_rays_at_special_places_have_right_answers(kind: Kind, mode: str) -> None:
-    assert not list(islice(complaints(MODES[mode], kind), 3))
+def test_rays_at_special_places_have_right_answers(kind: Kind) -> None:
+    assert not list(islice(complaints(kind, MODES["arrays"], MODES["traced"]), 3))
 
 
 @KIND
@@ -45,4 +48,4 @@ def test_every_kind_declares_its_special_places(kind: Kind) -> None:
 def test_a_wrong_formula_is_found(name: str) -> None:
     title, intersect = mutants.VARIANTS[name]
     kind = next(each for each in KINDS if each.element.title == title)
-    assert next(complaints(intersect, kind, 10 * SHAPES), "")
+    assert next(complaints(kind, intersect, shapes=10 * SHAPES), "")

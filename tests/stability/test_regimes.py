@@ -45,15 +45,14 @@ powers = partial(st.floats, allow_nan=False)  # of ten
 fixed = partial(settings, deadline=None, derandomize=True)
 
 
-@pytest.mark.parametrize("way", MODES)
 @EACH
-def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
+def test_hits_are_exact(kind: Kind, regime: Regime) -> None:
     rays = rays_of(regime)
     assert {type(shape) for shape in rays.shapes} == {kind.element}
-    t = MODES[way](*rays)
-    assert np.isfinite(t).sum() >= 20
-    wrong = wrong_in(regime, t)
-    assert not wrong, f"{len(wrong)} of {t.size}, the first: {wrong[0]}"
+    answers = [intersect(*rays) for intersect in MODES.values()]
+    assert all(np.isfinite(t).sum() >= 20 for t in answers)
+    wrong = wrong_in(regime, *answers)
+    assert not wrong, f"{len(wrong)} of {np.size(answers)}, the first: {wrong[0]}"
 
 
 @pytest.mark.parametrize("way", ["arrays", "compiled"])
@@ -74,8 +73,7 @@ def test_hits_at_random_sizes_are_exact(kind: Kind, seed: int, size: float, far:
     place = 0.0 if offset is None else min(10 ** (size + offset), 1e14)
     rays = towards(kind, seed, (10**far, 3 * 10**far), 10**size, place, count=1)
     regime = Regime("", lambda: rays)
-    assert wrong_in(regime, on_arrays(*rays)) == []
-    assert wrong_in(regime, compiled(*rays)) == []
+    assert wrong_in(regime, on_arrays(*rays), compiled(*rays)) == []
 
 
 @KIND
@@ -124,7 +122,8 @@ def regimes(kind: Kind, names: Iterable[str]) -> list[Regime]:
 
 
 def errors(regime: Regime, intersect: Intersect) -> int:
-    return len(wrong_in(regime, intersect(*rays_of(regime))))
+    """Count wrong hits, of each shape the first few alone, since each is judged in 60 digits."""
+    return len(wrong_in(regime, intersect(*rays_of(regime)), most=6))
 
 
 @pytest.mark.parametrize("name", mutants.ANY)

@@ -100,7 +100,7 @@ def hard_scene(seed: int) -> Scene:
     return Scene((Camera(eye, way(), random.choice([1e-3, 20, 90, 170, 179.99])), Light(light, 1), *shapes))
 
 
-SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) for seed in range(40))]
+SCENES = [*((random_scene, seed) for seed in range(4)), *((hard_scene, seed) for seed in range(14))]
 KERNELS = pytest.mark.parametrize("kernel", [binning, functions], ids=["interpreted", "compiled"])
 
 
@@ -145,7 +145,7 @@ def unit_direction(random: np.random.Generator) -> Any:
 
 
 @KERNELS
-@pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
+@pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(14))])
 @pytest.mark.usefixtures("crowd")
 def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
     arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
@@ -207,7 +207,7 @@ def test_bins_list_each_shape_once_and_the_nearest_first(make: Any, seed: int) -
             assert len(np.unique([at, shapes], axis=1).T) == len(shapes)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(8))
 def test_a_sphere_is_listed_only_near_the_pixels_that_show_it(seed: int) -> None:
     random = np.random.default_rng(seed)
     ball = Sphere(tuple(0.5 * random.normal(size=3) + (0, 0, 5)), random.uniform(0.1, 3), (1, 2, 3))
@@ -236,7 +236,7 @@ def test_a_huge_ball_is_not_listed_above_its_horizon() -> None:
 def test_corners_and_tangents_are_in_the_bounding_cone(size: float, kernel: Any) -> None:
     """The cone encloses corners of triangles and rims of balls of this size, seen from a point, and hardly more."""
     random = np.random.default_rng(7)
-    for _ in range(300):
+    for _ in range(100):
         way = unit_direction(random)
         corners = 10.0 ** random.uniform(-3, 3) * (way + size * 0.4 * random.normal(size=(3, 3)))
         axis, cosine = cone_from_origin(kernel, np.c_[corners, np.zeros(3)])
