@@ -23,11 +23,7 @@ Kind = TypeVar("Kind", bound="Element")
 @cached_per_kind
 def fields_of(record: type[Record]) -> tuple[Field, ...]:
     """The declared fields of a record, in the order of the format: attributes are last."""
-    declared = (
-        replace(attribute.metadata["field"], name=attribute.name)
-        for attribute in fields(record)
-        if "field" in attribute.metadata
-    )
+    declared = (replace(each.metadata["field"], name=each.name) for each in fields(record) if "field" in each.metadata)
     return tuple(sorted(declared, key=lambda field: field.keyed))
 
 

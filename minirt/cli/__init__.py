@@ -11,11 +11,12 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from signal import SIGINT
 
-from minirt.cli.arguments import FAILED, INTERRUPTED, MAX_SIDE, OK, Arguments, argument_parser
-from minirt.cli.output import prepare_streams, say, tell
+from minirt.cli.arguments import FAILED, MAX_SIDE, OK, Arguments, argument_parser, prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
+NAME = "the name of a file: -o spin.gif"
 NO_MEMORY = "not enough memory; a smaller picture, smaller files or fewer shapes need less"
 NO_THREADS = "the system allows no more threads; 'ulimit -u' shows how many threads and processes a user may have"
 
@@ -34,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return FAILED
     except KeyboardInterrupt as error:  # SIGINT, or another signal, whose number it has
         tell_notes(error)
-        return 128 + int(*error.args) if error.args else INTERRUPTED
+        return 128 + int(*error.args or [SIGINT])
     except MiniRTError as error:
         return failed(error)
     except MemoryError as error:
@@ -100,7 +101,6 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
-    """Run the command for one scene."""
     from minirt.helpers.system import ended_by_signals, gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
@@ -128,23 +128,23 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         from minirt.cli.files import check_format
 
         check_format(options)  # before the work, not after it
-    output, replay, is_auto = options.output, options.replay, options.samples == "auto"
-    is_unnamed, last = output in (None, "-"), options.frames.stop - 1 if options.frames else 0
+    output, replay, auto = options.output, options.replay, options.samples == "auto"
+    nameless, last = output in (None, "-"), options.frames.stop - 1 if options.frames else 0
     is_film = replay or (options.turntable and not options.cluster)
     side = max(options.size or (0,))
     wrong = (
-        (options.turntable and is_unnamed, "--turntable needs the name of a file: -o spin.gif"),
+        (options.turntable and nameless, f"--turntable needs {NAME}"),
         (last and not options.turntable, "--frames needs --turntable"),
         (last > (options.turntable or last), f"--frames: there are {options.turntable} pictures, got {last}"),
         (options.region and (replay or not output), "--region needs -o, and no --replay"),
         (
-            options.resume and (replay or is_auto or is_unnamed),
-            "--resume needs the name of a file: -o spin.gif, and no --replay or --samples auto",
+            options.resume and (replay or auto or nameless),
+            f"--resume needs {NAME}, and no --replay or --samples auto",
         ),
-        ((options.error or options.time) and not is_auto, "--error and --time need --samples auto"),
+        ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
         (
-            is_auto and (is_film or not output),
+            auto and (is_film or not output),
             "--samples auto makes one picture: it needs -o, and no --replay or --turntable",
         ),
         (options.cluster and (not output or replay or options.time), "--cluster needs -o, and no --replay or --time"),

@@ -1,29 +1,32 @@
-"""Arguments of the command line: options with their help texts and defaults, parsers of values, exit statuses.
+"""Arguments of the command line, its exit statuses, and standard streams, which may be closed or full.
 
-A parser of a value raises ArgumentTypeError, which says what is wrong with a text.
+`options.txt` has the options, their choices and help texts. A parser of a value raises ArgumentTypeError, which says
+what is wrong with a text.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
+from io import TextIOWrapper
 from math import nan
-from typing import Any, NoReturn
+from pathlib import Path
+from typing import Any, NoReturn, TextIO
 
-from minirt.cli.output import say, tell
-from minirt.errors import did_you_mean
+from minirt.errors import RenderError, did_you_mean, printable
 
 OK = 0  # exit statuses
 FAILED = 1  # an error in a scene, in rendering or in writing
-USAGE = 2  # wrong arguments
-INTERRUPTED = 130  # Ctrl+C; 128 + n after another signal n
+USAGE = 2  # wrong arguments; 128 + n after a signal n, such as Ctrl+C
 SAMPLES, WINDOW_SAMPLES = 1, 16  # default samples a pixel: of a file, of the window
 OPENING = "opening"  # the example scene of a program without arguments
-DEPTH, MAX_DEPTH = 8, 32  # bounces of light: default and limit
+MAX_DEPTH = 32  # bounces of light
 MAX_SIDE = 16384  # pixels
 MOST = 999_999_999  # pixels of a side that --cluster takes, if the format holds them
 LEAST_MEMORY, MOST_MEMORY = 2**20, 2**50  # bytes
@@ -109,60 +112,7 @@ class Arguments(argparse.ArgumentParser):
             tell(message.rstrip("\n"))
 
 
-OPTIONS = f"""
-output:
--o --output=FILE  render to a picture file instead of a window: .png, .jpg, .webp, .tif, ..., or .exr, .hdr, .pfm for
-    linear light; - writes PNG to standard output; out/{{name}}.png is for several scenes
---size=WxH  size of the picture in pixels
---region=X,Y,W,H  with -o: render this rectangle of the picture alone, at column X and row Y
---samples=N  rays for each pixel ({SAMPLES}), or auto: as many as each part of the picture needs, 4096 at most;
-    in the window: rays at edges while nothing moves ({WINDOW_SAMPLES})
---turntable=N  with -o: N pictures from all around the scene; .gif, .webp, .apng, .mp4 and .webm are one file, spin.png
-    is spin-0001.png, ...
---frames=A-B  with --turntable: only these of its pictures
---resume  with -o: go on with what an interrupted program has left of the same picture or film
---bits={{8,16}}  bits a channel of PNG and TIFF pictures (8)
---quality=N  quality of lossy formats, from 1 to 100
---[no-]metadata  let a PNG picture carry its scene and settings: miniRT picture.png opens it again
---error=E  with --samples auto: sample until the estimated error is at most E (0.002)
---time=SECONDS  with --samples auto: sample for that long
---strict  exit with status 1 when the picture has not reached the error that --error asks for
---camera=N  camera of the picture and the window, in the order of the file (1)
---tone={{plain,srgb,filmic}}  how light becomes colour, in place of the camera's tone (plain)
---exposure=EV  light times two to this power, in place of the camera's (0)
---dither  dither with blue noise instead of rounding to 8 bits
---fallback=FILE  render to FILE when no window can be opened
---left-handed  mirror the picture, for scenes made for left-handed coordinates
-
-window:
---keys={{auto,qwerty,azerty,qwertz}}  layout of the keyboard
---text-scale=F  size of text and icons, from 0.5 to 4 times the usual one (Ctrl + and Ctrl - change it)
---[no-]watch  reload the scene when its file changes
---replay=KEYS.txt  play recorded keys without a window; -o writes the last frame, or all frames to a film such as .gif
-
-inspect:
---check  read the scene and report its errors; render nothing
---lenient  read scenes of older and of other programs, and say how
---cone={{base,angle}}  as --lenient, with cones whose point is the centre of the base, or that have half the angle at
-    the apex in place of a diameter
---bench  measure the frame time: of an eye at rest, and of a moving one
---json  with --bench: print JSON
---report=DIR  measure error against run time; write tables, pictures and a diagram into DIR
---quick  with --report: smaller pictures and fewer rays; takes seconds
---ablation  with --report: also what each absent feature would cost; takes minutes
---list-keys  list the key bindings of the window
---threads=N  number of rendering threads (one for each processor)
---memory=SIZE  memory that the program may take, such as 512M or 4G: what needs more is refused (seven eighths of that
-    of the machine or container)
---precision={{double,single}}  floating-point precision of the kernel (double)
---depth=N  largest number of reflections and refractions of a ray ({DEPTH})
---cluster=WHERE  with -o: render bands of the picture, or frames of --turntable, by several processes of this machine
-    (local), or by the workers of a dask scheduler (tcp://host:8786); sizes may exceed {MAX_SIDE}
---config=FILE  file with defaults of options, in place of miniRT's own; '' for none
---completion={{bash,zsh,fish}}  print the completion of arguments for a shell
--v --verbose  report each step and its duration
---version  print the version
-"""
+OPTIONS = Path(__file__).with_name("options.txt").read_text(encoding="utf-8")
 # Defaults of options that are not off or unset without one.
 DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "precision": "double", "camera": 1}
 KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text
@@ -227,3 +177,56 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
         listed = " or ".join(choices.rsplit(", ", 1))
         return f"argument {choice['option']}: must be {listed}, got '{choice['value'][:40]}'{hint}"
     return message.removeprefix("unrecognized arguments: ")
+
+
+# What was asked for goes to standard output, and is an error if it cannot be written. Notices and measurements go to
+# standard error, and are dropped if they cannot.
+
+
+def prepare_streams() -> None:
+    """Open the standard streams that the caller has closed, and let all of them write every character.
+
+    An open stream keeps its number from the next file that is opened. Nothing can be written to it.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            with suppress(OSError):
+                os.fstat(number)
+                continue
+            mode = "r" if name == "stdin" else "w"
+            unwritable = os.open(os.devnull, os.O_RDONLY)
+            setattr(sys, name, open(unwritable, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
+    if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error does
+
+
+def say(text: object, end: str = "\n") -> None:
+    """Print to standard output, bytes as they are; RenderError when that fails."""
+    try:
+        if isinstance(text, bytes):
+            sys.stdout.buffer.write(text)
+        else:
+            print(text, end=end)
+        sys.stdout.flush()
+    except OSError as error:
+        mute(sys.stdout)
+        if isinstance(error, BrokenPipeError):  # its reader knows
+            raise
+        raise RenderError(f"standard output: cannot write: {error.strerror or error}") from None
+
+
+def tell(text: object, stream: TextIO | None = None) -> None:
+    """Print lines to standard error, or to another stream, without control characters; do nothing when that fails."""
+    stream = stream or sys.stderr
+    try:
+        print(*map(printable, str(text).split("\n")), sep="\n", file=stream, flush=True)
+    except OSError:
+        mute(stream)
+
+
+def mute(stream: TextIO) -> None:
+    """Discard what a stream still holds and will get, which Python would try to write at its end."""
+    with suppress(OSError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)

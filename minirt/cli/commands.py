@@ -10,8 +10,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES
-from minirt.cli.output import say
+from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES, say
 from minirt.errors import MlxError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from minirt.cli.arguments import OPENING, Arguments
-from minirt.cli.output import say, tell
+from minirt.cli.arguments import OPENING, Arguments, say, tell
 from minirt.errors import RenderError, SceneError
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
@@ -35,7 +34,7 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, f
 
     path = options.scene[0]
     options.lenient = options.cone or options.lenient
-    with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")), lenience_noted(options):
+    with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
         if options.example:
             reading = Reading(example(options.example), ())
         elif path == "-":  # whose pictures and meshes are looked for in the current folder
@@ -46,7 +45,12 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, f
                 tell(f"Error\n{error}\n{READ_ALL_THE_SAME}")
                 options.lenient = True
         else:
-            reading = load(path, options.lenient, new=new)
+            try:
+                reading = load(path, options.lenient, new=new)
+            except SceneError as error:
+                if not options.lenient:
+                    note_lenience(path, error)
+                raise
     for notice in reading.notices:
         tell(f"notice: {notice}", stream)
     scene = reading.scene.mirrored() if options.left_handed else reading.scene
@@ -55,23 +59,17 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, f
     return scene.seen_by(options.camera)
 
 
-@contextmanager
-def lenience_noted(options: argparse.Namespace) -> Iterator[None]:
-    """Add notes to the errors of a file: what lines may mean, and whether --lenient reads it."""
-    try:
-        yield
-    except SceneError as error:
-        if not options.lenient and options.scene[0] != "-":
-            from minirt.scene import load
-            from minirt.scene.dialects import suggestions
+def note_lenience(path: str, error: SceneError) -> None:
+    """Add notes to the error of a file: what its lines may mean, and whether --lenient reads it."""
+    from minirt.scene import load
+    from minirt.scene.dialects import suggestions
 
-            for suggestion in suggestions(error.problems):
-                error.add_note(suggestion)
-            with suppress(SceneError):
-                missing = load(options.scene[0], lenient=True).scene.missing
-                but = f" without {len(missing)} of its shapes" if missing else ""
-                error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
-        raise
+    for suggestion in suggestions(error.problems):
+        error.add_note(suggestion)
+    with suppress(SceneError):
+        missing = load(path, lenient=True).scene.missing
+        but = f" without {len(missing)} of its shapes" if missing else ""
+        error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
 
 
 def standard_input() -> bytes:

@@ -24,20 +24,6 @@ CONFIGURABLE = (*PICTURES, "keys", "watch", "threads", "memory", "verbose")
 CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "dither", "camera", "left_handed")
 IN_WINDOWS_TOO = ("size", "depth", "precision", "camera", "left_handed")
 LARGEST = 2**16  # bytes of a configuration file
-BASH = """_miniRT() {{
-    local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}"
-    case "$before" in
-{cases}
-    esac
-    if [[ "$word" == -* ]]; then
-        COMPREPLY=($(compgen -W {options} -- "$word"))
-    else
-        COMPREPLY=($(compgen -f -X '!*.@(rt|png)' -- "$word") $(compgen -d -- "$word"))
-    fi
-}}
-shopt -s extglob 2>/dev/null
-complete -o filenames -F _miniRT miniRT
-"""
 ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
 FILES = {"output", "fallback", "replay", "report", "config"}  # options whose value is a path
 FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
@@ -153,11 +139,10 @@ def completion(parser: argparse.ArgumentParser, shell: str) -> str:
     actions = [action for action in parser._actions if action.option_strings]
     if shell == "fish":
         return "\n".join([*map(fish_line, actions), FISH_SCENES])
-    script = BASH.format(
-        cases="\n".join(bash_case(action) for action in actions if action.nargs != 0),
-        options=shlex.quote(" ".join(option for action in actions for option in action.option_strings)),
-    )
-    return (ZSH if shell == "zsh" else "") + script.rstrip("\n")
+    cases = "\n".join(bash_case(action) for action in actions if action.nargs != 0)
+    words = shlex.quote(" ".join(option for action in actions for option in action.option_strings))
+    script = Path(__file__).with_name("completion.bash").read_text(encoding="utf-8").rstrip("\n")
+    return (ZSH if shell == "zsh" else "") + script.replace("CASES", cases).replace("OPTIONS", words)
 
 
 def bash_case(action: argparse.Action) -> str:

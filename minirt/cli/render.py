@@ -5,15 +5,14 @@ from __future__ import annotations
 import argparse
 import shlex
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from itertools import islice
 from time import perf_counter
 from typing import Any
 
-from minirt.cli.arguments import FAILED, OK, SAMPLES
+from minirt.cli.arguments import FAILED, OK, SAMPLES, tell
 from minirt.cli.files import check_output, format_name, is_film, needs_light, write
 from minirt.cli.options import settings_text
-from minirt.cli.output import tell
 from minirt.cluster.job import Job, Workers
 from minirt.cluster.journal import BANDS, Journal, path_for
 from minirt.cluster.pictures import picture_of, results, stream
@@ -37,10 +36,16 @@ def render_output(scene: Scene, options: argparse.Namespace) -> int:
     size, given = options.size or size_of(scene), {name: getattr(options, name) for name in GIVEN}
     settings = RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
     region = cut_for(settings.region, *size).region
-    render = stream_picture if is_streamed(options, region) else render_film if options.turntable else render_picture
+    render = render_film if options.turntable else render_picture
+    streamed = is_streamed(options, region)
     with system.gc_paused(), workers(options) as executor:
         share = Share(settings, region, options, is_here=not executor)
-        reached = render(Job(scene, size, settings), options, executor, share)
+        job = Job(scene, size, settings)
+        if streamed:
+            with progress(share.state):
+                reached = stream(options.output, job, options.bits or 8, executor, share.note)
+        else:
+            reached = render(job, options, executor, share)
     if reached:
         tell(reached)
         if reached.notice:
@@ -88,20 +93,19 @@ def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bo
 
     Short work is not kept, and neither are samples that depend on those before.
     """
-    if options.output == "-" or not (options.resume or share.rays >= LONG):
-        if options.output != "-":
+    journal = None
+    with ExitStack() as stack:
+        if options.output != "-" and (options.resume or share.rays >= LONG):
+            work = job.work(options.turntable, options.bits, options.quality, options.metadata)
+            command = shlex.join(["miniRT", *(each for each in options.command if each != "--resume"), "--resume"])
+            how = {"again": command, "what": share.what, "resume": options.resume, "has_parts": has_parts}
+            journal = stack.enter_context(Journal(options.output, work, **how))
+            if options.resume and not journal.places:
+                tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
+        elif options.output != "-":
             file_io.delete(path_for(options.output))
-        with progress(share.state):
-            yield None
-        return
-    work = job.work(options.turntable, options.bits, options.quality, options.metadata)
-    command = shlex.join(["miniRT", *(each for each in options.command if each != "--resume"), "--resume"])
-    how = {"again": command, "what": share.what, "resume": options.resume, "has_parts": has_parts}
-    with Journal(options.output, work, **how) as journal:
-        if options.resume and not journal.places:
-            tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
-        with progress(share.state):
-            yield journal
+        stack.enter_context(progress(share.state))
+        yield journal
 
 
 class Share:
@@ -111,7 +115,7 @@ class Share:
         self.settings, self.rows = settings, region.height if is_here else None
         pictures = len(options.frames or range(options.turntable or 1))
         self.rays = 0 if settings.samples == "auto" else region.width * region.height * settings.samples * pictures
-        self.what = "pictures of the film" if options.turntable else BANDS
+        self.what, self.is_film = ("pictures of the film", True) if options.turntable else (BANDS, False)
         self.start = perf_counter()
         self.found: int | None = None
         self.done, self.total = 0, 1
@@ -127,7 +131,8 @@ class Share:
             time = self.settings.time
             return State("sampling", (perf_counter() - self.start) / time if time else None)
         found, what = self.found or 0, f"{self.done} of {self.total} {self.what}"
-        rows = self.settings.renderer.rows_done(self.rows) if self.rows else 0.0
+        bands = 1 if self.is_film else self.total  # of each picture, with about as many rows each
+        rows = self.settings.renderer.rows_done(self.rows // bands) if self.rows else 0.0
         return State(what, (self.done - found + rows) / max(1, self.total - found))
 
 
@@ -178,12 +183,6 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None,
         if film:
             film.save()
     return max(filter(None, outcomes), key=lambda each: each.error, default=None)
-
-
-def stream_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
-    """Render a picture of any size into a TIFF file, which goes on with what was interrupted."""
-    with progress(share.state):
-        return stream(options.output, job, options.bits or 8, executor, share.note)
 
 
 def encoding(scene: Scene, output: str, options: argparse.Namespace) -> dict[str, Any]:

@@ -163,14 +163,11 @@ def local_pool() -> Executor:
 
 
 def prepare_process() -> None:
-    """Let a process of the pool ignore Ctrl+C, which a terminal sends to all, and not wait for ever for the work of a
-    killed program."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=end_with_parent, daemon=True).start()
+    """Let a process of the pool ignore Ctrl+C, which a terminal sends to all, and end at once with a killed parent."""
 
-
-def end_with_parent() -> None:
-    """Wait until the parent of this process has died, and end it at once."""
-    if parent := parent_process():
+    def end_with_parent(parent: Any) -> None:
         parent.join()
         os._exit(1)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=end_with_parent, args=[parent_process()], daemon=True).start()

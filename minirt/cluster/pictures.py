@@ -104,12 +104,7 @@ def stream(
     return whole(outcomes)
 
 
-def picture_of(
-    job: Job,
-    executor: Workers | None = None,
-    journal: Journal | None = None,
-    on_progress: Progress = lambda done, bands: None,
-) -> Image:
+def picture_of(job: Job, executor: Workers | None, journal: Journal | None, on_progress: Progress) -> Image:
     """Render a picture: as a whole, or of bands for workers and for a journal, which has some of them already."""
     if executor is None and journal is None:
         whole_picture: Image = render_band(job)

@@ -30,22 +30,17 @@ def encode(array: np.ndarray, texts: Mapping[str, str] | None = None) -> bytes:
         raise ValueError(f"a picture of {width}x{height} pixels")
     header = struct.pack(">IIBBBBB", width, height, 8 * array.dtype.itemsize, 2, 0, 0, 0)  # RGB, not interlaced
     parts = [SIGNATURE, chunk(b"IHDR", header)]
-    parts += [chunk(b"iTXt", text_data(keyword, text)) for keyword, text in (texts or {}).items()]
+    for keyword, text in (texts or {}).items():  # compressed, with neither a language nor a translated keyword
+        parts.append(chunk(b"iTXt", keyword.encode("ascii") + b"\0\1\0\0\0" + zlib.compress(text.encode(), LEVEL)))
     compressor = zlib.compressobj(LEVEL, strategy=STRATEGY)
-    for block in filtered(array.reshape(height, -1), 3 * array.dtype.itemsize):
-        if part := compressor.compress(block):
-            parts.append(chunk(b"IDAT", part))
+    blocks = filtered(array.reshape(height, -1), 3 * array.dtype.itemsize)
+    parts += [chunk(b"IDAT", part) for block in blocks if (part := compressor.compress(block))]
     return b"".join([*parts, chunk(b"IDAT", compressor.flush()), chunk(b"IEND", b"")])
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:
     """Return a chunk of the file: length, kind, data and checksum."""
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(data, zlib.crc32(kind)))
-
-
-def text_data(keyword: str, text: str) -> bytes:
-    """Return the data of a chunk with a text, compressed; it has neither a language nor a translated keyword."""
-    return keyword.encode("ascii") + b"\0\1\0\0\0" + zlib.compress(text.encode(), LEVEL)
 
 
 def filtered(rows: np.ndarray, step: int = 3) -> Iterator[bytes]:

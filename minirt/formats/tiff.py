@@ -10,7 +10,7 @@ import io
 import struct
 import zlib
 from collections.abc import Iterable, Sequence
-from typing import BinaryIO, NamedTuple
+from typing import BinaryIO
 
 import numpy as np
 
@@ -21,39 +21,30 @@ DEFLATE, DIFFERENCES = 8, 2  # compression, and predictor: each pixel less the o
 LEVEL, FAST = 6, 2  # of zlib: of 1 to 9; the fast one takes no longer than rendering
 
 
-class Layout(NamedTuple):
-    """Number formats of a kind of TIFF file: classic TIFF or BigTIFF."""
-
-    header: struct.Struct  # order of bytes, version, place of the directory; BigTIFF says how long places are
-    version: tuple[int, ...]
-    number: str  # code of the number of entries
-    place: str  # code of a place in the file, and of the number of values of an entry
-    places: int  # type of the strips' places and sizes
-
-
-CLASSIC = Layout(struct.Struct("<2sHI"), (42,), "H", "I", LONG)
-BIG = Layout(struct.Struct("<2sHHHQ"), (43, 8, 0), "Q", "Q", LONG8)
-
-
 def encode(levels: np.ndarray) -> bytes:
     """Return the file of levels, (h, w, 3) uint8 or uint16."""
     buffer, (height, width) = io.BytesIO(), levels.shape[:2]
-    write(buffer, width, height, 8 * levels.itemsize, strips(levels, LEVEL), CLASSIC)
+    write(buffer, width, height, 8 * levels.itemsize, strips(levels, LEVEL), is_big=False)
     return buffer.getvalue()
 
 
-def write(file: BinaryIO, width: int, height: int, bits: int, strips: Iterable[bytes], layout: Layout = BIG) -> None:
+def write(file: BinaryIO, width: int, height: int, bits: int, strips: Iterable[bytes], is_big: bool = True) -> None:
     """Write a picture of strips, the upper one first, to a file that can seek."""
-    file.write(layout.header.pack(b"II", *layout.version, 0))
+    file.write(header(0, is_big))
     places, sizes = [], []
     for each in strips:
         places.append(file.tell())
         sizes.append(file.write(each))
     end = file.tell() + file.tell() % 2
     file.seek(end)
-    file.write(directory(width, height, bits, places, sizes, end, layout))
+    file.write(directory(width, height, bits, places, sizes, end, is_big))
     file.seek(0)
-    file.write(layout.header.pack(b"II", *layout.version, end))
+    file.write(header(end, is_big))
+
+
+def header(place: int, is_big: bool) -> bytes:
+    """Return the order of bytes, the version, for BigTIFF how long places are, and the place of the directory."""
+    return struct.pack("<2sHHHQ", b"II", 43, 8, 0, place) if is_big else struct.pack("<2sHI", b"II", 42, place)
 
 
 def strips(levels: np.ndarray, level: int = FAST) -> tuple[bytes, ...]:
@@ -64,32 +55,33 @@ def strips(levels: np.ndarray, level: int = FAST) -> tuple[bytes, ...]:
 
 
 def directory(
-    width: int, height: int, bits: int, places: Sequence[int], sizes: Sequence[int], start: int, layout: Layout
+    width: int, height: int, bits: int, places: Sequence[int], sizes: Sequence[int], start: int, is_big: bool
 ) -> bytes:
     """Return the directory that begins at byte `start` of a file with strips of these places and sizes."""
+    number, word, kind_of_place = ("Q", "Q", LONG8) if is_big else ("H", "I", LONG)
     entries: list[tuple[int, int, Sequence[int]]] = [
         (256, LONG, [width]),
         (257, LONG, [height]),
         (258, SHORT, [bits] * 3),
         (259, SHORT, [DEFLATE]),
         (262, SHORT, [2]),  # RGB
-        (273, layout.places, places),
+        (273, kind_of_place, places),
         (277, SHORT, [3]),
         (278, LONG, [ROWS]),
-        (279, layout.places, sizes),
+        (279, kind_of_place, sizes),
         (282, RATIONAL, [72, 1]),  # pixels per inch
         (283, RATIONAL, [72, 1]),
         (284, SHORT, [1]),  # the channels of a pixel side by side
         (296, SHORT, [2]),
         (317, SHORT, [DIFFERENCES]),
     ]
-    short = struct.calcsize(layout.place)  # bytes of values that stand in the entry itself
-    out, behind = struct.pack(f"<{layout.number}", len(entries)), b""
+    short = struct.calcsize(word)  # bytes of values that stand in the entry itself
+    out, behind = struct.pack(f"<{number}", len(entries)), b""
     place = start + len(out) + (4 + 2 * short) * len(entries) + short
     for tag, kind, values in entries:
         data = struct.pack(f"<{len(values)}{CODES[kind]}", *values)
         if len(data) > short:
-            data, behind = struct.pack(f"<{layout.place}", place + len(behind)), behind + data
+            data, behind = struct.pack(f"<{word}", place + len(behind)), behind + data
         count = len(values) // 2 if kind == RATIONAL else len(values)
-        out += struct.pack(f"<HH{layout.place}", tag, kind, count) + data.ljust(short, b"\0")
-    return out + struct.pack(f"<{layout.place}", 0) + behind
+        out += struct.pack(f"<HH{word}", tag, kind, count) + data.ljust(short, b"\0")
+    return out + struct.pack(f"<{word}", 0) + behind

@@ -6,7 +6,6 @@ import errno
 import os
 import stat
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import wraps
@@ -22,7 +21,6 @@ if sys.platform != "win32":
 Content = TypeVar("Content")
 Data = bytes | Callable[[BinaryIO], object]  # contents, or a function that writes them to a file, which can seek
 TEMPORARY = ".minirt-*.tmp"
-ABANDONED = 3600  # seconds without a change, after which a temporary file belongs to a killed program
 FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
 
 
@@ -85,14 +83,8 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
 
 @contextmanager
 def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> Iterator[Path]:
-    """Write a temporary file, which the block renames; it is deleted when that fails.
-
-    It never has more than the given permissions. Old ones, which killed programs left in the folder, are deleted, too.
-    """
-    with suppress(OSError):
-        for each in folder.glob(TEMPORARY):
-            if abs(time.time() - each.lstat().st_mtime) > ABANDONED:  # or a future of a clock that was wrong
-                each.unlink()
+    """Write a temporary file, with no more than the given permissions, which the block renames; it is deleted when
+    that fails."""
     path = folder / TEMPORARY.replace("*", os.urandom(8).hex())
     descriptor = os.open(path, FLAGS, 0o666 if permissions is None else permissions & PRIVATE_FILE)
     try:

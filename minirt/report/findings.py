@@ -22,7 +22,6 @@ from minirt.report.pictures import Row
 from minirt.report.precision import KindCertificates
 from minirt.scene import Scene, dump
 
-PACKAGES = ("numpy", "numba", "llvmlite", "pillow")
 CLEAR = 2.0  # times the error of the reference: from there on an error is known well enough
 LEVEL = 0.004  # RMSE, one of 255 levels
 ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
@@ -91,7 +90,6 @@ class Findings:
 
     @property
     def title(self) -> str:
-        """The title of the report."""
         return f"{self.subject.scene}: error against run time"
 
     @property
@@ -174,6 +172,6 @@ def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed
     """Describe a scene and this machine."""
     digest = hashlib.sha256(dump(scene).encode()).hexdigest()
     versions = {"minirt": minirt.__version__, "python": platform.python_version()}
-    versions |= {package: version(package) for package in PACKAGES}  # that compute or draw
+    versions |= {package: version(package) for package in ("numpy", "numba", "llvmlite", "pillow")}
     processor = cpu_information("model name") or platform.processor()  # the former on Linux
     return Subject(name, digest, width, height, threads, seed, processor, versions)

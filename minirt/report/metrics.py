@@ -9,17 +9,13 @@ from collections.abc import Sequence
 from math import ceil, inf, log10, nan, pi, radians, sqrt
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from minirt.rendering.image import Image
 from minirt.rendering.tone_mapping import decode_srgb
 
 Picture = NDArray[np.float64]
-
-
-def clamped(light: Picture) -> Picture:
-    """Clamp radiance to what a screen shows."""
-    return np.clip(light, 0.0, 1.0)
 
 
 def rmse(a: Picture, b: Picture) -> float:
@@ -45,7 +41,7 @@ def changed(a: Picture, b: Picture) -> int:
 # 95 % confidence intervals: bootstrap of times and of errors (Efron and Tibshirani, An Introduction to the Bootstrap,
 # 1993), and Student's t for fitted lines.
 
-LEVEL = 0.95
+ENDS = 0.025, 0.975  # quantiles at the ends of an interval
 RESAMPLES = 1000
 SEED = 20240608
 LEAST_POINTS = 3  # of a line
@@ -62,7 +58,8 @@ def of_median(values: Sequence[float]) -> Interval:
         return nan, nan
     random, numbers = np.random.default_rng(SEED), np.array(values)
     medians = np.median(numbers[random.integers(0, len(numbers), (RESAMPLES, len(numbers)))], axis=1)
-    return percentiles(medians)
+    low, high = np.quantile(medians, ENDS).tolist()
+    return low, high
 
 
 def of_rmse(picture: Picture, right: Picture, doubt: float) -> Interval:
@@ -75,7 +72,7 @@ def of_rmse(picture: Picture, right: Picture, doubt: float) -> Interval:
     random = np.random.default_rng(SEED)
     often = random.poisson(1.0, (RESAMPLES, len(pixels)))  # how often each block is drawn
     often[often.sum(axis=1) == 0] = 1
-    low, high = percentiles((often @ squares) / (often @ pixels))
+    low, high = np.quantile((often @ squares) / (often @ pixels), ENDS).tolist()
     return max(0.0, low - doubt * doubt) ** 0.5, high**0.5
 
 
@@ -85,12 +82,6 @@ def block_sums(squares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     sums = np.add.reduceat(np.add.reduceat(squares, starts[0], axis=0), starts[1], axis=1)
     heights, widths = (np.diff([*start, size]) for start, size in zip(starts, squares.shape, strict=True))
     return sums.ravel(), np.outer(heights, widths).ravel()
-
-
-def percentiles(values: np.ndarray) -> Interval:
-    """Return the interval that holds `LEVEL` of some values, the same share left out at both ends."""
-    low, high = np.quantile(values, [(1 - LEVEL) / 2, (1 + LEVEL) / 2]).tolist()
-    return low, high
 
 
 def fit(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float, float]:
@@ -171,9 +162,7 @@ def perceived(picture: Picture) -> Picture:
 def colours(xyz: Picture) -> Picture:
     """Blur by contrast sensitivity and convert to L*a*b* with the Hunt effect: darker colours are less saturated."""
     x, y, z = np.moveaxis(xyz, -1, 0)
-    y, red_green, blue_yellow = (
-        blurred(channel, sums) for channel, sums in zip((y, x - y, y - z), SENSITIVITY, strict=True)
-    )
+    y, red_green, blue_yellow = (blurred(*each) for each in zip((y, x - y, y - z), SENSITIVITY, strict=True))
     rgb = np.clip(np.stack([y + red_green, y, y - blue_yellow], axis=-1) @ FROM_XYZ.T, 0, 1)
     return lab(rgb @ TO_XYZ.T)
 
@@ -212,10 +201,8 @@ def balanced(weights: Picture) -> Picture:
 def filtered(channel: Picture, across: Picture, down: Picture) -> Picture:
     """Apply a separable filter, across and then down; pixels beyond the border repeat the border."""
     for weights in (across, down):  # each turn filters along the last axis and swaps both
-        wide, total = np.pad(channel, ((0, 0), (len(weights) // 2,) * 2), "edge"), np.zeros_like(channel)
-        for start, weight in enumerate(weights):
-            total += weight * wide[:, start : start + channel.shape[1]]
-        channel = total.T
+        wide = np.pad(channel, ((0, 0), (len(weights) // 2,) * 2), "edge")
+        channel = (sliding_window_view(wide, len(weights), axis=1) @ weights).T
     return channel
 
 

@@ -28,9 +28,8 @@ def filled(title: str, values: dict[str, Any]) -> tuple[str, str]:
     A section that lacks a value is left out. Blocks that begin with "<div" are for HTML alone, those with "!" for
     Markdown.
     """
-    template, page, style, script = (
-        (FOLDER / f"page.{kind}").read_text(encoding="utf-8") for kind in ("txt", "html", "css", "js")
-    )
+    files = (FOLDER / f"page.{kind}" for kind in ("txt", "html", "css", "js"))
+    template, page, style, script = (file.read_text(encoding="utf-8") for file in files)
     markdown, html = list[str](), list[str]()
     for section in re.split(r"\n(?=## )", template):
         if all(values[name] for name in re.findall(r"{(\w+)}", section)):

@@ -17,7 +17,7 @@ from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
 from minirt.report import metrics
 from minirt.report.bench import Run, is_disturbed, runs
-from minirt.report.metrics import Picture, clamped, rmse
+from minirt.report.metrics import Picture, rmse
 from minirt.report.settings import Drawn, Knob, Setting
 from minirt.scene import Scene
 
@@ -107,7 +107,7 @@ def reference(scene: Scene, width: int, height: int, samples: int, seed: int, st
             arguments = frame_arguments(traced, pixels, linear=linear, counter=counter)
             renderer.runner.run(arguments._replace(rays=rays))
             total += linear * len(some)
-        halves.append(clamped(total / len(places)))
+        halves.append(np.clip(total / len(places), 0.0, 1.0))
     mean = (halves[0] + halves[1]) / 2
     return Reference(mean, rmse(*halves) / 2, metrics.perceived(mean))
 
@@ -203,7 +203,6 @@ class SettingRenderer:
         return self.ready[knob.name]
 
     def draw(self, setting: Setting, linear: Picture | None = None) -> Drawn:
-        """Draw the picture of a setting."""
         renderer, _ = self.renderer(setting.knob)
         return setting.knob.draw(renderer, self.scene, self.pixels, setting.value, linear)
 
@@ -226,7 +225,7 @@ class SettingRenderer:
             times = self.times(setting, first)
         except RenderError as error:
             return row._replace(remark=f"failed: {error}"), None
-        picture = clamped(light)
+        picture = np.clip(light, 0.0, 1.0)
         row = row._replace(**prepared, **drawn[0]).with_errors(picture, right).with_times(times)
         self.cost[row.knob] = row.wall_ms / 1e3 / work
         return row, picture

@@ -104,7 +104,6 @@ TICK = 0.005  # seconds by which its processor time may be too small
 CHECKED = 2  # samples along an edge of a pixel, of the picture that shows whether the scene is the same
 SAME = 0.02  # RMSE: a picture of four samples per pixel that is further off is not that of the scene
 TRACE = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds")
-HEADER = re.compile(rb"P6\s(?:#[^\n]*\n)*(\d+)\s+(\d+)\s+65535\s")
 
 ADAPTIVE = f"{PROGRAM} adaptive"
 GRID = "+AM1 +A0.0 -J +R{}"  # options for a grid of n x n samples in each pixel
@@ -162,10 +161,7 @@ class PovRay:
         found = TRACE.findall(printed)
         if ended.returncode or not found:
             raise RenderError(f"{PROGRAM} failed: {printed.strip()[-200:]}")
-        data = (self.folder / "picture.ppm").read_bytes()
-        header = HEADER.match(data)
-        if not header:
-            raise RenderError(f"{PROGRAM} wrote no picture of 16 bits")
-        light: Picture = np.frombuffer(data, ">u2", offset=header.end()).reshape(self.height, self.width, 3) / 65535.0
+        data = (self.folder / "picture.ppm").read_bytes()[-6 * self.width * self.height :]  # without its header
+        light: Picture = np.frombuffer(data, ">u2").reshape(self.height, self.width, 3) / 65535.0
         wall, cpu = map(float, found[-1])
         return Run(wall, cpu + TICK), light

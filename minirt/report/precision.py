@@ -60,7 +60,6 @@ def onward(scene: Scene, seen: Hits, random: np.random.Generator) -> Hits:
     hit = seen.owner >= 0
     points, normals = seen.point[hit], seen.normal[hit]
     directions = random.normal(size=points.shape)
-    directions /= np.abs(directions).max(axis=1, keepdims=True)
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)  # uniform over the sphere
     clearance = CLEARANCE * (np.abs(points).max(axis=1, initial=0.0) + seen.distance[hit])
     way = np.sign((directions * normals).sum(axis=1)) * clearance

@@ -101,7 +101,6 @@ class InvisibleElements:
         return kind(**{field.name: self.value(field) for field in fields_of(kind) if field.required})
 
     def value(self, field: Any) -> Any:
-        """Return a value of a field."""
         match field:
             case Compound():
                 value = field.check(field.parse(field.bare)) if field.bare else self.record(field.record)

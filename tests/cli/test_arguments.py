@@ -224,7 +224,9 @@ def test_texts_need_no_scene(run: Run, option: str, lines: int) -> None:
 
 
 def test_depth_limits_the_reflections(run: Run, folder: Path) -> None:
-    assert (arguments.DEPTH, arguments.MAX_DEPTH) == (features.DEPTH, whitted.MAX_DEPTH)
+    assert arguments.MAX_DEPTH == whitted.MAX_DEPTH
+    for default in (f"pixel ({arguments.SAMPLES})", f"moves ({arguments.WINDOW_SAMPLES})", f"ray ({features.DEPTH})"):
+        assert default in arguments.OPTIONS
     mirror = "A 1 255,255,255\nC 0,0,-5 0,0,1 60\nbg 0,0,255\npl 0,0,0 0,0,-1 255,0,0 mirror:1\n"
     (folder / "mirror.rt").write_text(mirror)
     for depth, colour in (("0", [255, 0, 0]), ("1", [0, 0, 255])):

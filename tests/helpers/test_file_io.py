@@ -101,19 +101,6 @@ def test_the_owner_stays(tmp_path: Path) -> None:
     assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (12345, 54321, 0o640)
 
 
-@pytest.mark.parametrize(("seconds", "is_left"), [(0, True), (-3000, True), (-4000, False), (4000, False)])
-def test_old_temporary_files_are_deleted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, is_left: bool
-) -> None:
-    left = tmp_path / file_io.TEMPORARY.replace("*", "left")
-    left.touch()
-    now = left.stat().st_mtime
-    monkeypatch.setattr(file_io.time, "time", lambda: now)
-    os.utime(left, (now + seconds, now + seconds))
-    file_io.write(tmp_path / "file", b"new")
-    assert left.exists() == is_left
-
-
 @pytest.mark.parametrize("size", [0, 1, 999, 1000, 1001])
 def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None:
     path = tmp_path / "a"
