@@ -107,14 +107,10 @@ def check_bits(name: str, bits: int | None) -> int:
     """Return the bits a channel, those of the format when `bits` is None; RenderError where it cannot have them."""
     can = FORMATS[name].bits
     if bits is not None and bits not in can:
-        raise RenderError(f"{name} has {' or '.join(map(str, can))} bits a channel, got {bits}: {advice(bits)}")
+        others = [other for other, each in FORMATS.items() if bits in each.bits]
+        advice = f"try {' or '.join(others)}" if 0 < len(others) < 5 else "leave them out"
+        raise RenderError(f"{name} has {' or '.join(map(str, can))} bits a channel, got {bits}: {advice}")
     return can[0] if bits is None else bits
-
-
-def advice(bits: int) -> str:
-    """Name the formats that have so many bits a channel."""
-    names = [name for name, each in FORMATS.items() if bits in each.bits]
-    return f"try {' or '.join(names)}" if 0 < len(names) < 5 else "leave them out"
 
 
 def check_quality(name: str, quality: int | None) -> None:

@@ -156,7 +156,9 @@ def perceived(picture: Picture) -> Picture:
     x = np.arange(-ceil(3 * FEATURE), ceil(3 * FEATURE) + 1) / FEATURE
     bell = np.exp(-x * x / 2)
     slopes = balanced(-x * bell), balanced((x * x - 1) * bell)
-    return np.dstack([colours(xyz), *(gradient_strength(xyz[..., 1], bell, slope) for slope in slopes)])
+    y, bell = xyz[..., 1], bell / bell.sum()
+    strengths = (np.hypot(filtered(y, slope, bell), filtered(y, bell, slope)) for slope in slopes)  # across and down
+    return np.dstack([colours(xyz), *strengths])
 
 
 def colours(xyz: Picture) -> Picture:
@@ -184,12 +186,6 @@ def blurred(channel: Picture, sums: tuple[tuple[float, float], ...]) -> Picture:
         total += height * filtered(channel, bell, bell)
         weight += height * bell.sum() ** 2
     return total / weight
-
-
-def gradient_strength(channel: Picture, bell: Picture, slope: Picture) -> Picture:
-    """Return the magnitude of a channel's response to a filter across and the same filter down."""
-    bell = bell / bell.sum()
-    return np.hypot(filtered(channel, slope, bell), filtered(channel, bell, slope))
 
 
 def balanced(weights: Picture) -> Picture:
