@@ -100,13 +100,12 @@ class Kernels:
         """Return the most specialised kernel that is there for a frame; where there is none compile it."""
         call = functions.frame.call(*frame)
         specialised = LIBRARY.identity(call)
-        entry = LIBRARY.find(specialised)
-        if entry:
+        if entry := LIBRARY.find(specialised):
             return Choice(entry, frame.scene, None, specialised)
         for generic in generic_kernels.fitting(frame.scene):
-            entry = LIBRARY.find(generic_identity(generic))
-            if entry:
-                return Choice(entry, generic_kernels.generalised(frame.scene, generic), generic, specialised)
+            if entry := LIBRARY.find(generic_identity(generic)):
+                scene = generic_kernels.generalised(frame.scene, generic_kernels.empty_arrays(generic))
+                return Choice(entry, scene, generic, specialised)
         return Choice(LIBRARY.get(call), frame.scene, None, specialised)
 
     def has_better(self, choice: Choice) -> bool:
@@ -121,12 +120,7 @@ class Kernels:
             if total >= self.specialised_after:
                 self.background.compile(choice.specialised)
         elif not self.specialised_after:  # so that edits need not wait for specialised ones
-            self.background.compile(*self.missing_for_all_scenes)
-
-    @cached_property
-    def missing_for_all_scenes(self) -> list[str]:
-        """Those of the kernels for all scenes that were not there when they were first looked for."""
-        return [each for each in self.for_all_scenes if not LIBRARY.has(each)]
+            self.background.compile(*(each for each in self.for_all_scenes if not LIBRARY.has(each)))
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
@@ -139,12 +133,9 @@ class Kernels:
     @cached_property
     def for_all_scenes(self) -> list[str]:
         """The identities of kernels that are enough for all scenes, some of which single precision cannot draw."""
-        generic = [
-            each
-            for each in generic_kernels.GENERIC_KERNELS
-            if each.name == "full" and each.precision in ("double", self.precision)
-        ]
-        return [*map(LIBRARY.identity, packing_calls()), *map(generic_identity, generic)]
+        wanted = ("full", "double"), ("full", self.precision)
+        full = [each for each in generic_kernels.GENERIC_KERNELS if each[:2] in wanted]
+        return [*map(LIBRARY.identity, packing_calls()), *map(generic_identity, full)]
 
     def specialised(self, scene: Scene) -> list[str]:
         """Return the identities of the specialised kernels for a scene."""
@@ -212,13 +203,11 @@ def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
 
 
 def generic_call(generic: GenericKernel) -> Call:
-    """Return a call of a generic kernel."""
     return functions.frame.call(*frame_arguments(generic_kernels.empty_arrays(generic), PIXEL))
 
 
 @cache
 def generic_identity(generic: GenericKernel) -> str:
-    """Return the identity of a generic kernel."""
     return LIBRARY.identity(generic_call(generic))
 
 

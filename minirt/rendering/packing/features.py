@@ -89,7 +89,6 @@ def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
 
 
 def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shape]:
-    """Find the `examples` among some elements."""
     shapes = [item for item in items if isinstance(item, Shape)]
     values = zip(shapes, map(ATTRIBUTES, shapes), strict=True)
     plain = [shape for shape, value in values if value == PLAIN and not shape.batched]  # most shapes of a crowd
@@ -100,12 +99,10 @@ def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shap
 
 
 def features_beside_shapes(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    """The features that some elements use, but for shapes and cameras."""
     return frozenset().union(*(features_of(item) for item in items if not isinstance(item, Shape)))
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:
-    """The features that a light or a background uses."""
     if isinstance(item, Lamp) and item.brightness and any(item.colour):
         return item.features()
     if isinstance(item, Background):
@@ -114,14 +111,12 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 
 
 def shape_features(shape: Shape) -> Iterable[str]:
-    """The features that a shape needs for itself and for its materials."""
-    if not shape.smooth and ATTRIBUTES(shape) == PLAIN:
-        return ()
-    return ("smooth", *material_features(shape)) if shape.smooth else material_features(shape)
+    return [*["smooth"] * shape.smooth, *material_features(shape)]
 
 
 def material_features(shape: Shape) -> Iterable[str]:
-    """The features that the materials of a shape need."""
+    if ATTRIBUTES(shape) == PLAIN:
+        return ()
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
     found = {feature for (_, field), value in values if value is not None for feature in field.features_of(value)}
     if not COORDINATE_MAPS.isdisjoint(found) and shape.map_frame():

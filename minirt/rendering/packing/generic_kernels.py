@@ -53,37 +53,22 @@ GENERIC_KERNELS = (
 
 def fitting(arrays: SceneArrays) -> list[GenericKernel]:
     """Return the generic kernels that can draw a packed scene, the most specialised first."""
-    precision = precision_of(arrays)
+    precision = "single" if arrays.camera.dtype == np.float32 else "double"
     used = {name for name in OPTIONAL if getattr(arrays, name) is not None}
     used |= {name for name in MAPS if arrays.surface_maps and getattr(arrays.surface_maps, name) is not None}
     return [generic for generic in GENERIC_KERNELS if generic.precision == precision and used <= generic.features]
 
 
-def precision_of(arrays: SceneArrays) -> str:
-    """Return "single" for arrays of float32, and "double" for arrays of float64."""
-    return "single" if arrays.camera.dtype == np.float32 else "double"
-
-
-def generalised(arrays: SceneArrays, generic: GenericKernel) -> SceneArrays:
-    """Return a packed scene as the argument of a generic kernel that fits it. Its arrays are shared, not copied."""
-    whole: SceneArrays = filled(arrays, empty_arrays(generic))
-    return whole
-
-
-def generalised_tree(tree: Tree) -> Tree:
-    """Return a BVH with a group for each kind of shape, those that a scene lacks without shapes."""
-    whole: Tree = filled(tree, empty_arrays(FULL_DOUBLE).bvh)
-    return whole
-
-
-def filled(arrays: Any, empty: Any) -> Any:
-    """Return a NamedTuple of arrays, or of such tuples, with the fields of `empty` in place of those that are None.
+def generalised(arrays: Any, empty: Any) -> Any:
+    """Return a packed scene, or its BVH, as the argument of a generic kernel that fits it: with the fields of the
+    `empty` one in place of those that are None. Its arrays are shared, not copied.
 
     Groups are in the order of the registry, with an `empty` one for each kind of shape that is missing.
     """
     if arrays is None or not hasattr(empty, "_fields"):
         return empty if arrays is None else arrays
-    whole = arrays._replace(**{name: filled(getattr(arrays, name), getattr(empty, name)) for name in arrays._fields})
+    parts = {name: generalised(getattr(arrays, name), getattr(empty, name)) for name in arrays._fields}
+    whole = arrays._replace(**parts)
     if not hasattr(arrays, "groups"):
         return whole
     present = {group.rows.dtype.names: group for group in arrays.groups}

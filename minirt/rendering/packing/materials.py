@@ -98,7 +98,6 @@ def placement_numbers(shape: Shape) -> tuple[float, ...]:
 
 
 def pack_environment(scene: Scene, file: str) -> Environment:
-    """Pack the environment map of a background."""
     reader = Reader(scene)
     reader.number(file, reader.colours.sky)
     return Environment(**reader.arrays())
@@ -159,11 +158,9 @@ class Reader:
         return self.number(file, self.colours.texture)
 
     def heights(self, file: str) -> int:
-        """Load a height map and return its number."""
         return self.number(file, pictures.heights)
 
     def normals(self, file: str) -> int:
-        """Load a normal map and return its number."""
         return self.number(file, pictures.picture)
 
     def number(self, file: str, read: PictureReader) -> int:

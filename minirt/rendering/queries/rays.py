@@ -14,7 +14,7 @@ from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.packing.generic_kernels import generalised_tree
+from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised
 from minirt.rendering.packing.ray_casting import camera_ray
 from minirt.rendering.renderer import renderer
 from minirt.scene import Camera, Scene, check_scene
@@ -180,7 +180,7 @@ def query(
     counter: NDArray[np.int64], tree: Tree, origins: NDArray[np.float64], directions: NDArray[np.float64], hits: Hits
 ) -> Callable[[], None]:
     """Return a job that traces rays: by the most specialised kernel that is there, or by one that is compiled now."""
-    trees = tree, generalised_tree(tree)
+    trees = tree, generalised(tree, empty_arrays(FULL_DOUBLE).bvh)
     specialised, generic = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
     for call in (specialised, generic):
         if entry := LIBRARY.find(LIBRARY.identity(call)):

@@ -68,7 +68,7 @@ def test_generic_kernels_draw_the_same_bits_as_the_specialised_one(number: int) 
     generic_kernels = fitting(arrays)
     assert (generic_kernels[-1].name, generic_kernels[-1].precision) == ("full", precision)
     for generic in generic_kernels:
-        assert same_bits(arrays, generalised(arrays, generic)), (path, generic)
+        assert same_bits(arrays, generalised(arrays, empty_arrays(generic))), (path, generic)
 
 
 SPECIAL = {
@@ -85,7 +85,7 @@ SPECIAL = {
 def test_special_scenes_have_the_same_bits(name: str) -> None:
     arrays = packed(SPECIAL[name])
     for generic in fitting(arrays):
-        assert same_bits(arrays, generalised(arrays, generic)), generic
+        assert same_bits(arrays, generalised(arrays, empty_arrays(generic))), generic
 
 
 @pytest.mark.parametrize("scenes", ["files", "random", "special"])
@@ -97,7 +97,7 @@ def test_all_scenes_have_the_types_of_the_empty_one(scenes: str) -> None:
     }[scenes]()
     for scene in several:
         for arrays, generic in every_form(scene):
-            assert typeof(generalised(arrays, generic)) == typeof(empty_arrays(generic))
+            assert typeof(generalised(arrays, empty_arrays(generic))) == typeof(empty_arrays(generic))
 
 
 def test_the_most_specialised_kernel_comes_first() -> None:
@@ -117,7 +117,7 @@ def test_the_most_specialised_kernel_comes_first() -> None:
 def test_generalising_copies_nothing() -> None:
     for scene in (SPECIAL["a mesh of many triangles"], SPECIAL["parallel light, a BVH, mirrors and a background"]):
         arrays = packed(scene)
-        generic = generalised(arrays, fitting(arrays)[-1])
+        generic = generalised(arrays, empty_arrays(fitting(arrays)[-1]))
         for name in ("slots", "cones", "light_cones", "colours_and_extents", "tile_shapes", "light_shapes", "lights"):
             assert getattr(generic, name) is getattr(arrays, name)
         assert sum(len(group.rows) for group in generic.groups) == len(arrays.slots)
