@@ -34,7 +34,7 @@ CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (1_000, 64), (50_000, 128), 
 # The most shapes, and pixels along an edge of the squares of the screen with which drawing was measured to take least.
 SQUARES_BY_SHAPES = ((50_000, TILE), (500_000, TILE // 2), (np.inf, TILE // 4))
 
-MEMBER, START, RECTANGLE = 4, 4, 32  # bytes of a member and of a start of a list, and of a rectangle of cells
+RECTANGLE = 32  # bytes of a rectangle of cells, and of its places in a sorted list
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**28  # bytes of lists that are built within seconds
 MOST_MEMBERS = 2**24  # of all cells that have every shape
@@ -114,12 +114,11 @@ def seen_by_light(
 
     `spare` bins are used again where they fit. `TooLargeError` where there is no room for so many copies of its lists.
     """
-    largest, grid = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED, cube_grid(cells)
-    bins = spare
-    if bins and bins.fit(shape_arrays, grid, radius, reach):
-        bins.seen.shown[:], bins.copies = 1 - skipped, copies
-    else:
-        bins = Bins(kernel, shape_arrays, grid, radius, 0.0, skipped, copies, largest, reach=reach)
+    grid = cube_grid(cells)
+    fits = spare and spare.fit(shape_arrays, grid, radius, reach)
+    bins = spare if spare and fits else Bins(kernel, shape_arrays, grid, radius, reach=reach)
+    bins.seen.shown[:], bins.copies = 1 - skipped, copies
+    bins.largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
     bins.see_from(light, run)
     if cells == 1:
         return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
@@ -139,7 +138,10 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 
 class Bins:
     """The shapes in the cells of a grid of directions from a point: when it moves they are binned anew, in the same
-    arrays. Radius, reach, lean and extents are those of `minirt.kernel.binning.Projection`."""
+    arrays. There is to be room for some copies of its lists, all of at most `largest` bytes. Radius, reach, lean and
+    extents are those of `minirt.kernel.binning.Projection`."""
+
+    copies, largest = 1, system.UNLIMITED
 
     def __init__(
         self,
@@ -148,21 +150,14 @@ class Bins:
         grid: Grid,
         radius: float = 0.0,
         lean: float = 0.0,
-        skipped: np.ndarray | None = None,
-        copies: int = 1,
-        largest: int = system.UNLIMITED,
         extents: np.ndarray = NO_EXTENTS,
         reach: float = np.inf,
     ) -> None:
-        """`skipped` planes (p,) are in no list. `TooLargeError` where there is no room for so many copies of the lists,
-        or where they would have more than `largest` bytes."""
         shapes, planes, kinds = len(shape_arrays.slots), len(shape_arrays.planes), len(shape_arrays.rows)
         chunk = max(1, min(CHUNK, shapes))
         chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
         self.kernel = kernel
-        self.fixed = copies * kinds * (grid.cells + 1) * START + rows_of_planes * RECTANGLE
-        self.copies, self.largest, self.is_large = copies, largest, shapes >= PARALLEL
-        check_lists(self.fixed, largest)
+        self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
         self.seen = Projection(
             origin=np.zeros(3),
@@ -171,7 +166,7 @@ class Bins:
             reach=reach,
             lean=lean,
             **{name: getattr(shape_arrays, name) for name in BOUNDS},
-            shown=np.ones(planes, np.int64) if skipped is None else 1 - skipped,
+            shown=np.ones(planes, np.int64),
             chunk=chunk,
             rectangles=np.empty((room, 4), np.int32),
             used=np.zeros(chunks + 1, np.int64),
@@ -188,20 +183,18 @@ class Bins:
     def fit(self, shape_arrays: ShapeArrays, grid: Grid, radius: float, reach: float = np.inf) -> bool:
         """Whether these bins can be used for shapes in the same arrays, as seen in such a grid."""
         seen = self.seen
-        return seen.balls is shape_arrays.balls and (seen.grid[1:], seen.radius, seen.reach) == (
-            grid[1:],
-            radius,
-            reach,
-        )
+        is_alike = (seen.grid[1:], seen.radius, seen.reach) == (grid[1:], radius, reach)
+        return seen.balls is shape_arrays.balls and is_alike
 
     def bound_fill(self) -> Callable[[], Any]:
-        """Return the call that fills the lists."""
         scratch = self.entries, np.empty(2**RADIX, np.int64)
         return bound(self.kernel.fill_bins, self.seen, self.starts.reshape(-1), self.members, *scratch)
 
     def see_from(self, point: Any, run: Run | None = None, spare: float = 0.0) -> None:
         """Bin the shapes as seen from a point, many of them on all threads by `run`. New lists leave room for a `spare`
-        share of members. `TooLargeError` likewise."""
+        share of members. `TooLargeError` where there is no room."""
+        if not len(self.members):
+            self.check(0)
         self.seen.origin[:] = point
         self.counter[0] = 0
         if run and self.is_large:
@@ -210,16 +203,15 @@ class Bins:
             self.project()
         count = self.fill()
         if count > len(self.members):
-            check_lists(self.fixed + self.copies * count * MEMBER, self.largest)
+            self.check(count)
             self.members = np.zeros(int(count * (1.0 + spare)), np.int32)
             self.fill = self.bound_fill()
             self.fill()
 
-
-def check_lists(size: int, largest: int) -> None:
-    """Raise `TooLargeError` where lists of this size, in bytes, have no room or are larger than they may."""
-    advice = "fewer or smaller shapes, or fewer lights, need less"
-    system.check_memory(size, "the lists of shapes in view need", advice, largest)
+    def check(self, members: int) -> None:
+        size = self.copies * (self.starts.nbytes + members * self.members.itemsize) + self.bytes_of_planes
+        advice = "fewer or smaller shapes, or fewer lights, need less"
+        system.check_memory(size, "the lists of shapes in view need", advice, self.largest)
 
 
 def in_all_cells(
