@@ -57,7 +57,6 @@ def build(folder: Path, target: str, most: int | None = None) -> int:
 
 
 def main() -> int:
-    """Compile for this machine."""
     target = processor()
     try:
         build(SHIPPED / target, target, FIRST if sys.argv[1:] == ["first"] else None)

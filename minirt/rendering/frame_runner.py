@@ -44,7 +44,6 @@ class FrameRunner:
 
     @cached_property
     def pool(self) -> ThreadPool:
-        """The threads that render."""
         return ThreadPool(self.threads)
 
     def run_on_all(self, job: Job) -> None:

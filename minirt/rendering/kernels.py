@@ -156,7 +156,6 @@ class Kernels:
             first.result()
 
     def stop(self) -> None:
-        """Stop compiling; callable from any thread."""
         self.compile_process.stop()
         self.packing_process.stop()
         self.background.stop()

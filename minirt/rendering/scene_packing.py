@@ -211,7 +211,6 @@ class Packing:
 
     @property
     def notes(self) -> list[str]:
-        """Sentences about the decisions made for the last scene."""
         if not self.last:
             return []
         scene, _, arrays = self.last

@@ -70,7 +70,6 @@ class RenderSettings(Immutable):
             check_whole("samples", self.samples, 1)
 
     def replace(self, **changes: Any) -> RenderSettings:
-        """Return the settings with some of them changed."""
         return replace(self, **changes)
 
     @property

@@ -73,7 +73,6 @@ def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
 
 
 def perform(job: Job, ended: Ended) -> None:
-    """Run a job, and report its end or its error."""
     try:
         job()
         ended.put(None)

@@ -43,7 +43,6 @@ class Tone(NamedTuple):
     decodes: bool  # whether colours are decoded by the transfer function of sRGB
 
     def nearest(self, light: np.ndarray) -> np.ndarray:
-        """Return the level that is nearest to light, on the curve."""
         return np.searchsorted(self.halfway, light, "right")
 
 
@@ -62,7 +61,6 @@ def light_of(levels: np.ndarray, name: str) -> np.ndarray:
 
 
 def decode_srgb(levels: np.ndarray) -> np.ndarray:
-    """Return the light of levels in [0, 1] of sRGB."""
     return np.where(levels <= TOE, levels / SLOPE, ((levels + OFFSET) / (1 + OFFSET)) ** GAMMA)
 
 
@@ -157,7 +155,6 @@ class ToneMapper:
     """Maps the tones of the pictures of one renderer, and keeps the light of a picture until then."""
 
     def __init__(self, run: Run, dither: bool) -> None:
-        """`run` runs a job on all threads."""
         self.run = run
         self.dither = dither
         self.scratch = NO_LINEAR  # the light of the last picture for which nobody else kept it

@@ -118,6 +118,5 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
 
 
 def empty_blocks(kind: Kind, rows: np.ndarray) -> bvh_nodes.Group:
-    """Return a group of a BVH for a kind without shapes."""
     unbounded = np.zeros(0, np.int64) if kind.element.infinite else None
     return bvh_nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), np.zeros(0), unbounded, ABSENT)

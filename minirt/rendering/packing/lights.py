@@ -37,7 +37,6 @@ class Colours(NamedTuple):
         return self.shares(colour) * (brightness * self.gain)
 
     def decoded(self, colours: np.ndarray) -> np.ndarray:
-        """Return colours in [0, 1] as shares of light."""
         return decode_srgb(colours) if self.decodes else colours
 
     def surface_colours(self, colours_and_extents: np.ndarray) -> np.ndarray:
@@ -76,7 +75,6 @@ TURN = 2.4  # radians, from the samples of one light to those of the next: the g
 
 
 def emitting_lights(scene: Scene) -> list[Lamp]:
-    """The lights of a scene that are neither off nor black."""
     return [light for light in scene.lights if light.brightness and any(light.colour)]
 
 

@@ -114,7 +114,6 @@ class Rounding:
         self.calls: list[Callable[[], Any]] = []
 
     def move(self, eye: np.ndarray) -> None:
-        """Round all tables relative to another eye."""
         self.shifts[:3] = eye
         for call in self.calls:
             call()
@@ -128,12 +127,10 @@ class Rounding:
         return into
 
     def rows(self, rows: np.ndarray) -> np.ndarray:
-        """Return rows of shapes of a kind, likewise."""
         kind, table = kind_of(rows.dtype.names), rows.view(np.float64).reshape(len(rows), -1)
         return self.rounded(table, row_axes(kind)).view(row_type(kind, np.float32))[:, 0]
 
     def trees(self, trees: MeshTrees | None) -> MeshTrees | None:
-        """Return the trees of meshes, likewise."""
         return trees and trees._replace(places=self.rounded(trees.places, PLACE))
 
 

@@ -84,12 +84,9 @@ def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
         if isinstance(each, Angle) and not kind.element.batched
     }
     first, *others = points.values()
-    sizes = np.zeros(len(first))
-    for each in lengths.values():
-        sizes += each.reshape(len(each), -1).sum(axis=1)
-    for each in others:
-        sizes += lengths_of(each - first)
-    first_row = np.concatenate([[0], np.cumsum([shape.parts for shape in shapes])[:-1]])
+    sums = [each.reshape(len(each), -1).sum(axis=1) for each in lengths.values()]
+    sizes = sum((*sums, *(lengths_of(each - first) for each in others)), np.zeros(len(first)))
+    first_row = np.cumsum([0, *(shape.parts for shape in shapes[:-1])])
     return ExactFields(points, lengths, directions, turns, sizes, first_row)
 
 

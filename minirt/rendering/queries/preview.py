@@ -112,7 +112,6 @@ def notice_about(scene: Scene, pixels: np.ndarray) -> str:
 
 
 def is_lit(scene: Scene) -> bool:
-    """Whether anything in a scene gives light."""
     ambient, background = scene.ambient, scene.background
     is_ambient = bool(ambient and ambient.brightness and any(ambient.colour))
     is_bright = bool(background and (isinstance(background.paint, str) or any(background.paint)))
@@ -211,7 +210,6 @@ def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> 
 
 
 def line_of(camera: Camera) -> str:
-    """Return the line of a camera, its direction rounded."""
     code, position, _, *others = describe(camera).split()
     direction = ",".join(spelled(round(part, PLACES)) for part in camera.direction)
     return " ".join((code, position, direction, *others))

@@ -20,7 +20,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from math import ceil, inf, sqrt
-from typing import Any
 
 import numpy as np
 
@@ -41,11 +40,9 @@ def contrast_classes(pixels: np.ndarray, packet_width: int, run: Run) -> np.ndar
     """The class of each packet, uint8 (rows, columns), by the greatest difference of a colour from a neighbour above,
     below, left or right. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs a job on all
     threads."""
-    height, width, _ = pixels.shape
-    if below := -height % PACKET_HEIGHT:
-        pixels = np.concatenate([pixels, *[pixels[-1:]] * below])
-    if beside := -width % packet_width:
-        pixels = np.concatenate([pixels, *[pixels[:, -1:]] * beside], axis=1)
+    below, beside = -pixels.shape[0] % PACKET_HEIGHT, -pixels.shape[1] % packet_width
+    if below or beside:
+        pixels = np.pad(pixels, ((0, below), (0, beside), (0, 0)), "edge")
     lines = pixels.reshape(len(pixels), -1)
     classes = np.empty((len(lines) // PACKET_HEIGHT, pixels.shape[1] // packet_width), np.uint8)
     counter = np.zeros(1, np.int64)
@@ -60,7 +57,6 @@ def contrast_classes(pixels: np.ndarray, packet_width: int, run: Run) -> np.ndar
 
 @cache
 def classify_call() -> Call:
-    """The call of the compiled function, to look for its kernel."""
     numbers, none = np.zeros(1, np.int64), np.zeros((0, 0), np.uint8)
     return functions.classify.call(numbers, none, none, np.zeros((0, 0), np.uint64), CLASS_OF, none)
 
@@ -119,15 +115,14 @@ SEARCHES, PRICES = 2, 64  # for the price of an error: so many times among so ma
 
 
 def allocate(
-    c: np.ndarray, sizes: np.ndarray, error: float, budget: float = inf, least: float = 1.0, work: Any = None
+    c: np.ndarray, sizes: np.ndarray, error: float, budget: float, least: float, work: np.ndarray
 ) -> np.ndarray:
     """The numbers of samples, not whole, for the packets of each class, at least so many, which leave a sum of squared
     errors; or, if those cost more than the budget, the most that the budget pays for.
 
-    `sizes` count the packets of the classes, and `work` is the time that one sample of all of them takes, by default
-    their number. All have a sample, so that a class that gets no more costs nothing.
+    `sizes` count the packets of the classes, and `work` is the time that one sample of all of them takes. All have a
+    sample, so that a class that gets no more costs nothing.
     """
-    work = sizes if work is None else work
     value = c * sizes / np.maximum(work, LEAST)
     # At the lowest price the class with the most error gets one sample, at the highest that with the least gets all.
     most = float(np.log2(COUNTS[-1]) * (ERROR_EXPONENT + 1))
@@ -157,12 +152,10 @@ def cost(samples: np.ndarray, work: np.ndarray) -> np.ndarray:
 def with_neighbours(classes: np.ndarray) -> np.ndarray:
     """Raise classes (rows, columns) to those of the eight neighbours less `NEAR`: a neighbour's sample may have met a
     thin wire that only other samples of the packet meet."""
-    beside, around = classes.copy(), np.maximum(classes, NEAR)
-    beside[:, 1:] = np.maximum(beside[:, 1:], classes[:, :-1])
-    beside[:, :-1] = np.maximum(beside[:, :-1], classes[:, 1:])
-    around[1:] = np.maximum(around[1:], beside[:-1])
-    around[:-1] = np.maximum(around[:-1], beside[1:])
-    return np.maximum(classes, np.maximum(around, beside) - NEAR)
+    padded = np.pad(classes, 1)
+    beside = np.maximum.reduce([padded[:, :-2], padded[:, 1:-1], padded[:, 2:]])
+    around = np.maximum.reduce([beside[:-2], beside[1:-1], beside[2:]])
+    return np.maximum(classes, np.maximum(around, NEAR) - NEAR)
 
 
 def places_of(samples: np.ndarray) -> np.ndarray:
@@ -262,7 +255,6 @@ class Packets:
         return (places_of(samples)[self.classes] + self.random).astype(np.uint8)
 
     def total(self) -> float:
-        """Estimate the sum of the squared errors of all packets."""
         return float((self.c[self.classes] * (COUNTS**-ERROR_EXPONENT)[self.levels]).sum())
 
     @property

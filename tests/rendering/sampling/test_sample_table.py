@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import count
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 import pytest
@@ -112,7 +112,7 @@ def error(samples: Array) -> float:
 @pytest.mark.parametrize("share", [0.9, 0.5, 0.01, 1e-4])
 def test_the_requested_error_is_left_at_the_least_cost(share: float) -> None:
     """The optimum by Lagrange multipliers: n in proportion to (c / time)^0.4 but at least 1."""
-    allocated = allocate(COEFFICIENTS, SIZES, share * WHOLE, work=WORK)
+    allocated = allocate(COEFFICIENTS, SIZES, share * WHOLE, inf, 1.0, WORK)
     assert 0.97 * share < error(allocated) / WHOLE <= share
     low, high = 0.0, 1e9
     for _ in range(100):
@@ -124,7 +124,7 @@ def test_the_requested_error_is_left_at_the_least_cost(share: float) -> None:
 
 @pytest.mark.parametrize("budget", [100.0, 3000.0, 1e6])
 def test_a_budget_is_kept_and_used(budget: float) -> None:
-    assert 0.9 * budget < cost(allocate(COEFFICIENTS, SIZES, 0.0, budget), SIZES) <= budget
+    assert 0.9 * budget < cost(allocate(COEFFICIENTS, SIZES, 0.0, budget, 1.0, SIZES), SIZES) <= budget
 
 
 def learned(classes: Array, errors: Array) -> Packets:
