@@ -91,9 +91,9 @@ def test_all_links_to_a_file_are_packed_once(tmp_path: Path, decodes: bool) -> N
     Image.fromarray(COLOURS).save(tmp_path / "same_pixels.png")
     os.link(tmp_path / "a.png", tmp_path / "hard.png")
     scene = parse("A 1 255,255,255\nC 0,0,-5 0,0,1 70\nL 0,9,0 1 255,255,255\n", str(tmp_path / "x.rt")).scene
-    pool, read = Reader(scene), Colours(decodes).texture
+    pool = Reader(scene)
     names = "a.png", "hard.png", "same_pixels.png", "hard.png"
-    assert [pool.number(name, read) for name in names] == [1, 1, 2, 1]
+    assert [pool.number(name, Colours(decodes).texture) for name in names] == [1, 1, 2, 1]
     assert pool.arrays()["texels"].size == 2 * COLOURS.size
 
 
