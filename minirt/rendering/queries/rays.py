@@ -46,8 +46,7 @@ class Traced(NamedTuple):
     """Rays and shapes from which certificates are computed."""
 
     shapes: tuple[Shape, ...]
-    primitives: NDArray[np.int64]  # (n,) that were hit, among those of all shapes; 0 where nothing was
-    parts: NDArray[np.int64]  # (n,) the same, among those of the shape
+    parts: NDArray[np.int64]  # (n,) that were hit, of the shape: triangles of a mesh; 0 where nothing was
     origins: NDArray[np.float64]
     directions: NDArray[np.float64]
 
@@ -74,15 +73,9 @@ class Hits(ClosestHits):
         """Backward error, condition and normal error; ValueError for hits that are not those of a call of `trace`."""
         from minirt.rendering.queries import certificates
 
-        shapes, _, parts, origins, directions = self.known()
+        shapes, parts, origins, directions = self.known()
         rays = certificates.Rays(origins, directions, self.distance, self.normal)
         return certificates.certify(shapes, self.owner, parts, rays)
-
-    @property
-    def primitive(self) -> NDArray[np.int64]:
-        """(n,) the index among the primitives of the scene, in the order of its shapes, of which a mesh has one for
-        each triangle; 0 where nothing is hit. ValueError for hits that are not those of a call of `trace`."""
-        return self.known().primitives
 
     def known(self) -> Traced:
         """Return the rays and shapes; ValueError for hits that are not those of a call of `trace`."""
@@ -143,8 +136,7 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
         raise ValueError(f"directions must not be 0,0,0, got it at {int(np.argmin(vectors.any(axis=1)))}")
     count = len(starts)
     hits = Hits(np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan))
-    primitives = parts = np.zeros(count, np.int64)
-    chosen = renderer(threads)
+    parts, chosen = np.zeros(count, np.int64), renderer(threads)
     if count and scene.shapes:
         with chosen.busy:
             # The caller's thread only waits, so that Ctrl+C reaches it.
@@ -152,10 +144,10 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
             job = query(counter, chosen.packing.bvh_of(scene.shapes), starts, vectors, hits)
             chosen.runner.pool.run([job] * chosen.threads, partial(counter.fill, count))
             is_hit, arrays = hits.owner >= 0, chosen.packing.shape_arrays
-            primitives = np.where(is_hit, hits.owner, 0)
-            hits.owner[is_hit] = arrays.owner[primitives[is_hit]]
-            parts = np.where(is_hit, primitives - arrays.first_primitive[hits.owner], 0)
-    hits.traced = Traced(scene.shapes, primitives, parts, starts, vectors)
+            primitives = hits.owner[is_hit]
+            owners = hits.owner[is_hit] = arrays.owner[primitives]
+            parts[is_hit] = primitives - arrays.first_primitive[owners]
+    hits.traced = Traced(scene.shapes, parts, starts, vectors)
     return hits
 
 
