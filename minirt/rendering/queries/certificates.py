@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from minirt.element import fields_of
 from minirt.fields import Angle, Direction, Length, Lengths, Point, cos_and_sin
-from minirt.lanes import Vec, dot, sqrt, where
+from minirt.lanes import Vec, dot, sqrt
 from minirt.lanes import unit as unit_vector
 from minirt.shapes import ALL_KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary, DoubleDouble, hypotenuse, unit
@@ -174,11 +174,9 @@ def seeded(point: Vec) -> Vec:
 
 def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
     """The value and the gradient of the chosen faces."""
-    height, slope = boundary.faces[0].rounded(), boundary.faces[0].slope
-    for index, each in enumerate(boundary.faces[1:], 1):
-        height = np.where(face == index, each.rounded(), height)
-        slope = where(face == index, each.slope, slope)
-    return height, slope
+    slopes = [each.slope for each in boundary.faces]
+    slope = Vec(*(np.choose(face, [getattr(each, axis) for each in slopes]) for axis in "xyz"))
+    return np.choose(face, [each.rounded() for each in boundary.faces]), slope
 
 
 U = 2.0**-53

@@ -173,8 +173,6 @@ def query(
 ) -> Callable[[], None]:
     """Return a job that traces rays: by the most specialised kernel that is there, or by one that is compiled now."""
     trees = tree, generalised(tree, empty_arrays(FULL_DOUBLE).bvh)
-    specialised, generic = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
-    for call in (specialised, generic):
-        if entry := LIBRARY.find(LIBRARY.identity(call)):
-            return partial(entry.run, words_of(call[1]))
-    return partial(LIBRARY.get(specialised).run, words_of(specialised[1]))
+    calls = [functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees]
+    call = next((each for each in calls if LIBRARY.has(LIBRARY.identity(each))), calls[0])
+    return partial(LIBRARY.get(call).run, words_of(call[1]))
