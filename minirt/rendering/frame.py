@@ -51,9 +51,9 @@ class Frame(NamedTuple):
     scene: Any
 
 
-def plan_of(packets: np.ndarray, columns: int, drawn: np.ndarray) -> np.ndarray:
+def plan_of(packets: np.ndarray, columns: int, drawn: Any) -> np.ndarray:
     """Return the plan that draws packets, counted row by row, in a picture of so many columns of packets. `drawn`
-    (k, 3) has their other numbers. A plan without any packet has one that takes no samples."""
+    (k, 3) or (3,) has their other numbers. A plan without any packet has one that takes no samples."""
     plan = np.zeros((max(len(packets), 1), 5), np.int32)
     plan[: len(packets), 1], plan[: len(packets), 0] = np.divmod(packets, columns)
     plan[: len(packets), 2:] = drawn

@@ -107,8 +107,7 @@ class FrameRunner:
         if edges_only and not has_apertures(arrays):
             classes = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_on_all)
             packets = np.flatnonzero(classes >= EDGE)
-            drawn = np.tile(np.array([0, samples, 0], np.int32), (len(packets), 1))
-            frame = frame._replace(plan=plan_of(packets, classes.shape[1], drawn))
+            frame = frame._replace(plan=plan_of(packets, classes.shape[1], (0, samples, 0)))
         self.run(frame)
         return bool(counter[0] < CANCELLED)
 

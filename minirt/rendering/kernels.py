@@ -20,7 +20,7 @@ from minirt.kernel.machine_code.library import LIBRARY, Call, Entry
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.packing import generic_kernels
-from minirt.rendering.packing.features import DEPTH, SPREAD, examples, features
+from minirt.rendering.packing.features import DEPTH, examples, features
 from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.sampling.packets import classify_call
@@ -91,7 +91,8 @@ class Kernels:
         self.precision = precision
         self.depth = depth
         self.specialised_after = SPECIALISED_AFTER
-        self.specialised_kernels: dict[frozenset[Hashable], list[str]] = {}  # identities, for each set of features
+        # Identities, for each set of features, and whether there are many shapes, for whose shadow rays there is a BVH.
+        self.specialised_kernels: dict[Hashable, list[str]] = {}
         self.generic_seconds: dict[str, float] = {}  # of generic kernels, by specialised one
         self.compile_process, self.packing_process = CompileProcess(), CompileProcess()
         self.background = BackgroundCompiler()
@@ -139,11 +140,11 @@ class Kernels:
 
     def specialised(self, scene: Scene) -> list[str]:
         """Return the identities of the specialised kernels for a scene."""
-        features = kernel_features(scene)
-        if features not in self.specialised_kernels:
+        key = features(scene), some_primitives(scene) > SMALL
+        if key not in self.specialised_kernels:
             calls = calls_for(scene, self.precision, self.depth)
-            self.specialised_kernels[features] = list(map(LIBRARY.identity, calls))
-        return self.specialised_kernels[features]
+            self.specialised_kernels[key] = list(map(LIBRARY.identity, calls))
+        return self.specialised_kernels[key]
 
     def compile(self, scene: Scene) -> None:
         """Compile the missing specialised kernels for a scene, in two processes. RenderError where that fails."""
@@ -162,16 +163,6 @@ class Kernels:
 
 
 # The kernels that a scene needs, found without rendering it, by a small scene that needs the same ones.
-
-
-def kernel_features(scene: Scene) -> frozenset[Hashable]:
-    """The kinds of shapes and the features of a scene, each set of which has a kernel of its own.
-
-    With light sources that are not points "bvh" is one of them where there are so many shapes that shadow rays traverse
-    a BVH.
-    """
-    used = features(scene)
-    return used | {"bvh"} if some_primitives(scene) > SMALL and not SPREAD.isdisjoint(used) else used
 
 
 def some_primitives(scene: Scene) -> int:

@@ -25,12 +25,12 @@ from minirt.rendering.kernels import (
     Kernels,
     generic_call,
     generic_identity,
-    kernel_features,
     minimal_scene,
     packing_calls,
+    some_primitives,
 )
 from minirt.rendering.notes import NO_GENERIC_KERNEL
-from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.scene_packing import Packing
@@ -236,10 +236,10 @@ def test_the_minimal_scene_needs_the_same_kernel() -> None:
     tube = Cylinder((0, 0, 0), (0, 1, 0), 1, 2, GREY, checker=Checker(0.1))
     for elements in ((SPHERE,), (*balls, tube, SUN), (*balls[: SMALL + 1], SUN), (SPHERE, SUN)):
         scene = Scene((LIGHT, EYE, *elements))
-        assert kernel_features(minimal_scene(scene)) == kernel_features(scene)
-        assert len(minimal_scene(scene).shapes) <= SMALL + 2
-    assert "bvh" in kernel_features(Scene((LIGHT, EYE, *balls, SUN)))
-    assert "bvh" not in kernel_features(Scene((LIGHT, EYE, *balls)))
+        minimal = minimal_scene(scene)
+        assert features(minimal) == features(scene)
+        assert (some_primitives(minimal) > SMALL) is (some_primitives(scene) > SMALL)
+        assert len(minimal.shapes) <= SMALL + 2
 
 
 def test_the_minimal_scene_of_a_large_mesh_is_small() -> None:
