@@ -274,36 +274,6 @@ def test_many_shapes_have_the_numbers_of_each() -> None:
     assert not arrays.update((*mixed,))
 
 
-@pytest.mark.parametrize(
-    "edit",
-    [
-        lambda s: (*s, s[0].replace(colour=(1, 1, 1))),
-        lambda s: (s[1].replace(colour=(1, 1, 1)), *s),
-        lambda s: (*s[:9], *s[10:]),
-        lambda s: s[3:],
-        lambda s: s[:-4],
-        lambda s: (*s[:5], *SHAPES, *s[7:]),
-        lambda s: (*s[:5], s[6], s[5], *s[7:]),
-    ],
-)
-def test_adding_and_removing_shapes_leaves_the_numbers_of_the_others(edit, monkeypatch) -> None:
-    before = tuple(shape.replace(colour=(i % 256, 7, 9)) for i, shape in enumerate(SHAPES * 5))
-    after = edit(before)
-    arrays, fresh = ShapeArrays(), ShapeArrays()
-    arrays.update(before)
-    fresh.update(after)
-    written = []
-    write = arrays.write
-    monkeypatch.setattr(arrays, "write", lambda group, indices: (written.extend(indices), write(group, indices)))
-    assert arrays.update(after)
-    assert len(written) <= len(SHAPES)
-    for name in ("slots", "colours_and_extents", "boxes", "first_ball", "balls", "plane_indices", "planes"):
-        assert np.array_equal(getattr(arrays, name), getattr(fresh, name)), name
-    for kept_rows, fresh_rows in zip(arrays.rows, fresh.rows, strict=True):
-        assert np.array_equal(kept_rows, fresh_rows)
-    assert arrays.shapes == after
-
-
 def test_adding_or_removing_a_kind_allocates_all_arrays_anew() -> None:
     arrays = ShapeArrays()
     for shapes in (MANY[:3], SHAPES, MANY[:2], (), SHAPES):

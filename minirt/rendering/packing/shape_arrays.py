@@ -1,4 +1,5 @@
-"""Shapes of a scene as structure of arrays (SoA), of which an edit rewrites only what it changes.
+"""Shapes of a scene as structure of arrays (SoA), of which an edit rewrites only what it changes. Where it adds or
+removes shapes all are written.
 
 Primitives are what rays are tested against: one for most shapes, and one for each triangle of a mesh.
 """
@@ -6,8 +7,7 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from copy import copy
-from itertools import chain, repeat
+from itertools import chain
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -121,42 +121,22 @@ class ShapeArrays:
         """Bring the arrays up to date; return whether anything changed."""
         if shapes is self.shapes:
             return False
-        resized = len(shapes) != len(self.shapes)
-        changed = [] if resized else differing_indices(self.shapes, shapes)
+        fits = len(shapes) == len(self.shapes)
+        changed = differing_indices(self.shapes, shapes) if fits else []
         pairs = ((self.shapes[i], shapes[i]) for i in changed)
-        if resized or not all(type(old) is type(new) and old.parts == new.parts for old, new in pairs):
-            resized, changed = True, self.resize(shapes)
+        fits = fits and all(type(old) is type(new) and old.parts == new.parts for old, new in pairs)
+        if not fits:
+            self.allocate(shapes)
         self.shapes = shapes
-        if not (resized or changed):
+        if fits and not changed:
             return False
-        indices = np.array(changed, np.int64)
+        indices = np.array(changed, np.int64) if fits else np.arange(len(shapes))
         groups = self.slots[self.first_primitive[indices], 0]
         for group in range(len(self.rows)):
             of_group = indices[groups == group]
             for start in range(0, len(of_group), CHUNK):
                 self.write(group, of_group[start : start + CHUNK])
         return True
-
-    def resize(self, shapes: tuple[Shape, ...]) -> list[int]:
-        """Make room for other shapes, of which those that were there keep their numbers; return the indices of those
-        to write."""
-        old = copy(self)
-        self.allocate(shapes)
-        places = {id(shape): index for index, shape in enumerate(old.shapes)}
-        found = np.fromiter(map(places.get, map(id, shapes), repeat(-1)), np.int64, len(shapes))
-        kept = np.flatnonzero(found >= 0)
-        new, before = (ranges(each.first_primitive, which) for each, which in ((self, kept), (old, found[kept])))
-        self.colours_and_extents[new], self.boxes[new] = old.colours_and_extents[before], old.boxes[before]
-        self.balls[ranges(self.first_ball, new)] = old.balls[ranges(old.first_ball, before)]
-        is_plane = self.is_plane[self.slots[new, 0]]
-        planes_before = np.searchsorted(old.plane_indices, before[is_plane])
-        self.planes[np.searchsorted(self.plane_indices, new[is_plane])] = old.planes[planes_before]
-        for element, group in self.group_numbers.items():
-            if element in old.group_numbers:
-                of_group = self.slots[new, 0] == group
-                rows = old.rows[old.group_numbers[element]]
-                self.rows[group][self.slots[new[of_group], 1]] = rows[old.slots[before[of_group], 1]]
-        return np.flatnonzero(found < 0).tolist()
 
     def allocate(self, shapes: tuple[Shape, ...]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
