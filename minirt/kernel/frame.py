@@ -70,7 +70,7 @@ def frame(
     """Render rows of tiles, or rows of a plan, taking the next ones from the counter `next_row` until none is left.
 
     Any number of threads may do so at the same time, each with its own `memory` (see
-    `minirt.kernel.shadow_rays.unoccluded` and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile
+    `minirt.kernel.shadow_rays.unoccluded` and `minirt.kernel.shading.lights`) and its own `sums` of samples of a tile
     (`SUMS` numbers). `pixels` (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it
     has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of a packet's rays, less the direction
     through the packet's upper left corner; where the scene has a lens or light sources with a size it is longer, see

@@ -64,13 +64,13 @@ class SceneArrays(NamedTuple):
     lens: Any = None  # (7,) half axes of the camera's lens, and one over the distance at which it is sharp
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.lights`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
-    transparent: Any = None  # (n, 5) glass as light from light sources meets it, `minirt.kernel.shading.shadows`
+    transparent: Any = None  # (n, 5) glass as light from light sources meets it, `minirt.kernel.shading.shade`
     media: Any = None  # (n, 6) tinted glass, see `minirt.kernel.shading.surfaces`
     eye_medium: Any = None  # (3,) absorption at the eye, likewise
     fresnel: Any = None  # (n,) how far the shares of mirrors and glass are those of Fresnel's equations, from 0 to 1
     fades: Any = None  # (n, 2) one over the distances at which reflected and refracted rays are gone, or 0
     glow: Any = None  # (n,) share of its colour that a shape emits
-    smooth: Any = None  # (n,) 1 for the triangles of smooth meshes, else 0, see `minirt.kernel.shading.shadows`
+    smooth: Any = None  # (n,) 1 for the triangles of smooth meshes, else 0, see `minirt.kernel.shading.shade`
     surface_maps: Any = None  # `minirt.kernel.shading.texturing.SurfaceMaps`
     patterns: Any = None  # `minirt.kernel.shading.patterns.Patterns`
     depth: int = 0  # most reflections and refractions along a path

@@ -6,6 +6,8 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
+from minirt.kernel.shadow_rays import ShadowRays, is_parallel
+from minirt.kernel.trace import ROUNDING
 from minirt.lanes import (
     Mask,
     Number,
@@ -17,11 +19,13 @@ from minirt.lanes import (
     inverse_root,
     load,
     load_vec,
+    max_norm,
     maximum,
     minimum,
     save,
     splat,
     unit,
+    unit_roundoff,
     where,
     width,
 )
@@ -156,6 +160,26 @@ def sampled_position(
         to_light = towards * per_length
         distance = distance * (squared * per_length)
     return position, to_light, distance
+
+
+def aim(scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number) -> tuple[ShadowRays, Number]:
+    """Return the rays from some points to a light source, and the relative strength of the light at the points.
+
+    The points are known up to `rounding`. Rays end a little before the light source: no surface on which it lies
+    occludes it.
+    """
+    position = vector(scene.lights[light], 0)
+    to_centre, distance, strength = incident_light(scene.spots, light, position, point)
+    to_light = to_centre
+    if scene.soft is not None:
+        position, to_light, distance = sampled_position(scene.soft, memory, light, position, to_centre, distance)
+    distance = distance - 4.0 * (rounding + ROUNDING * unit_roundoff(distance) * max_norm(position))
+    return ShadowRays(light, position, to_centre, point, to_light, distance), strength
+
+
+def is_spread(scene: SceneArrays, light: int) -> bool:
+    """Whether a light source is not a point: it is parallel light, or it has a size."""
+    return is_parallel(scene, light) or (has_rows(scene.soft) and scene.soft[light, 0] > 0.0)
 
 
 def perpendicular(axis: Vec) -> tuple[Vec, Vec]:

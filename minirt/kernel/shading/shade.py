@@ -1,92 +1,105 @@
-"""Direct lighting of a surface: ambient light and, from each light source, Lambert's law, highlights and shadows."""
+"""Direct lighting of a surface: ambient light and, from each light source, Lambert's law, highlights and shadows.
+
+A facet of a smooth mesh that faces away from a light source lies in its own shadow, although its shading normals may
+still face the light source: the edge of the light shows the facets. So shadow rays start on the smooth surface that
+the normals at the corners suggest. Bumps that face a light source behind the surface would end in a hard edge: their
+light fades as the light source sets.
+
+A shadow ray that something occludes is followed from surface to surface, straight on. Opaque surfaces end it. Each
+surface of glass lets its share through; with Fresnel's equations, that of the angle outside, since a ray leaves a pane
+or a ball at the angle at which it entered. `SceneArrays.transparent` (n, 5) has the shares of reflection and
+refraction, the index of refraction, how far Fresnel's equations count, and 1 where a mesh has glass and opaque parts.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 from minirt.kernel import bvh_traversal
-from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
-from minirt.kernel.shading.lights import incident_light, sampled_position, sources_in_reach, specular
-from minirt.kernel.shading.shadows import bump_fading, has_bumps, light_through_glass, smooth_points
-from minirt.kernel.shading.surfaces import MIN_WEIGHT, Surface, clearance, tint
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, smooth_point, vector
+from minirt.kernel.shading.lights import aim, is_spread, sources_in_reach, specular
+from minirt.kernel.shading.surfaces import (
+    FILTER,
+    MIN_WEIGHT,
+    Ray,
+    Surface,
+    absorbed,
+    brightest,
+    clearance,
+    medium_behind,
+    row_of,
+    shares_at_angle,
+    surface_of,
+    tint,
+)
 from minirt.kernel.shadow_rays import ShadowRays, unoccluded
-from minirt.kernel.trace import ROUNDING
-from minirt.lanes import Mask, Number, Vec, any, dot, max_norm, maximum, rarely, splat, unit_roundoff, where
+from minirt.kernel.trace import Hit, of_shape
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    dot,
+    fabs,
+    first,
+    lane,
+    maximum,
+    minimum,
+    rarely,
+    splat,
+    sqrt,
+    where,
+)
+
+ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
+LEAST_COSINE = 2.0**-26  # of a shading normal that counts as leaning less than 90 degrees
+MOST_SURFACES = 256  # that a shadow ray may cross; beyond them it counts as occluded
 
 
-def direct_light(
-    scene: SceneArrays,
-    memory: Any,
-    surface: Surface,
-    direction: Vec,
-    owner: Number,
-    extent: Number,
-    medium: Vec,
-    hit: Mask,
-) -> tuple[Vec, Vec]:
-    """Compute the light that falls onto surfaces, and the highlights that they reflect against the ray's direction.
+def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface: Surface, hit: Mask) -> tuple[Vec, Vec]:
+    """Compute the light that falls onto the surfaces at the hits of rays, and the highlights that they reflect back.
 
     The light is ambient light and, by Lambert's cosine law, that of every light source that is not occluded. It reaches
-    the side from which the ray comes, which is in a `medium`; cosines are those of the shading normal. Rays that do not
-    hit get no light. `owner` has the index of the shape at each hit.
+    the side from which the ray comes; cosines are those of the shading normal. Rays that do not hit get no light.
     """
     normal, shading_normal = surface.normal, surface.shading_normal
-    u = unit_roundoff(extent)
-    rounding = clearance(surface.point, extent)
+    rounding = clearance(surface.point, found[2])
     start = surface.point + rounding * normal
     total = where(hit, vector(scene.ambient, 0), Vec(0.0, 0.0, 0.0))
-    zero = splat(0.0, extent)
+    zero = splat(0.0, rounding)
     highlight = Vec(zero, zero, zero)
-    first, end = 0, scene.lights.shape[0]
+    first_source, end = 0, scene.lights.shape[0]
     if scene.light_grid is not None and has_rows(scene.light_grid.grids):
-        first, end = sources_in_reach(scene.light_grid, surface.point, rounding, hit)
-    for number in range(first, end):
+        first_source, end = sources_in_reach(scene.light_grid, surface.point, rounding, hit)
+    for number in range(first_source, end):
         i = number
         if scene.light_grid is not None and has_rows(scene.light_grid.grids):
             i = int(scene.light_grid.sources[number])
         intensity = vector(scene.lights[i], 3)
-        rays, strength = aim(scene, memory, i, start)
+        rays, strength = aim(scene, memory, i, start, rounding)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):
             strength = strength * bump_fading(surface.base_normal, shading_normal, to_light)
         cosine = dot(shading_normal, to_light) * strength
         lit = hit & (cosine > 0.0)
         if any(lit):
-            # A surface occludes no light source that lies on it.
-            tolerance = 4.0 * (rounding + ROUNDING * u * max_norm(rays.position))
             if has_rows(scene.smooth):
                 turned_away = lit & (dot(normal, to_light) <= 0.0)
                 if rarely(turned_away):
-                    smooth = smooth_points(scene, owner, surface.point, normal, turned_away)
-                    rays, _ = aim(scene, memory, i, where(turned_away, smooth + rounding * normal, start))
-            rays = shortened(rays, tolerance)
+                    smooth = smooth_points(scene, found[1], surface.point, normal, turned_away)
+                    rays, _ = aim(scene, memory, i, where(turned_away, smooth + rounding * normal, start), rounding)
             share, light = zero, intensity
             if scene.transparent is None:
                 lit = trace_shadow_rays(scene, memory, rays, lit, False)
             if has_rows(scene.specular):
-                share = specular(surface.specular, shading_normal, to_light, direction, lit)
+                share = specular(surface.specular, shading_normal, to_light, ray.direction, lit)
             if scene.transparent is not None:
                 seen = (own_share(surface) > MIN_WEIGHT) | (share > MIN_WEIGHT)
-                light = tint(shares_of_light(scene, memory, rays, medium, lit, seen), intensity)
+                light = tint(shares_of_light(scene, memory, rays, ray.medium, lit, seen), intensity)
             total = total + where(lit, cosine, 0.0) * light
             if has_rows(scene.specular):
                 highlight = highlight + share * strength * light
     return total, highlight
-
-
-def aim(scene: SceneArrays, memory: Any, light: int, point: Vec) -> tuple[ShadowRays, Number]:
-    """Return the rays from some points to a light source, and the relative strength of the light at the points."""
-    centre = vector(scene.lights[light], 0)
-    to_centre, distance, strength = incident_light(scene.spots, light, centre, point)
-    if scene.soft is None:
-        return ShadowRays(light, centre, to_centre, point, to_centre, distance), strength
-    position, to_light, distance = sampled_position(scene.soft, memory, light, centre, to_centre, distance)
-    return ShadowRays(light, position, to_centre, point, to_light, distance), strength
-
-
-def shortened(rays: ShadowRays, length: Number) -> ShadowRays:
-    """Return rays that end by a length before the light source."""
-    return ShadowRays(rays.light, rays.position, rays.towards, rays.origin, rays.direction, rays.distance - length)
 
 
 def own_share(surface: Surface) -> Number:
@@ -109,16 +122,6 @@ def trace_shadow_rays(scene: SceneArrays, memory: Any, rays: ShadowRays, lit: Ma
     return bvh_traversal.unoccluded(scene.bvh, rays.origin, rays.direction, rays.distance, lit)
 
 
-def is_spread(scene: SceneArrays, light: int) -> bool:
-    """Whether a light source is not a point: it is parallel light, or it has a size."""
-    spread = False
-    if has_rows(scene.spots):
-        spread = scene.spots[light, 6] > 0.5
-    if has_rows(scene.soft):
-        spread = spread or scene.soft[light, 0] > 0.0
-    return spread
-
-
 def shares_of_light(scene: SceneArrays, memory: Any, rays: ShadowRays, medium: Vec, lit: Mask, seen: Mask) -> Vec:
     """Return the shares of red, green and blue of a light source that reach the origin of `lit` shadow rays.
 
@@ -131,3 +134,112 @@ def shares_of_light(scene: SceneArrays, memory: Any, rays: ShadowRays, medium: V
         if phase == 0:
             lit = clear
     return light_through_glass(scene, rays, medium, lit & (clear | seen), clear)
+
+
+def smooth_points(scene: SceneArrays, owner: Number, point: Vec, normal: Vec, rays: Mask) -> Vec:
+    """Move the points of some rays from the facets of smooth meshes onto the smooth surface; other points stay.
+
+    `owner` has the indices of the shapes that the rays hit, `normal` the geometric normals on the side of the rays.
+    """
+    result = point
+    remaining = rays
+    while any(remaining):
+        index = int(lane(owner, first(remaining)))
+        owned = remaining & (owner == index)
+        if scene.smooth[index] != 0:
+            moved = of_shape(smooth_point, scene.groups, scene.slots[index], (point, normal), point)
+            result = where(owned, moved, result)
+        remaining = remaining & ~owned
+    return result
+
+
+def bump_fading(base: Vec, bumped: Vec, to_light: Vec) -> Number:
+    """Return the share of light that bumps let through; 1 where the bumped normal is that of the surface, `base`.
+
+    The microfacet shadowing of a surface so rough that its facets have the bumped normal (Estevez, Lecocq and Stein, A
+    Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem, Ray Tracing Gems, 2019, chapter 12). With
+    the cosine c of the light over the base and the roughness a it is 2 c / (c + sqrt(c^2 + a^2 (1 - c^2))).
+    """
+    apart = bumped - base
+    chord = dot(apart, apart)  # exactly 0 for a flat bump, unlike the sine of the angle
+    leaning = maximum(1.0 - 0.5 * chord, LEAST_COSINE)  # cosine between the normals
+    squared = minimum(ROUGHNESS * chord * (1.0 - 0.25 * chord) / (leaning * leaning), 1.0)
+    cosine = maximum(dot(base, to_light), 0.0)
+    root = sqrt(cosine * cosine + squared * maximum(1.0 - cosine * cosine, 0.0))
+    total = cosine + root
+    return where(total > 0.0, 2.0 * cosine / where(total > 0.0, total, 1.0), 0.0)
+
+
+def has_bumps(scene: SceneArrays) -> bool:
+    """Whether any shape of a scene has a bump map, a normal map or a raised pattern."""
+    if scene.patterns is not None and has_rows(scene.patterns.heights):
+        return True
+    if scene.surface_maps is None:
+        return False
+    return has_rows(scene.surface_maps.bumps) or has_rows(scene.surface_maps.normals)
+
+
+def light_through_glass(scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: Mask, clear: Mask) -> Vec:
+    """Return the shares of red, green and blue of a light source that reach the origin of shadow rays.
+
+    Of the `lit` rays those that are `clear` meet nothing. Rays start in a `medium`.
+    """
+    share = where(clear, splat(1.0, rays.distance), 0.0)
+    light = Vec(share, share, share)
+    reach = rays.distance
+    occluded = lit & ~clear
+    if has_rows(scene.transparent) and any(occluded):
+        light, medium, reach = follow_shadow_rays(scene, rays, medium, light, occluded)
+    if has_rows(scene.media):
+        light = absorbed(light, medium, reach)
+    return light
+
+
+def follow_shadow_rays(
+    scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, occluded: Mask
+) -> tuple[Vec, Vec, Number]:
+    """Follow `occluded` shadow rays from surface to surface.
+
+    Returns the shares that are left behind the last one, and the medium and the distance to the light source there.
+    """
+    start, to_light, reach = rays.origin, rays.direction, rays.distance
+    light = where(occluded, Vec(1.0, 1.0, 1.0), light)
+    active = occluded
+    for _ in range(MOST_SURFACES):
+        t, owner, extent = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
+        active = active & (t < reach)
+        if not any(active):
+            break
+        if has_rows(scene.media):
+            light = where(active, absorbed(light, medium, where(active, t, 0.0)), light)
+        reach = where(active, reach - t, reach)
+        point = start + where(active, t, 0.0) * to_light
+        remaining = active
+        while rarely(remaining):
+            index = int(lane(owner, first(remaining)))
+            crossing = remaining & (owner == index)
+            behind = behind_surface(scene, index, point, to_light, extent, light, medium)
+            start = where(crossing, behind[0], start)
+            light = where(crossing, behind[1], light)
+            medium = where(crossing, behind[2], medium)
+            remaining = remaining & ~crossing
+        active = active & (brightest(light) > 0.0)
+    ended = where(active, 0.0, 1.0)
+    return ended * light, medium, reach
+
+
+def behind_surface(
+    scene: SceneArrays, index: int, point: Vec, direction: Vec, extent: Number, light: Vec, medium: Vec
+) -> tuple[Vec, Vec, Vec]:
+    """Return where rays go on that cross the surface of a shape, and the light and the medium behind it."""
+    on, normal, shading_normal = surface_of(scene, index, point)
+    cosine = fabs(dot(shading_normal, direction))
+    reflective, fresnel = row_of(scene.transparent, index, extent), splat(scene.transparent[index, 3], extent)
+    # Shadow rays take the shares of a ray that enters, on both sides of glass: no cosine is below 0.
+    light = shares_at_angle(reflective, fresnel, cosine, cosine < 0.0).y * light
+    leaves = dot(normal, direction) > 0.0
+    start = on + where(leaves, clearance(on, extent), -clearance(on, extent)) * normal
+    if has_rows(scene.media):
+        light = tint(light, row_of(scene.media, index, extent, FILTER))
+        medium = medium_behind(medium, row_of(scene.media, index, extent), leaves)
+    return start, light, medium

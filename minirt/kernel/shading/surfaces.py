@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, shading, surface, vector
 from minirt.kernel.shading.patterns import SPACING, apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
-from minirt.kernel.trace import ROUNDING, of_shape
+from minirt.kernel.trace import ROUNDING, Hit, of_shape
 from minirt.lanes import (
     Mask,
     Number,
@@ -66,12 +66,9 @@ def shares_at_angle(reflective: Vec, fresnel: Number, cosine: Number, leaves: Ma
 
 def absorbed(light: Vec, medium: Vec, distance: Number) -> Vec:
     """Return what is left of light after a distance, which may be infinite, in a medium."""
-    if any(maximum(maximum(medium.x, medium.y), medium.z) > 0.0):
-        light = Vec(
-            light.x * transmittance(medium.x, distance),
-            light.y * transmittance(medium.y, distance),
-            light.z * transmittance(medium.z, distance),
-        )
+    if any(brightest(medium) > 0.0):
+        red, green = transmittance(medium.x, distance), transmittance(medium.y, distance)
+        light = tint(light, Vec(red, green, transmittance(medium.z, distance)))
     return light
 
 
@@ -83,11 +80,8 @@ def transmittance(absorption: Number, distance: Number) -> Number:
 
 def medium_behind(medium: Vec, rates: Vec, leaves: Mask) -> Vec:
     """Return the medium behind the surface of a shape with the absorption `rates`, which a ray enters or leaves."""
-    return Vec(
-        rate_behind(medium.x, rates.x, leaves),
-        rate_behind(medium.y, rates.y, leaves),
-        rate_behind(medium.z, rates.z, leaves),
-    )
+    red, green = rate_behind(medium.x, rates.x, leaves), rate_behind(medium.y, rates.y, leaves)
+    return Vec(red, green, rate_behind(medium.z, rates.z, leaves))
 
 
 def rate_behind(rate: Number, change: Number, leaves: Mask) -> Number:
@@ -99,6 +93,17 @@ def rate_behind(rate: Number, change: Number, leaves: Mask) -> Number:
 def brightest(light: Vec) -> Number:
     """Return the largest channel."""
     return maximum(maximum(light.x, light.y), light.z)
+
+
+class Ray(NamedTuple):
+    """A packet of rays."""
+
+    origin: Vec
+    direction: Vec
+    weight: Number  # of its light in the pixel
+    fade: Number  # one over the distance at which the light is gone, or 0
+    colour: Vec  # shares of red, green and blue that tinted glass has left, in scenes that have any
+    medium: Vec  # absorption of red, green and blue along the ray, likewise
 
 
 class Surface(NamedTuple):
@@ -123,26 +128,22 @@ def clearance(point: Vec, extent: Number) -> Number:
     return ROUNDING * unit_roundoff(extent) * (max_norm(point) + extent)
 
 
-def surfaces(
-    scene: SceneArrays, memory: Any, owner: Number, point: Vec, t: Number, direction: Vec, hit: Mask
-) -> Surface:
+def surfaces(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> Surface:
     """Compute the surfaces that rays hit, from the shapes that own the hits and from the points within rounding.
 
-    The rays of a packet hit few different shapes, mostly one. The shape that the packet before hit last, which `memory`
-    caches behind the rows of the lights, is evaluated first, for all rays; further shapes only correct their own rays.
+    The rays of a packet hit few different shapes, mostly one: that of the first hit is evaluated for all rays, and
+    further shapes only correct their own rays.
     """
-    index = int(memory[scene.lights.shape[0], 0])
+    t, owner, _ = found
+    point = ray.origin + t * ray.direction
+    index = int(lane(owner, first(hit)))
+    result = surface_at(scene, memory, index, point, t, ray.direction)
     remaining = hit & (owner != index)
-    if rarely(remaining) and not any(hit & (owner == index)):
-        index = int(lane(owner, first(hit)))
-        remaining = hit & (owner != index)
-    result = surface_at(scene, memory, index, point, t, direction)
     while rarely(remaining):
         index = int(lane(owner, first(remaining)))
         owned = remaining & (owner == index)
-        result = where(owned, surface_at(scene, memory, index, point, t, direction), result)
+        result = where(owned, surface_at(scene, memory, index, point, t, ray.direction), result)
         remaining = remaining & ~owned
-    memory[scene.lights.shape[0], 0] = index
     return result
 
 
@@ -152,9 +153,7 @@ def surface_at(scene: SceneArrays, memory: Any, index: int, point: Vec, t: Numbe
     colour = row_of(scene.colours_and_extents, index, point.x)
     shading_normal = base_normal
     if scene.surface_maps is not None:
-        shading_normal, colour = apply_maps(
-            scene.surface_maps, scene.groups, index, scene.slots[index], on, base_normal, colour
-        )
+        shading_normal, colour = apply_maps(scene, index, on, base_normal, colour)
     if scene.patterns is not None:
         spacing = memory[scene.lights.shape[0], SPACING]
         footprint = spacing * pixel_footprint(scene.camera, on, t, direction, normal)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from math import pi
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, mapping, vector
+from minirt.kernel.scene_arrays import SceneArrays, has_rows, mapping, vector
 from minirt.kernel.trace import of_shape
 from minirt.lanes import (
     Mask,
@@ -80,8 +80,7 @@ def height_gradient(texels: Any, pictures: Any, which: int, u: Number, v: Number
 
 
 class SurfaceMaps(NamedTuple):
-    """The maps of n shapes, and the pictures that they use. A kind of map that no shape has is None, or has no
-    rows.
+    """The maps of n shapes, and the pictures that they use. A kind of map that no shape has is None or has no rows.
 
     Pictures are numbered from 1; a shape without the map has 0.
     """
@@ -99,18 +98,17 @@ class SurfaceMaps(NamedTuple):
 Mapped = tuple[Number, Number, Vec, Vec]  # u, v and the tangents along them
 
 
-def apply_maps(
-    maps: Any, groups: tuple[Group, ...], index: int, slot: Any, point: Vec, normal: Vec, colour: Vec
-) -> tuple[Vec, Vec]:
-    """Apply the maps of shape `index`, in `slot` (group, row), to its shading normals and colours at some points."""
+def apply_maps(scene: SceneArrays, index: int, point: Vec, normal: Vec, colour: Vec) -> tuple[Vec, Vec]:
+    """Apply the maps of a shape to its shading normals and colours at some points."""
+    maps, slot = scene.surface_maps, scene.slots[index]
     if has_rows(maps.used) and maps.used[index] != 0:
         zero = splat(0.0, point.x)
         arguments = point, in_own_frame(maps.placements, index, normal)
-        u, v, along_u, along_v = of_shape(mapping_on_lanes, groups, slot, arguments, (zero, zero, point, point))
+        u, v, along_u, along_v = of_shape(mapping_on_lanes, scene.groups, slot, arguments, (zero, zero, point, point))
         u, v, along_u, along_v = placed(maps.placements, index, u, v, along_u, along_v)
-        colour = checkered(maps.checks, index, u, v, textured(maps.textures, maps, index, u, v, colour))
-        normal = bump_mapped(maps.bumps, maps, index, u, v, along_u, along_v, normal)
-        normal = normal_mapped(maps.normals, maps, index, u, v, along_u, along_v, normal)
+        colour = checkered(maps.checks, index, u, v, textured(maps, index, u, v, colour))
+        normal = bump_mapped(maps, index, u, v, along_u, along_v, normal)
+        normal = normal_mapped(maps, index, u, v, along_u, along_v, normal)
     return normal, colour
 
 
@@ -160,42 +158,38 @@ def checkered(checks: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec
     return where(half == floor(half), colour, vector(checks[index], 1))
 
 
-def textured(textures: Any, maps: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
+def textured(maps: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
     """Return the colour of the shape's texture at u, v, or `colour` if it has none."""
-    if not has_rows(textures) or textures[index] == 0:
+    if not has_rows(maps.textures) or maps.textures[index] == 0:
         return colour
-    return texture_lookup(maps.texels, maps.pictures, textures[index] - 1, u, v)
+    return texture_lookup(maps.texels, maps.pictures, maps.textures[index] - 1, u, v)
 
 
-def bump_mapped(
-    bumps: Any, maps: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec
-) -> Vec:
+def bump_mapped(maps: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
     """Bump mapping: the normal of the surface raised by a height map (Blinn, Simulation of Wrinkled Surfaces, 1978).
 
     Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the
     normal, which need not be that of the tangents (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
     """
-    if not has_rows(bumps) or bumps[index, 0] == 0.0:
+    if not has_rows(maps.bumps) or maps.bumps[index, 0] == 0.0:
         return normal
-    slope_u, slope_v = height_gradient(maps.texels, maps.pictures, int(bumps[index, 0]) - 1, u, v)
+    slope_u, slope_v = height_gradient(maps.texels, maps.pictures, int(maps.bumps[index, 0]) - 1, u, v)
     per_width = inverse_length(along_u)
     right, up = per_width * along_u, per_width * along_v
     area = dot(cross(right, up), normal)
-    strength = bumps[index, 1] * copysign(1.0, area)
+    strength = maps.bumps[index, 1] * copysign(1.0, area)
     change = strength * (slope_u * cross(normal, up) - slope_v * cross(normal, right))
     return unit(where(area == 0.0, normal, fabs(area) * normal + change))
 
 
-def normal_mapped(
-    normals: Any, maps: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec
-) -> Vec:
+def normal_mapped(maps: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
     """Normal mapping: the normal that a picture encodes in tangent space.
 
     Red, green and blue are its components along u, v and the normal before.
     """
-    if not has_rows(normals) or normals[index] == 0:
+    if not has_rows(maps.normals) or maps.normals[index] == 0:
         return normal
-    decoded = decode_normal(texture_lookup(maps.texels, maps.pictures, normals[index] - 1, u, v))
+    decoded = decode_normal(texture_lookup(maps.texels, maps.pictures, maps.normals[index] - 1, u, v))
     right, up = inverse_length(along_u) * along_u, inverse_length(along_v) * along_v
     mapped = decoded.x * right + decoded.y * up + decoded.z * normal
     squared = dot(mapped, mapped)

@@ -10,7 +10,7 @@ of rays that wait to be traced are on a stack.
 from __future__ import annotations
 
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
 from minirt.kernel.shading.shade import direct_light, own_share
 from minirt.kernel.shading.surfaces import (
     MIN_WEIGHT,
+    Ray,
     Surface,
     absorbed,
     brightest,
@@ -29,7 +30,7 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shading.texturing import background_light, weighted_background
-from minirt.kernel.trace import closest_hit
+from minirt.kernel.trace import Hit, closest_hit
 from minirt.lanes import (
     BYTES,
     Mask,
@@ -55,17 +56,6 @@ MAX_DEPTH = 32  # the largest depth that a scene may ask for
 DIRECTION, WEIGHT, LEVEL, FADE, COLOUR, MEDIUM = 3, 6, 7, 8, 9, 12
 RAY_ROWS = 15  # rows of lanes of a packet of waiting rays
 STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * BYTES // 8
-
-
-class Ray(NamedTuple):
-    """A packet of rays."""
-
-    origin: Vec
-    direction: Vec
-    weight: Number  # of its light in the pixel
-    fade: Number  # one over the distance at which the light is gone, or 0
-    colour: Vec  # shares of red, green and blue that tinted glass has left, in scenes that have any
-    medium: Vec  # absorption of red, green and blue along the ray, likewise
 
 
 def ray_stack() -> Any:
@@ -106,31 +96,21 @@ def load_rays(scene: SceneArrays, stack: Any, number: int, zero: Number) -> tupl
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
     """Trace primary rays of a tile, and return the radiance that arrives at `origin` along each."""
-    t, owner, extent = closest_hit(scene, tile, origin, direction)
+    found = closest_hit(scene, tile, origin, direction)
+    ray = primary_ray(scene, origin, direction)
     if scene.reflective is not None:
-        return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
-    hit = t < inf
-    zero = splat(0.0, t)
-    radiance = Vec(zero, zero, zero)
+        return whitted(scene, memory, ray, found)
+    hit = found[0] < inf
+    radiance = splat(Vec(0.0, 0.0, 0.0), direction.x)
     if any(hit):
-        radiance, _ = shade(scene, memory, t, owner, extent, origin, direction, radiance, hit)
+        radiance, _ = shade(scene, memory, ray, found, hit)
     return background_light(scene, hit, radiance, direction)
 
 
-def shade(
-    scene: SceneArrays,
-    memory: Any,
-    t: Number,
-    owner: Number,
-    extent: Number,
-    origin: Vec,
-    direction: Vec,
-    medium: Vec,
-    hit: Mask,
-) -> tuple[Vec, Surface]:
-    """Shade the hits of rays in a medium without following reflections; returns their radiance and their surfaces."""
-    surface = surfaces(scene, memory, owner, origin + t * direction, t, direction, hit)
-    light, highlight = direct_light(scene, memory, surface, direction, owner, extent, medium, hit)
+def shade(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> tuple[Vec, Surface]:
+    """Shade the hits of rays without following reflections; returns their radiance and their surfaces."""
+    surface = surfaces(scene, memory, ray, found, hit)
+    light, highlight = direct_light(scene, memory, ray, found, surface, hit)
     radiance = tint(light, surface.colour)
     if scene.reflective is not None:
         radiance = radiance * own_share(surface)
@@ -141,28 +121,24 @@ def shade(
     return radiance, surface
 
 
-def whitted(
-    scene: SceneArrays, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec
-) -> Vec:
+def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: Hit) -> Vec:
     """Return the radiance along rays with known hits, following reflected and refracted rays depth first."""
     stack = ray_stack()
-    zero = splat(0.0, t)
-    ray = primary_ray(scene, origin, direction, zero)
-    level = 0
-    waiting = 0  # packets on the stack
+    zero = splat(0.0, ray.weight)
+    level, waiting = 0, 0  # the latter counts packets on the stack
     radiance = Vec(zero, zero, zero)
     while True:
-        origin, direction, medium = ray.origin, ray.direction, ray.medium
+        t, direction = found[0], ray.direction
         weight, colour = attenuated(scene, ray, t)
         active = weight > 0.0
         hit = active & (t < inf)
         if any(hit):
-            own, surface = shade(scene, memory, t, owner, extent, origin, direction, medium, hit)
+            own, surface = shade(scene, memory, ray, found, hit)
             point, facing, reflective = surface.point, surface.normal, surface.reflective
             # `own` may be NaN for rays that do not hit
             radiance = where(hit, radiance + weight * coloured(scene, own, colour), radiance)
             if level < scene.depth and has_rows(scene.reflective):
-                rounding = clearance(point, extent)
+                rounding = clearance(point, found[2])
                 leaves = surface.side < 0.0
                 mirror_normal = reflecting_normal(surface.shading_normal, facing, direction)
                 cosine = -dot(mirror_normal, direction)
@@ -176,9 +152,9 @@ def whitted(
                 if any(kept > 0.0):
                     onward = unit(direction + 2.0 * cosine * mirror_normal)
                     fade = where(total, surface.fades.y, surface.fades.x)
-                    mirrored = Ray(point + rounding * facing, onward, kept, fade, colour, medium)
+                    mirrored = Ray(point + rounding * facing, onward, kept, fade, colour, ray.medium)
                     waiting = push_rays(scene, stack, waiting, mirrored, level)
-                left, inside = behind_surface(scene, surface, colour, medium, leaves)
+                left, inside = behind_surface(scene, surface, colour, ray.medium, leaves)
                 kept = worth_tracing(scene, refracted, left)
                 if any(kept > 0.0):
                     onward = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirror_normal)
@@ -190,17 +166,19 @@ def whitted(
             break
         waiting -= 1
         ray, level = load_rays(scene, stack, waiting, zero)
-        t, owner, extent = bvh_traversal.closest_hit(scene.bvh, ray.origin, ray.direction, ray.weight > 0.0)
+        found = bvh_traversal.closest_hit(scene.bvh, ray.origin, ray.direction, ray.weight > 0.0)
     return radiance
 
 
-def primary_ray(scene: SceneArrays, origin: Vec, direction: Vec, zero: Number) -> Ray:
-    """Return primary rays, which start in the medium of the eye."""
-    one = zero + 1.0
-    medium = Vec(zero, zero, zero)
+def primary_ray(scene: SceneArrays, origin: Vec, direction: Vec) -> Ray:
+    """Return primary rays, which start in the medium of the eye; lanes where secondary rays take their place."""
+    one = splat(1.0, direction.x)
+    medium = splat(Vec(0.0, 0.0, 0.0), one)
     if scene.eye_medium is not None:
         medium = medium + vector(scene.eye_medium, 0)
-    return Ray(origin, direction, one, zero, Vec(one, one, one), medium)
+    if scene.reflective is not None:
+        origin = splat(origin, one)
+    return Ray(origin, direction, one, splat(0.0, one), Vec(one, one, one), medium)
 
 
 def attenuated(scene: SceneArrays, ray: Ray, t: Number) -> tuple[Number, Vec]:

@@ -11,7 +11,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.fields import MeshFile
-from minirt.kernel.shading.shadows import bump_fading
+from minirt.kernel.shading.shade import bump_fading
 from minirt.lanes import Vec
 from minirt.materials import Bump
 from minirt.meshes import Triangles

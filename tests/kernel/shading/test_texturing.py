@@ -51,13 +51,13 @@ def uniform(colour: tuple[int, int, int]) -> SurfaceMaps:
 
 def bump_lanes(i: int, maps: Any, uv: Any, a: Any, b: Any, n: Any) -> Any:
     u, v, along_u, along_v, normal = load(uv[0], i), load(uv[1], i), vec_lanes(a, i), vec_lanes(b, i), vec_lanes(n, i)
-    result = bump_mapped(maps.bumps, maps, 0, u, v, along_u, along_v, normal)
+    result = bump_mapped(maps, 0, u, v, along_u, along_v, normal)
     return result.x, result.y, result.z
 
 
 def normal_lanes(i: int, maps: Any, uv: Any, a: Any, b: Any, n: Any) -> Any:
     u, v, along_u, along_v, normal = load(uv[0], i), load(uv[1], i), vec_lanes(a, i), vec_lanes(b, i), vec_lanes(n, i)
-    result = normal_mapped(maps.normals, maps, 0, u, v, along_u, along_v, normal)
+    result = normal_mapped(maps, 0, u, v, along_u, along_v, normal)
     return result.x, result.y, result.z
 
 
