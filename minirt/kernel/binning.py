@@ -49,6 +49,7 @@ class Projection(NamedTuple):
     cones: Any  # (n, 5) as in `minirt.kernel.scene_arrays`; 0 for shapes without a rectangle
     cone_bits: Any  # (n, 5) the same memory as integers
     sides: Any  # (p,) of each plane, on which the point lies: 1, -1, or 0 where rounding may decide
+    found: Any  # (1,) the number of members of all lists
     extents: Any  # float32 (n, 4) or (0, 4): the last column receives bounds of coordinates from the point
 
 
@@ -144,9 +145,9 @@ def project_planes(seen: Projection, slack: float, at: int) -> int:
 # The lists, by counting.
 
 
-def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits: Any) -> int:
-    """Write the shapes of all rectangles into the lists of their cells, the nearest first; return the number of members
-    of all lists.
+def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits: Any) -> None:
+    """Write the shapes of all rectangles into the lists of their cells, the nearest first, and the number of `found`
+    members.
 
     Where `members` has no room for so many they are not written. `starts`, of the cells of all kinds, receives where
     the lists start. `entries` (2, r) and `digits` (2 ** RADIX,) are overwritten.
@@ -177,7 +178,7 @@ def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits:
                 for covered in range(start, start + columns):
                     starts[covered] -= 1
                     members[starts[covered]] = shape
-    return total
+    seen.found[0] = total
 
 
 def rectangle_at(seen: Projection, at: int) -> tuple[int, int, int, int]:

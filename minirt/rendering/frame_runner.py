@@ -6,7 +6,6 @@ from collections.abc import Callable
 from functools import cached_property, partial
 from math import inf
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
@@ -37,7 +36,7 @@ class FrameRunner:
         self.next_row = np.zeros(1, np.int64)  # counter of the frame that is being rendered
         self.choice: Choice | None = None  # the kernel of the last frame
         self.arrays: SceneArrays | None = None  # of its scene
-        self.words: list[Any] = []  # of the form of that scene which the kernel takes
+        self.words = b""  # of the form of that scene which the kernel takes
         self.pace = inf  # seconds that a sample of a byte of pixels took in the last frame of this kernel
         self.cancellations = 0
         self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture

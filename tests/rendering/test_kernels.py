@@ -265,7 +265,7 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         assert target == PROCESSOR
         with lock:
             done.extend(requests)
-        return [ObjectCode("entry", 0, each.encode()) for each in requests]
+        return [ObjectCode("entry", each.encode()) for each in requests]
 
     monkeypatch.setattr(CompileProcess, "compile", compile)
     return done
@@ -277,7 +277,7 @@ def test_every_generic_kernel_is_compiled_once(compiled: list[str], tmp_path: Pa
     assert len(set(compiled)) == len(compiled) == number == len(list(tmp_path.iterdir()))
     for generic in GENERIC_KERNELS:
         identity = identity_of(*generic_call(generic), fingerprint_of(PROCESSOR))
-        assert CodeCache(tmp_path).read(identity) == ObjectCode("entry", 0, identity.encode())
+        assert CodeCache(tmp_path).read(identity) == ObjectCode("entry", identity.encode())
     assert ahead_of_time.build(tmp_path, PROCESSOR) == 0
     assert len(compiled) == number
 

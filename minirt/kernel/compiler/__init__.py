@@ -1,8 +1,8 @@
 """The compiler of kernels, and the program that runs it, so that no other program need import it.
 
 The program reads a line from standard input, a JSON list of identities of kernels as
-`minirt.kernel.machine_code.library.identity_of` makes them, and writes each kernel to standard output, as a line of
-hexadecimal digits. It ends when standard input is closed: then nobody waits for the kernels any more.
+`minirt.kernel.machine_code.library.identity_of` makes them, and pickles the list of their object code to standard
+output. It ends when standard input is closed: then nobody waits for the kernels any more.
 """
 
 from __future__ import annotations
@@ -10,10 +10,9 @@ from __future__ import annotations
 import gc
 import json
 import os
+import pickle
 import sys
 from threading import Thread
-
-from minirt.kernel.machine_code.cache import pack
 
 LOWEST_PRIORITY = 19
 
@@ -27,9 +26,8 @@ def main() -> None:
     Thread(target=exit_at_end_of_input, daemon=True).start()
     from minirt.kernel.compiler.object_code import object_code
 
-    for identity in requests:
-        function, signatures, _ = json.loads(identity)
-        print(pack(identity, object_code(function, signatures)).hex(), flush=True)
+    pickle.dump([object_code(*json.loads(identity)[:2]) for identity in requests], sys.stdout.buffer)
+    sys.stdout.flush()
     os._exit(0)  # freeing the compiler's memory would take a tenth of the time
 
 

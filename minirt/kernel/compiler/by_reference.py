@@ -13,12 +13,13 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
-from numba.extending import lower_builtin, lower_getattr_generic
+from numba.core.registry import cpu_target
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.extending import lower_getattr_generic
 
 from minirt.kernel import trace
 from minirt.lanes.compiled.memory import ADDRESS, SHAPE, Reference, first_of, part_of
-from minirt.lanes.compiled.types import REGISTERED, register
+from minirt.lanes.compiled.types import register
 
 
 def is_array(kind: Any) -> bool:
@@ -112,35 +113,22 @@ def _set_item(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 # The loop over the kinds of shapes, unrolled at compile time.
 
-REGISTERED.add(trace.for_each_kind)
 
-
-@infer_global(trace.for_each_kind)
-class ForEachKind(AbstractTemplate):
-    """Type of the loop: that of the state after the last step."""
-
-    key = trace.for_each_kind
-
-    def generic(self, args: Any, kws: Any) -> Any:
-        """Return the signature of the loop."""
-        return signature(step_signatures(self.context, *args)[-1].return_type, *args)
-
-
-def step_signatures(context: Any, step: Any, groups: Reference, state: Any, arguments: Any) -> list[Any]:
+def step_signatures(step: Any, groups: Reference, state: Any, arguments: Any) -> list[Any]:
     """Return the signature of the step for each kind."""
     signatures = []
     for position in range(len(groups.content)):
-        group = item_type(groups, position)
-        signatures.append(context.resolve_function_type(step, (group, state, arguments), {}))
+        kinds = item_type(groups, position), state, arguments
+        signatures.append(cpu_target.typing_context.resolve_function_type(step, kinds, {}))
         state = signatures[-1].return_type
     return signatures
 
 
-@lower_builtin(trace.for_each_kind, types.Any, Reference, types.Any, types.Any)  # type: ignore[untyped-decorator]
+@register(trace.for_each_kind, lambda *kinds: step_signatures(*kinds)[-1].return_type)
 def _for_each_kind(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     _, groups, state, arguments = args
     kind = sig.args[2]
-    for position, each in enumerate(step_signatures(context.typing_context, *sig.args)):
+    for position, each in enumerate(step_signatures(*sig.args)):
         function = context.get_function(sig.args[0], each)
         context.add_linking_libs(getattr(function, "libs", ()))
         state = context.cast(builder, state, kind, each.args[1])

@@ -27,7 +27,7 @@ from minirt.kernel import scene_arrays, shading
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import item_of, item_type
 from minirt.kernel.compiler.pipeline import FLAGS, INLINED, InlinedCompiler, inline, inline_functions_of
-from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
+from minirt.kernel.machine_code.arguments import Signature, dtype_of, named
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.lanes.compiled.memory import ADDRESS, Reference
 from minirt.lanes.compiled.types import REGISTERED
@@ -67,7 +67,7 @@ def type_of(signature: Signature) -> Any:
         return SCALARS[signature]
     if "array" in signature:
         return types.Array(from_dtype(dtype_of(signature)), signature["ndim"], "C")
-    kind = tuple_class(signature)
+    kind = named(signature["tuple"])
     items = [type_of(each) for each in signature["items"]]
     return types.BaseTuple.from_types(items, None if kind is tuple else kind)
 
@@ -76,33 +76,29 @@ def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
     """Return the object code of a function, "module:name", for arguments of these signatures.
 
     Where a private interface of numba has changed, numba's own pipeline and llvmlite compile the same functions."""
-    module, name = function.split(":")
-    called = getattr(import_module(module), name)
+    called = named(function)
     try:
-        compiled, results = compiled_entry(called, signatures)
-        return ObjectCode(compiled.native_name, results, compiled._library._get_compiled_object())
+        compiled = compiled_entry(called, signatures)
+        return ObjectCode(compiled.native_name, compiled._library._get_compiled_object())
     except (AttributeError, ImportError, TypeError) as error:
         if InlinedCompiler.lean:
             print(
                 f"kernels take twice as long to compile, as numba {numba.__version__} differs: {error}", file=sys.stderr
             )
         InlinedCompiler.lean = False
-    compiled, results = compiled_entry(called, signatures)
+    compiled = compiled_entry(called, signatures)
     cpu, features = config.CPU_NAME or binding.get_host_cpu_name(), config.CPU_FEATURES
     features = binding.get_host_cpu_features().flatten() if features is None else features
     machine = binding.Target.from_default_triple().create_target_machine(cpu, features, opt=3)
     module = binding.parse_assembly(compiled.inspect_llvm().replace("define linkonce_odr", "define internal"))
-    return ObjectCode(compiled.native_name, results, machine.emit_object(module))
+    return ObjectCode(compiled.native_name, machine.emit_object(module))
 
 
-def compiled_entry(called: FunctionType, signatures: list[Signature]) -> tuple[Any, int]:
-    """Compile a function for arguments of these signatures.
-
-    Return numba's C function that calls it, and the number of integers that it returns. It takes tuples and arrays by
-    reference, see `minirt.kernel.compiler.by_reference`."""
+def compiled_entry(called: FunctionType, signatures: list[Signature]) -> Any:
+    """Compile a function, which returns nothing, for arguments of these signatures; return numba's C function that
+    calls it. It takes tuples and arrays by reference, see `minirt.kernel.compiler.by_reference`."""
     inline(called)
     kinds = types.Tuple([type_of(each) for each in signatures])
-    results: list[Any] = []  # types of the integers that the function returns, known when it has been compiled
 
     @intrinsic  # type: ignore[untyped-decorator]
     def arguments_at(_typing: Any, address: Any) -> Any:
@@ -117,22 +113,7 @@ def compiled_entry(called: FunctionType, signatures: list[Signature]) -> tuple[A
 
         return signature(types.Tuple([item_type(whole, position) for position in range(len(kinds))]), address), load
 
-    @intrinsic  # type: ignore[untyped-decorator]
-    def store_result(_typing: Any, address: Any, result: Any) -> Any:
-        results[:] = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
-        if any(types.unliteral(each) != types.int64 for each in results):
-            raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
-
-        def store(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
-            if results:
-                end = context.get_abi_sizeof(context.get_value_type(kinds))
-                place = builder.gep(args[0], [ir.Constant(ir.IntType(64), end)])
-                builder.store(args[1], builder.bitcast(place, args[1].type.as_pointer()))
-            return context.get_dummy_value()
-
-        return signature(types.none, address, result), store
-
     def entry(address: Any) -> None:
-        store_result(address, called(*arguments_at(address)))
+        called(*arguments_at(address))
 
-    return cfunc(types.void(types.voidptr), **FLAGS)(entry), len(results)
+    return cfunc(types.void(types.voidptr), **FLAGS)(entry)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import count
 from typing import Any
 
@@ -13,7 +14,7 @@ from minirt.kernel import beams, bvh_nodes, scene_arrays
 from minirt.kernel.compiler.by_reference import length
 from minirt.kernel.pixels import OPAQUE, PACKET_HEIGHT, fetch_add, store_block
 from minirt.kernel.shading import whitted
-from minirt.lanes.compiled.memory import address, array_of, first_of
+from minirt.lanes.compiled.memory import address, array_of, first_of, reduced
 from minirt.lanes.compiled.types import Lanes, VecType, common, constant, register, splat, vec_of
 
 PIXEL = ir.IntType(32)
@@ -21,7 +22,6 @@ INTEGER = ir.IntType(64)
 LANES = Lanes(types.float64)
 LANES_IR = ir.VectorType(ir.DoubleType(), LANES.count)
 INTEGERS = ir.VectorType(INTEGER, LANES.count)
-MEMORY = types.CPointer(types.float64)
 CACHE_LINE = 64  # bytes; aligned to it, no load of lanes touches two lines
 
 # Packed shapes: rows of record arrays, or, side by side, blocks of BVH leaves. The numbers of a row lie one after the
@@ -53,14 +53,10 @@ def load_packed(context: Any, builder: ir.IRBuilder, kind: Any, first: Any, stri
     return context.make_tuple(builder, kind, parts)
 
 
-def number_of(kind: Any) -> Any:
-    """Return the type of the numbers of a packed shape."""
-    return getattr(kind[0], "number", kind[0])
-
-
 @register(scene_arrays.read, row_type)
 def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    number = context.get_value_type(number_of(sig.return_type))
+    first = sig.return_type[0]
+    number = context.get_value_type(getattr(first, "number", first))
     return load_packed(context, builder, sig.return_type, address(context, builder, sig.args, args, number))
 
 
@@ -79,23 +75,19 @@ def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 # BVH traversal: memory on the stack, and node references in the bits of distances.
 
 
-@register(bvh_nodes.packet_memory, lambda: MEMORY)
-def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    memory = cgutils.alloca_once(builder, ir.DoubleType(), size=bvh_nodes.MEMORY)
-    memory.align = CACHE_LINE
-    return memory
+def register_memory(function: Callable[..., Any], number: types.Type, size: int) -> None:
+    """Register the allocation of so many numbers."""
+
+    @register(function, lambda: types.CPointer(number))
+    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+        memory = cgutils.alloca_once(builder, context.get_value_type(number), size=size)
+        memory.align = CACHE_LINE
+        return memory
 
 
-@register(beams.beam_memory, lambda: types.CPointer(types.float32))
-def _beam_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    memory = cgutils.alloca_once(builder, ir.FloatType(), size=beams.MEMORY)
-    memory.align = CACHE_LINE
-    return memory
-
-
-@register(whitted.ray_stack, lambda: MEMORY)
-def _ray_stack(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.STACK_SIZE)
+register_memory(bvh_nodes.packet_memory, types.float64, bvh_nodes.MEMORY)
+register_memory(beams.beam_memory, types.float32, beams.MEMORY)
+register_memory(whitted.ray_stack, types.float64, whitted.STACK_SIZE)
 
 
 @register(bvh_nodes.put_integer, lambda memory, at, n: types.none)
@@ -119,9 +111,7 @@ def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> A
 
 @register(bvh_nodes.least_lane, lambda x: types.float64)
 def _least_lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    kind = ir.FunctionType(ir.DoubleType(), [LANES_IR])
-    minimum = cgutils.get_or_insert_function(builder.module, kind, f"llvm.vector.reduce.fmin.v{LANES.count}f64")
-    return builder.call(minimum, args, fastmath=("nnan",))
+    return reduced(builder, "fmin", args[0])
 
 
 # The frame loop: take the next row of tiles, store a packet of pixels.

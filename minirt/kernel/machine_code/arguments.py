@@ -2,7 +2,7 @@
 
 The compiler lays a tuple out as its items one after the other, and an array, which is C-contiguous, as seven words or
 more: two that are 0 here, the number of items, bytes of an item, address of the data, shape and strides. There is no
-padding, as all of them have 64 bits. The kernel stores its results, integers, in the words behind the arguments.
+padding, as all of them have 64 bits. A kernel returns nothing: it writes its results into arrays.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ import numpy as np
 Signature: TypeAlias = Any  # None, "int", "float", {"array": dtype, "ndim": n} or {"tuple": class, "items": [...]}
 
 
-def words_of(value: Any) -> list[int]:
+def words_of(value: Any) -> bytes:
     """Return the words of an argument, or of a tuple of arguments. ValueError for an array that is not C-contiguous."""
     words: list[int] = []
     append_words(words, value)
-    return words
+    return struct.pack(f"={len(words)}q", *words)
 
 
 def append_words(words: list[int], value: Any) -> None:
@@ -66,10 +66,10 @@ def signature_of(value: Any) -> Signature:
     raise TypeError(f"no kernel takes {type(value).__name__}")
 
 
-def tuple_class(signature: Signature) -> type[tuple[Any, ...]]:
-    """Return the class of a tuple, by its signature."""
-    module, name = signature["tuple"].split(":")
-    return getattr(import_module(module), name)
+def named(name: str) -> Any:
+    """Return the function or the class of a name, "module:name"."""
+    module, attribute = name.split(":")
+    return getattr(import_module(module), attribute)
 
 
 def dtype_of(signature: Signature) -> np.dtype[Any]:

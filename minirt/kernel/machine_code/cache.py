@@ -39,7 +39,6 @@ class ObjectCode(NamedTuple):
     """A compiled kernel."""
 
     entry: str  # name of its entry point
-    results: int  # integers that it returns
     code: bytes  # object code in the format of the system
 
 
@@ -100,7 +99,7 @@ class CodeCache:
 
 def pack(identity: str, kernel: ObjectCode) -> bytes:
     """Return a kernel as bytes, with a checksum that covers its identity, too."""
-    content = f"{kernel.entry} {kernel.results} ".encode() + kernel.code
+    content = kernel.entry.encode() + b" " + kernel.code
     return checksum(identity, content) + content
 
 
@@ -109,8 +108,8 @@ def unpack(identity: str, data: bytes) -> ObjectCode:
     content = data[CHECKSUM_SIZE:]
     if data[:CHECKSUM_SIZE] != checksum(identity, content):
         raise ValueError("it is damaged")
-    entry, results, code = content.split(b" ", 2)
-    return ObjectCode(entry.decode(), int(results), code)
+    entry, code = content.split(b" ", 1)
+    return ObjectCode(entry.decode(), code)
 
 
 def checksum(identity: str, content: bytes) -> bytes:

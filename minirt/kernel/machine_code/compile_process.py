@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 from contextlib import suppress
-from threading import Thread
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code.cache import ObjectCode, notice, unpack
+from minirt.kernel.machine_code.cache import ObjectCode, notice
 from minirt.kernel.machine_code.fingerprint import NATIVE, V3, V4, processor
 
 # With -P nothing is imported from the current folder.
@@ -33,23 +33,21 @@ class CompileProcess:
         A process that something else than `stop` kills, such as a lack of memory, is started once more. RenderError
         with the reason where compiling fails, or where `stop` ended it."""
         self.stopped = False
-        status, output, messages = self.run(requests, target)
+        status, output, errors = self.run(requests, target)
         if status < 0 and not self.stopped:
-            status, output, messages = self.run(requests, target)
+            status, output, errors = self.run(requests, target)
+        messages = errors.decode(errors="replace").strip().splitlines()
         if status:
             reason = messages[-1] if messages else f"the compiler ended with status {status}"
             raise RenderError(f"the kernel cannot be compiled: {reason}")
         for message in messages:
             notice(message)
-        try:
-            lines = map(bytes.fromhex, output.decode().split())
-            return [unpack(request, line) for request, line in zip(requests, lines, strict=True)]
-        except ValueError as error:
-            raise RenderError(f"the kernel cannot be compiled: what the compiler wrote is damaged, {error}") from error
+        compiled: list[ObjectCode] = pickle.loads(output)
+        return compiled
 
-    def run(self, requests: list[str], target: str | None) -> tuple[int, bytes, list[str]]:
-        """Run the process; return its exit status, its output and the lines of its standard error. RenderError where it
-        cannot be started."""
+    def run(self, requests: list[str], target: str | None) -> tuple[int, bytes, bytes]:
+        """Run the process; return its exit status, its output and its standard error. RenderError where it cannot be
+        started."""
         try:
             self.process = process = subprocess.Popen(
                 (*COMMAND, *["--patient"] * self.patient),
@@ -61,20 +59,14 @@ class CompileProcess:
             )
         except OSError as error:
             raise RenderError(f"the compiler cannot be started: {error}") from error
-        errors = process.stderr
-        assert process.stdin
-        assert process.stdout
-        assert errors
-        with process:
+        requests_pipe, process.stdin = process.stdin, None  # `communicate` would close it, which ends the process
+        assert requests_pipe
+        with process, requests_pipe:
             with suppress(BrokenPipeError):
-                process.stdin.write(json.dumps(requests).encode() + b"\n")
-                process.stdin.flush()
-            written: list[bytes] = []
-            reader = Thread(target=lambda: written.append(errors.read()))  # else the process waits with a full pipe
-            reader.start()
-            output = process.stdout.read()
-            reader.join()
-        return process.returncode, output, written[0].decode(errors="replace").strip().splitlines()
+                requests_pipe.write(json.dumps(requests).encode() + b"\n")
+                requests_pipe.flush()
+            output, errors = process.communicate()
+        return process.returncode, output, errors
 
     def stop(self) -> None:
         """Kill the process, if there is one; callable from any thread."""

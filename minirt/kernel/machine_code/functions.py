@@ -18,20 +18,25 @@ class CompiledFunction:
     def __init__(self, function: Callable[..., Any]) -> None:
         self.name = f"{function.__module__}:{function.__qualname__}"
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Any) -> None:
         """Call the compiled form. RenderError where it cannot be compiled."""
-        return LIBRARY.get((self.name, arguments))(*arguments)
+        LIBRARY.get((self.name, arguments))(*arguments)
 
-    def bound(self, *arguments: Any) -> Callable[[], Any]:
+    def bound(self, *arguments: Any) -> Callable[[], None]:
         """Return the call with some arguments, whose arrays may change but not move. RenderError likewise."""
-        return LIBRARY.get((self.name, arguments)).bound(words_of(arguments), arguments)
+        entry, words = LIBRARY.get((self.name, arguments)), words_of(arguments)
+
+        def call(kept: Any = arguments) -> None:
+            entry.run(words)
+
+        return call
 
     def call(self, *arguments: Any) -> Call:
         """Return the call with some arguments, to look for its kernel."""
         return self.name, arguments
 
 
-def bound(function: Callable[..., Any], *arguments: Any) -> Callable[[], Any]:
+def bound(function: Callable[..., None], *arguments: Any) -> Callable[[], None]:
     """Return the call of a function, compiled or interpreted, with some arguments; compiled, it takes 2 us."""
     return function.bound(*arguments) if isinstance(function, CompiledFunction) else partial(function, *arguments)
 

@@ -9,13 +9,11 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Hashable, Iterable
 from contextlib import ExitStack
 from functools import cached_property
 from threading import Lock
 from typing import Any, TypeAlias
-
-import numpy as np
 
 from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code.arguments import key_of, signature_of, words_of
@@ -33,33 +31,18 @@ IN_MEMORY = 24  # kernels; one that was dropped is loaded from disk again
 class Entry:
     """Entry point of a loaded kernel for one signature. The code lives as long as this object."""
 
-    def __init__(self, address: int, results: int, code: object) -> None:
-        """`address` of the entry point; `results`: integers that the kernel returns; `code` owns the machine code."""
-        self.results = results
+    def __init__(self, address: int, code: object) -> None:
+        """`address` of the entry point; `code` owns the machine code."""
         self.code = code
         self.call = FUNCTION(address)
 
-    def __call__(self, *arguments: Any) -> Any:
-        """Run the kernel, and return its result: None, an integer, or a tuple of them."""
-        return self.run(words_of(arguments))
+    def __call__(self, *arguments: Any) -> None:
+        """Run the kernel."""
+        self.run(words_of(arguments))
 
-    def run(self, words: list[int]) -> Any:
+    def run(self, words: bytes) -> None:
         """Run the kernel with the words of its arguments, which the caller keeps alive."""
-        return self.bound(words)()
-
-    def bound(self, words: list[int], arguments: Any = ()) -> Callable[[], Any]:
-        """Return the call of the kernel with the words of arguments, which it keeps alive.
-
-        It may be called again and again; at the same time in several threads only where the kernel has no result."""
-        block = np.array(words + [0] * self.results, np.int64)
-        address, results = block.ctypes.data, block[len(words) :]
-
-        def call(arguments: Any = arguments) -> Any:
-            self.call(address)
-            found = results.tolist()
-            return tuple(found) if self.results > 1 else found[0] if found else None
-
-        return call
+        self.call(words)
 
 
 def load(kernel: ObjectCode) -> Entry:
@@ -72,7 +55,7 @@ def load(kernel: ObjectCode) -> Entry:
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)  # which owns the machine
     engine.add_object_file(binding.ObjectFileRef.from_data(kernel.code))
     engine.finalize_object()
-    return Entry(engine.get_function_address(kernel.entry), kernel.results, engine)
+    return Entry(engine.get_function_address(kernel.entry), engine)
 
 
 class Library:

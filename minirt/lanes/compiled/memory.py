@@ -8,11 +8,10 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.datamodel import models
 from numba.extending import register_model
 
 from minirt import lanes
-from minirt.lanes.compiled.types import I32, Lanes, Mask, constant, register
+from minirt.lanes.compiled.types import I32, Lanes, Mask, ValueModel, constant, llvm, register
 
 ADDRESS = ir.IntType(8).as_pointer()
 NUMBERS: dict[types.Type, int] = {}  # of types that are referred to: short, as they become parts of function names
@@ -25,14 +24,10 @@ class Reference(types.Type):
     def __init__(self, content: types.BaseTuple | types.Array) -> None:
         self.content = content
         super().__init__(f"Reference{NUMBERS.setdefault(content, len(NUMBERS))}")
+        self.llvm = ADDRESS
 
 
-@register_model(Reference)
-class ReferenceModel(models.PrimitiveModel):
-    """A reference is an address."""
-
-    def __init__(self, manager: Any, kind: Reference) -> None:
-        super().__init__(manager, kind, ADDRESS)
+register_model(Reference)(ValueModel)
 
 
 def array_of(kind: Any) -> types.Array | types.CPointer | None:
@@ -152,15 +147,13 @@ def _first(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 @register(lanes.greatest, lambda x: x.number if isinstance(x, Lanes) else None)
 def _greatest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    best = constant(args[0], -inf)
-    best = builder.select(builder.fcmp_ordered(">", args[0], best), args[0], best)
-    count = best.type.count
-    while count > 1:  # the greater of each lane and the lane half a vector further on
-        count //= 2
-        halves = (ir.Constant(ir.VectorType(I32, count), [*range(start, start + count)]) for start in (0, count))
-        low, high = (builder.shuffle_vector(best, best, half) for half in halves)
-        best = builder.select(builder.fcmp_ordered(">", low, high), low, high)
-    return builder.extract_element(best, ir.Constant(I32, 0))
+    least = constant(args[0], -inf)
+    return reduced(builder, "fmax", builder.select(builder.fcmp_ordered(">", args[0], least), args[0], least))
+
+
+def reduced(builder: ir.IRBuilder, operation: str, lanes: Any) -> Any:
+    """Reduce lanes, none of which is NaN, to one number by LLVM's "fmin" or "fmax"."""
+    return llvm(builder, f"vector.reduce.{operation}", lanes, result=lanes.type.element, flags=("nnan",))
 
 
 @register(lanes.lowest, lambda number: types.int64 if number == types.int64 else None)

@@ -28,6 +28,7 @@ class Lanes(types.Type):
     def __init__(self, number: types.Type) -> None:
         self.number = number
         self.count = 8 * BYTES // number.bitwidth
+        self.llvm = ir.VectorType({32: ir.FloatType(), 64: ir.DoubleType()}[number.bitwidth], self.count)
         super().__init__(f"f{number.bitwidth}x{self.count}")
 
 
@@ -36,6 +37,7 @@ class Mask(types.Type):
 
     def __init__(self, lanes: Lanes) -> None:
         self.lanes = lanes
+        self.llvm = ir.VectorType(ir.IntType(1), lanes.count)
         super().__init__(f"i1x{lanes.count}")
 
 
@@ -54,19 +56,12 @@ I32 = ir.IntType(32)
 
 
 @register_model(Lanes)
-class LanesModel(models.PrimitiveModel):
-    """Lanes are an LLVM vector of numbers."""
-
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, ir.VectorType(manager.lookup(kind.number).get_value_type(), kind.count))
-
-
 @register_model(Mask)
-class MaskModel(models.PrimitiveModel):
-    """A mask is an LLVM vector of bits."""
+class ValueModel(models.PrimitiveModel):
+    """Values of a type are those of its own LLVM type."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, ir.VectorType(ir.IntType(1), kind.lanes.count))
+        super().__init__(manager, kind, kind.llvm)
 
 
 @register_model(VecType)
@@ -116,17 +111,17 @@ def constant(like: Any, value: float | int) -> ir.Constant:
     return ir.Constant(like.type, [value] * like.type.count if isinstance(like.type, ir.VectorType) else value)
 
 
-def llvm(builder: ir.IRBuilder, name: str, *values: Any) -> Any:
-    """Call the LLVM intrinsic `name` on single numbers or on lanes."""
+def llvm(builder: ir.IRBuilder, name: str, *values: Any, result: Any = None, flags: tuple[str, ...] = ()) -> Any:
+    """Call the LLVM intrinsic `name` on single numbers or on lanes; its result is of their type, or of another one."""
     kind = values[0].type
     is_vector = isinstance(kind, ir.VectorType)
     number = "f64" if (kind.element if is_vector else kind) == ir.DoubleType() else "f32"
     function = cgutils.get_or_insert_function(
         builder.module,
-        ir.FunctionType(kind, [value.type for value in values]),
+        ir.FunctionType(result or kind, [value.type for value in values]),
         f"llvm.{name}.v{kind.count}{number}" if is_vector else f"llvm.{name}.{number}",
     )
-    return builder.call(function, values)
+    return builder.call(function, values, fastmath=flags)
 
 
 def vec_parts(builder: ir.IRBuilder, value: Any) -> list[Any]:

@@ -95,12 +95,15 @@ def wide_nodes(boxes: np.ndarray, kernel: Any, width: int = WIDTH) -> tuple[np.n
     most = max(1, 2 * len(boxes) - 1)
     links, bounds = np.empty((most, 3), np.int64), np.empty((most, 6))
     stack = np.empty((most + 1, 2), np.int64)
-    tree = BinaryTree(boxes, bounds, links, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack, width)
-    count = kernel.divide(tree)
+    found, scratch = np.empty(2, np.int64), (np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack)
+    tree = BinaryTree(boxes, bounds, links, *scratch, found, width)
+    kernel.divide(tree)
+    count = int(found[0])
     tree = tree._replace(bounds=bounds[:count], links=links[:count])
     nodes = aligned((count // 2 + 1) * 7 * width, np.dtype(np.float64))
     leaves = np.empty(count, np.int64)
-    node_count, leaf_count = kernel.collapse(tree, nodes, leaves, np.empty(width, np.int64))
+    kernel.collapse(tree, nodes, leaves, np.empty(width, np.int64))
+    node_count, leaf_count = found
     return nodes[: node_count * 7 * width], links[leaves[:leaf_count]]
 
 

@@ -173,6 +173,7 @@ class Bins:
             cones=cones,
             cone_bits=cones.view(np.int64),
             sides=np.zeros(planes, np.int64),
+            found=np.zeros(1, np.int64),
             extents=extents,
         )
         self.counter, self.entries = np.zeros(1, np.int64), np.empty((2, room), np.int64)
@@ -201,7 +202,8 @@ class Bins:
             run(self.project)
         else:
             self.project()
-        count = self.fill()
+        self.fill()
+        count = int(self.seen.found[0])
         if count > len(self.members):
             self.check(count)
             self.members = np.zeros(int(count * (1.0 + spare)), np.int32)

@@ -199,10 +199,15 @@ def test_each_source_of_a_kernel_changes_the_fingerprint_and_nothing_else(
     def found() -> str:
         return fingerprint.fingerprint_of.__wrapped__(V3)
 
-    before, scan = found(), os.scandir
+    def backwards(top: Any) -> Iterator[Any]:
+        for parent, folders, names in walk(top):
+            folders.reverse()
+            yield parent, folders, names[::-1]
+
+    before, walk = found(), os.walk
     package = shutil.copytree(PACKAGE, tmp_path / "minirt", ignore=shutil.ignore_patterns("__pycache__", "*.kernel"))
     monkeypatch.setattr(fingerprint, "PACKAGE", package)
-    monkeypatch.setattr(os, "scandir", lambda folder: list(scan(folder))[::-1])
+    monkeypatch.setattr(os, "walk", backwards)
     (package / "cli/__init__.py").write_text("")
     (package / "shapes/page.md").touch()
     assert found() == before

@@ -24,7 +24,7 @@ from minirt.kernel.machine_code.library import LIBRARY, load
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
-from tests.kernel.machine_code.small_kernels import call, count, double, half, library, square
+from tests.kernel.machine_code.small_kernels import call, count, double, library, square
 from tests.kernel.pictures import AMBIENT, EYE, LAMP, SHAPES
 from tests.paths import PACKAGE, ROOT
 from tests.processes import next_line, started
@@ -53,12 +53,11 @@ main()
 """
 # Stands for the compiler: writes something to standard error, an empty kernel for each request, and ends.
 STAND_IN = """
-import json, sys
-from minirt.kernel.machine_code.cache import ObjectCode, pack
+import json, pickle, sys
+from minirt.kernel.machine_code.cache import ObjectCode
 requests = json.loads(sys.stdin.buffer.readline())
 sys.stderr.write('a warning\\n' * 200_000)
-for each in requests:
-    print(pack(each, ObjectCode("f", 0, b"code")).hex())
+pickle.dump([ObjectCode("f", b"code") for each in requests], sys.stdout.buffer)
 """
 CHANGED = """
 import numba.core.codegen
@@ -89,10 +88,11 @@ def test_one_process_compiles_several_kernels_in_their_order(monkeypatch: pytest
     kernels = library(None)
     codes = CompileProcess().compile([kernels.identity(call(each)) for each in (square, count, double)])
     values = np.array([3.0])
-    assert [load(each)(values) for each in codes] == [None, 41, None]
-    assert values == [18.0]
-    with pytest.raises(RenderError, match=r"^the kernel cannot be compiled: TypeError: a kernel returns integers"):
-        kernels.compile([kernels.identity(call(half))], CompileProcess())
+    for each in codes:
+        load(each)(values)
+    assert values == [82.0]
+    with pytest.raises(RenderError, match=r"^the kernel cannot be compiled: AttributeError: .* no attribute 'absent'"):
+        kernels.compile([kernels.identity((f"{double.__module__}:absent", ()))], CompileProcess())
 
 
 @pytest.mark.parametrize(
@@ -100,9 +100,6 @@ def test_one_process_compiles_several_kernels_in_their_order(monkeypatch: pytest
     [
         ("import sys; sys.stdin.buffer.readline(); raise MemoryError('no room')", "MemoryError: no room"),
         ("import os; os.close(0); os._exit(3)", "the compiler ended with status 3"),
-        ("print('text')", "what the compiler wrote is damaged, non-hexadecimal number found .*"),
-        ("print('00' * 99)", "what the compiler wrote is damaged, it is damaged"),
-        ("print()", r"what the compiler wrote is damaged, zip\(\) .*"),
     ],
 )
 def test_the_reason_of_a_failure_is_reported(monkeypatch: pytest.MonkeyPatch, code: str, reason: str) -> None:
@@ -128,7 +125,7 @@ def test_a_compiler_that_is_killed_is_started_once_more(
 def test_any_amount_of_messages_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """More than a pipe holds."""
     stand_in(monkeypatch, STAND_IN)
-    assert CompileProcess().compile(["one", "two"]) == [ObjectCode("f", 0, b"code")] * 2
+    assert CompileProcess().compile(["one", "two"]) == [ObjectCode("f", b"code")] * 2
 
 
 def test_numbas_own_pipeline_draws_the_same_bits_with_a_notice(
