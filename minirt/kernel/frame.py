@@ -57,17 +57,9 @@ def finite_or_zero(channel: Number) -> Number:
 
 
 def frame(
-    next_row: Any,
-    pixels: Any,
-    linear: Any,
-    rays: Any,
-    plan: Any,
-    errors: Any,
-    memory: Any,
-    sums: Any,
-    scene: SceneArrays,
+    rows: Any, pixels: Any, linear: Any, rays: Any, plan: Any, errors: Any, memory: Any, sums: Any, scene: SceneArrays
 ) -> None:
-    """Render rows of tiles, or rows of a plan, taking the next ones from the counter `next_row` until none is left.
+    """Render rows of tiles, or rows of a plan, taking the next ones from the counter `rows` until none is left.
 
     Any number of threads may do so at the same time, each with its own `memory` (see
     `minirt.kernel.shadow_rays.unoccluded` and `minirt.kernel.shading.lights`) and its own `sums` of samples of a tile
@@ -90,7 +82,7 @@ def frame(
     has_parts = scene.square < TILE
     end = plan.shape[0] if is_planned else height
     while True:
-        top = fetch_add(next_row, TILE)
+        top = fetch_add(rows, TILE)
         if top >= end:
             return
         for left in range(0, 1 if is_planned else across, TILE):
@@ -111,7 +103,7 @@ def frame(
                         place = estimate * ESTIMATE
                     if y >= height or x >= across:
                         continue
-                    if rarely(next_row[0] >= CANCELLED):
+                    if rarely(rows[0] >= CANCELLED):
                         return
                     if rarely(has_parts or (is_planned and inner == 0)):
                         tile = tile_at(scene, x, y, across)

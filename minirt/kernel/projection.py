@@ -111,30 +111,24 @@ def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float,
     Its five numbers are the axis, which points to the mean of the centres; the cosine of the half-angle, or -2 if the
     cone would take in half of all directions or more; and a lower bound of the hull's distance, along the axis.
     """
-    x = 0.0
-    y = 0.0
-    z = 0.0
+    eye, total = vector(origin, 0), Vec(0.0, 0.0, 0.0)
     for i in range(start, end):
-        x += spheres[i, 0] - origin[0]
-        y += spheres[i, 1] - origin[1]
-        z += spheres[i, 2] - origin[2]
-    length = sqrt(x * x + y * y + z * z)
+        total = total + (vector(spheres[i], 0) - eye)
+    length = sqrt(dot(total, total))
     cone[3], cone[4] = -2.0, 0.0
     if length == 0.0:
         return
     least, cosine, widest = inf, 1.0, 0.0
     for i in range(start, end):
-        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
-        radius = spheres[i, 3] + slack
-        squared = px * px + py * py + pz * pz
-        along = (px * x + py * y + pz * z) / length
+        p, radius = vector(spheres[i], 0) - eye, spheres[i, 3] + slack
+        squared, along = dot(p, p), dot(p, total) / length
         aside = sqrt(max(squared - along * along, 0.0))
         tangent = sqrt(max(squared - radius * radius, 0.0))
         least = min(least, along - radius)
         widest = max(widest, radius * radius / squared)
         # Cosine of the sum of two angles: from the axis to the centre, and from there to the rim.
         cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
-    cone[0], cone[1], cone[2] = x / length, y / length, z / length
+    cone[0], cone[1], cone[2] = total.x / length, total.y / length, total.z / length
     if cosine > 0.0:
         cone[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
     cone[4] = max(least, 0.0)

@@ -11,25 +11,23 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
-from minirt.kernel.beams import fold_over_mesh
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read
+from minirt.kernel.beams import fold_over_mesh, vec_of
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read, vector
 from minirt.kernel.trace import for_each_kind, in_cone
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, lane, minimum, rarely, splat, where, width
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, where, width
 
 
 def is_close(cached: Any, tolerance: Any, direction: Vec) -> Mask:
     """Whether directions are so close to the cached one that its cell's list holds for them."""
-    difference = direction - Vec(cached[0], cached[1], cached[2])
+    difference = direction - vector(cached, 0)
     return dot(difference, difference) <= tolerance
 
 
 def remember_cell(cached: Any, cells: int, direction: Vec, ray: int) -> None:
     """Cache one ray's direction towards the light, and the cell that the ray arrives through."""
-    x, y, z = lane(direction.x, ray), lane(direction.y, ray), lane(direction.z, ray)
-    cached[0] = x
-    cached[1] = y
-    cached[2] = z
-    cached[3] = light_buffer_cell(Vec(-x, -y, -z), cells)
+    one = vec_of(direction, ray)
+    cached[0], cached[1], cached[2] = one.x, one.y, one.z
+    cached[3] = light_buffer_cell(-one, cells)
 
 
 def light_buffer_cell(direction: Vec, cells: int) -> Number:

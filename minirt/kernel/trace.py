@@ -11,7 +11,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.beams import fold_over_mesh
-from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read, surface
+from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read, surface, vector
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, max_norm, maximum, rarely, splat, unit_roundoff, where
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
@@ -132,6 +132,11 @@ def closer_hit(
     return best, owner, extent
 
 
+def clearance(point: Vec, extent: Number) -> Number:
+    """Return the offset from a surface at which a ray starts: clear of it, and of surfaces that coincide with it."""
+    return ROUNDING * unit_roundoff(extent) * (max_norm(point) + extent)
+
+
 def in_cone(cone: Any, direction: Vec) -> Mask:
     """Whether a direction from the apex of a bounding cone lies in the cone."""
-    return dot(Vec(cone[0], cone[1], cone[2]), direction) >= cone[3]
+    return dot(vector(cone, 0), direction) >= cone[3]

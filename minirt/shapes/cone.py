@@ -91,7 +91,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
             slope = divided(pair(cone.radius, 0.0, a), splat(cone.height, a))
             zero = pair(0.0, 0.0, a)
             exact = quadrics.exact_span(
-                cone.centre, cone.w, origin, direction, zero, zero, times(slope, slope), zero[0], cone.height
+                cone.centre, cone.w, origin, direction, (zero, zero, times(slope, slope)), zero[0], cone.height
             )
             span = where(close, exact, span)
     return quadrics.first_overlap_of_steep(span)

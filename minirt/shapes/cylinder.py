@@ -77,7 +77,7 @@ def intersect(
         if rarely(close):
             square, zero = square_of(cylinder.radius, a), pair(0.0, 0.0, a)
             exact = quadrics.exact_span(
-                cylinder.centre, cylinder.w, origin, direction, square, zero, zero, -cylinder.half, cylinder.half
+                cylinder.centre, cylinder.w, origin, direction, (square, zero, zero), -cylinder.half, cylinder.half
             )
             span = where(close, exact, span)
     return quadrics.first_overlap(span)

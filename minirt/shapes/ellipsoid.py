@@ -148,14 +148,10 @@ def mapping(ellipsoid: PackedEllipsoid, point: Vec, normal: Vec) -> tuple[Number
     q = unit(scaled(own_direction(ellipsoid, normal), ellipsoid.semi))
     rho = sqrt(q.x * q.x + q.z * q.z)
     fall = -q.y / where(rho == 0.0, 1.0, rho)
-    around = TWO_PI * Vec(q.z, 0.0, -q.x)
-    upwards = 0.5 * TWO_PI * Vec(fall * q.x, rho, fall * q.z)
-    return (
-        0.5 + angle_in_turns(-q.x, -q.z),
-        0.5 + 2.0 * angle_in_turns(q.y, rho),
-        scene_direction(ellipsoid, scaled(around, ellipsoid.semi)),
-        scene_direction(ellipsoid, scaled(upwards, ellipsoid.semi)),
-    )
+    around = scaled(TWO_PI * Vec(q.z, 0.0, -q.x), ellipsoid.semi)
+    upwards = scaled(0.5 * TWO_PI * Vec(fall * q.x, rho, fall * q.z), ellipsoid.semi)
+    u, v = 0.5 + angle_in_turns(-q.x, -q.z), 0.5 + 2.0 * angle_in_turns(q.y, rho)
+    return u, v, scene_direction(ellipsoid, around), scene_direction(ellipsoid, upwards)
 
 
 def scaled(v: Vec, scale: Vec) -> Vec:

@@ -101,7 +101,7 @@ def intersect(
             widening = minus(square_of(hyperboloid.radius, a), narrow)
             slope, zero = divided(divided(widening, half), half), pair(0.0, 0.0, a)
             exact = quadrics.exact_span(
-                hyperboloid.centre, hyperboloid.w, origin, direction, narrow, zero, slope, -half, half
+                hyperboloid.centre, hyperboloid.w, origin, direction, (narrow, zero, slope), -half, half
             )
             span = where(close, exact, span)
     return quadrics.first_overlap_of_steep(span)

@@ -19,16 +19,7 @@ from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import divided, pair, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
-from minirt.shapes.shape import (
-    Axial,
-    Ball,
-    Bounds,
-    Position,
-    bounds_of_disc,
-    disc_extents,
-    point_along,
-    union_of_bounds,
-)
+from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along, union_of_bounds
 
 
 @record()
@@ -53,8 +44,9 @@ class Paraboloid(Axial):
 
     def bounds(self) -> Bounds:
         rim = bounds_of_disc(point_along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
+        _, sines = bounds_of_disc((0.0, 0.0, 0.0), self.axis, 1.0)  # of the angles between the axis and x, y and z
         bulges = []
-        for i, (w, s) in enumerate(zip(self.axis, disc_extents(self.axis), strict=True)):
+        for i, (w, s) in enumerate(zip(self.axis, sines, strict=True)):
             # The outermost point along x, y or z lies below the rim if the paraboloid is tilted far enough.
             radius, fall = self.diameter / 2 * s, 2 * self.height * abs(w)
             if radius < fall:  # so `fall` is not 0, as it may be where the height is subnormal
@@ -107,7 +99,7 @@ def intersect(
             focal = divided(square_of(paraboloid.radius, a), splat(2.0 * paraboloid.height, a))
             zero = pair(0.0, 0.0, a)
             exact = quadrics.exact_span(
-                paraboloid.centre, paraboloid.w, origin, direction, zero, focal, zero, zero[0], paraboloid.height
+                paraboloid.centre, paraboloid.w, origin, direction, (zero, focal, zero), zero[0], paraboloid.height
             )
             span = where(close, exact, span)
     return quadrics.first_overlap(span)

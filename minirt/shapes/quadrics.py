@@ -33,6 +33,7 @@ from minirt.lanes import (
 )
 from minirt.shapes.compensated import (
     Pair,
+    Pairs,
     along,
     minus,
     offset,
@@ -159,22 +160,13 @@ def starts_close(
 
 
 @outlined
-def exact_span(
-    centre: Vec,
-    axis: Vec,
-    origin: Vec,
-    direction: Vec,
-    waist: Pair,
-    focal: Pair,
-    slope: Pair,
-    bottom: Number,
-    top: Number,
-) -> Span:
+def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs, bottom: Number, top: Number) -> Span:
     """Compute the span of a line through a packed solid of revolution, without any cancellation.
 
-    On its side x^2 + y^2 = waist + 2 focal z + slope z^2 in its own frame; it lies between the heights `bottom` and
+    On its `side` x^2 + y^2 = waist + 2 focal z + slope z^2 in its own frame; it lies between the heights `bottom` and
     `top`. All numbers become lanes as those of the pairs are, so that kernels compile these operations once.
     """
+    waist, focal, slope = side
     like = waist[0]
     f = offset(splat(origin, like), splat(centre, like))
     d, w = pairs(direction, like), pairs(axis, like)

@@ -143,18 +143,13 @@ def point_along(point: Triple, axis: Triple, distance: float) -> Triple:
     return x + distance * u, y + distance * v, z + distance * w
 
 
-def disc_extents(axis: Triple) -> Triple:
-    """Half extents along x, y and z of a disc of radius 1 about a unit axis.
-
-    For a component w of the axis the extent is sqrt(1 - w^2), here the root of the sum of the other two squares.
-    """
-    u, v, w = axis
-    return hypot(v, w), hypot(w, u), hypot(u, v)
-
-
 def bounds_of_disc(centre: Triple, axis: Triple, radius: float) -> Bounds:
-    """The bounding box of a disc."""
-    (x, y, z), (i, j, k) = centre, (radius * reach for reach in disc_extents(axis))
+    """The bounding box of a disc about a unit axis.
+
+    For a component w of the axis it reaches radius * sqrt(1 - w^2), here by the sum of the other two squares.
+    """
+    (x, y, z), (u, v, w) = centre, axis
+    i, j, k = radius * hypot(v, w), radius * hypot(w, u), radius * hypot(u, v)
     return (x - i, y - j, z - k), (x + i, y + j, z + k)
 
 

@@ -1,4 +1,5 @@
-"""Invariances of pictures: scaling, moving, mirroring or rotating a scene has a known effect on its picture."""
+"""Invariances of pictures: scaling, moving, mirroring or rotating a scene has a known effect on its picture; and
+extreme cameras, sizes and positions, which have no effect but the right one."""
 
 from __future__ import annotations
 
@@ -9,12 +10,16 @@ import pytest
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, Point
-from minirt.scene import FurtherLight, Scene
+from minirt.rendering.packing.camera import camera_numbers
+from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.box import Box
+from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.ellipsoid import Ellipsoid
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from tests import reference
-from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SHAPES, linear
+from tests.kernel.pictures import ALL, AMBIENT, BLUE, EVERY, EYE, GREEN, LAMP, RED, SHAPES, WHITE, linear
 
 SCENES = pytest.mark.parametrize("scene", [ALL, EVERY], ids=["some kinds", "every kind"])
 UPRIGHT = (Box, Ellipsoid, Square)  # their axis alone does not determine their orientation
@@ -99,3 +104,129 @@ def test_two_lights_of_half_brightness_equal_one() -> None:
     half = FurtherLight(LAMP.position, LAMP.brightness / 2, LAMP.colour)
     twice = linear(Scene((AMBIENT, EYE, half, half, *SHAPES)), 60, 40)
     assert np.abs(twice - linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40)).max() <= 4e-16
+
+
+# Extreme cameras, sizes and positions that a scene may have.
+
+
+COMPASS = [  # above and below the eye: red towards +x, green towards +z
+    Sphere((2, 9, 0), 1.5, RED),
+    Sphere((0, 9, 2), 1.5, GREEN),
+    Sphere((2, -9, 0), 1.5, RED),
+    Sphere((0, -9, 2), 1.5, GREEN),
+]
+
+
+def finite(scene: Scene, width: int = 24, height: int = 16) -> np.ndarray:
+    """Render a scene, and check that its light is finite and not negative."""
+    light = linear(scene, width, height)
+    assert np.isfinite(light).all()
+    assert (light >= 0).all()
+    return light
+
+
+def centre_of_light(light: np.ndarray) -> tuple[float, float]:
+    """Return the mean position of the lit pixels, to the right of and above the middle of the picture."""
+    rows, columns = np.nonzero(light)
+    return columns.mean() - (light.shape[1] - 1) / 2, (light.shape[0] - 1) / 2 - rows.mean()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("lean", [0.0, 1e-300, -1e-300, 5e-324])
+def test_a_camera_may_look_along_the_vertical(sign: float, lean: float) -> None:
+    straight = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, 0), 60), *COMPASS)), 48, 32)
+    to_the_right, up = centre_of_light(straight[..., 0])
+    assert to_the_right > 5
+    assert abs(up) < 0.5
+    to_the_right, up = centre_of_light(straight[..., 1])
+    assert abs(to_the_right) < 0.5
+    assert sign * up > 5
+    # A lean of 1e-300 towards +z or -z decides which way is right, just as any larger lean does.
+    leaning = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, lean), 60), *COMPASS)), 48, 32)
+    if lean:
+        more = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, np.copysign(1e-12, lean)), 60), *COMPASS)), 48, 32)
+        assert np.array_equal(leaning, more)
+
+
+def test_a_field_of_view_of_a_thousandth_of_a_degree_has_as_many_rays_as_pixels() -> None:
+    numbers = camera_numbers(EYE.replace(fov=1e-3), 1920, 1)
+    x = 2 * (np.arange(1920) + 0.5) / 1920 - 1
+    directions = numbers[9:] + x[:, None] * numbers[3:6]
+    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    assert len(np.unique(directions, axis=0)) == 1920
+    # Rays a pixel apart differ: a striped wall 1e6 away would show 1920 stripes.
+    wall = Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 1e-3), Plane((0, 0, 1), (1, 0, -1), WHITE)))
+    assert (np.diff(finite(wall, 192, 1)[0, :, 0]) != 0).all()
+
+
+@pytest.mark.parametrize("fov", [1e-5, 1e-3, 1, 90, 179, 179.999])
+def test_the_field_of_view_is_what_the_camera_says(fov: float) -> None:
+    numbers = camera_numbers(EYE.replace(fov=fov), 40, 30)
+    assert np.linalg.norm(numbers[3:6]) == pytest.approx(np.tan(np.radians(fov / 2)), rel=1e-12)
+    assert np.linalg.norm(numbers[6:9]) == pytest.approx(np.tan(np.radians(fov / 2)) * 3 / 4, rel=1e-12)
+
+
+@pytest.mark.parametrize(("fov", "same"), [(0, 1e-6), (180, 179.9999)])
+def test_extreme_fields_of_view_are_clamped_to_the_nearest_possible(fov: float, same: float) -> None:
+    one, other = (finite(Scene((AMBIENT, LAMP, EYE.replace(fov=each), *SHAPES))) for each in (fov, same))
+    assert np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("place", [1e9, 1e12, 0.99e15, -0.99e15])
+def test_a_scene_far_from_the_origin_is_finite_and_a_large_one_looks_the_same(place: float) -> None:
+    moved = changed(ALL, lambda p: tuple(x + place for x in p))
+    finite(moved)
+    factor = abs(place) / 10
+    large = changed(ALL, lambda p: tuple(x * factor for x in p), lambda length: length * factor)
+    light = finite(large)
+    assert np.quantile(np.abs(light - linear(ALL)), 0.99) <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("eye", "shape"),
+    [
+        ((0, 0, 0), Sphere((0, 0, 0), 2, WHITE)),  # in the centre
+        ((0, 0, -1), Sphere((0, 0, 0), 2, WHITE)),  # on the surface, looking in
+        ((0, 0, 1), Sphere((0, 0, 0), 2, WHITE)),  # on it, looking away
+        ((0, 0, 0), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on the axis, along it
+        ((0, 1, 0), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on the side
+        ((0, 0, -1.5), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on a cap
+        ((0, 1, -1.5), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on the rim
+        ((0, 0, 0), Plane((0, 0, 0), (0, 1, 0), WHITE)),  # in the plane
+        ((0, 0, 0), Plane((0, 0, 0), (0, 0, 1), WHITE)),
+    ],
+)
+def test_eye_and_light_in_special_positions_give_finite_light(eye: tuple[float, float, float], shape: object) -> None:
+    for lamp in (eye, (0, 0, 0), (0, 5, 0), (0, 0, 1e15)):
+        finite(Scene((AMBIENT, Camera(eye, (0, 0, 1), 70), Light(lamp, 1.0), shape)))
+
+
+def test_a_light_on_a_surface_does_not_light_that_surface() -> None:
+    ball = Sphere((0, 0, 0), 2, WHITE)
+    light = finite(Scene((AMBIENT, Camera((0, 0, -5), (0, 0, 1), 40), Light((0, 0, -1), 1.0), ball)))
+    assert light.max() <= 0.15 + 1e-9
+    floor = Plane((0, -1, 0), (0, 1, 0), WHITE)
+    lit = finite(Scene((AMBIENT, Camera((0, 3, -5), (0, -0.6, 0.8), 60), Light((0, 1, 0), 1.0), ball, floor)), 48, 32)
+    # The top of the sphere occludes the floor from a light that stands on it.
+    assert lit.max() == pytest.approx(0.15, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_light_on_the_inside_of_a_sphere_lights_all_of_it(seed: int) -> None:
+    # From every point of the wall, the cosine of the light's angle is the distance over the diameter.
+    random = np.random.default_rng(seed)
+    centre, towards = random.normal(size=(2, 3)) * 10
+    lamp = centre + 3 * towards / np.linalg.norm(towards)
+    eye, ball = Camera(tuple(centre), (0, 0, 1), 120), Sphere(tuple(centre), 6, WHITE)
+    light = finite(Scene((eye, Light(tuple(lamp), 0.7), ball)), 48, 32)
+    _, directions = reference.camera_rays(eye, 48, 32)
+    distance = np.linalg.norm(centre + 3 * directions - lamp, axis=-1)
+    assert np.abs(light - 0.7 * distance[..., None] / 6).max() <= 1e-6
+
+
+def test_a_shape_beyond_a_light_occludes_nothing() -> None:
+    floor, ceiling = Plane((0, 0, 0), (0, 1, 0), WHITE), Plane((0, 5, 0), (0, 1, 0), BLUE)
+    below, lamp = Camera((0, 2, 0), (0, -1, 0), 60), Light((0, 4.999999, 0), 1.0)
+    open_sky, covered = (Scene((AMBIENT, below, lamp, floor, *more)) for more in ((), (ceiling,)))
+    assert np.array_equal(finite(open_sky), finite(covered))
+    assert np.array_equal(finite(covered), finite(Scene((AMBIENT, below, lamp, ceiling, floor))))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from minirt.errors import ElementError
-from minirt.kernel.shading.shade import clearance
+from minirt.kernel.trace import clearance
 from minirt.lanes import Vec
 from minirt.shapes.triangle import PackedTriangle, Triangle, may_meet, plane_normals
 from minirt.shapes.triangle import intersect as watertight

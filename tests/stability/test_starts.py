@@ -21,16 +21,7 @@ from tests import oracle
 from tests.oracle.body import body
 from tests.shapes.examples import example, hits, place, shadow_offsets
 from tests.shapes.execution_modes import Intersect, compiled, surfaces
-from tests.shapes.regimes import (
-    RAYS,
-    Array,
-    Random,
-    Rays,
-    log_uniform,
-    random_directions,
-    random_perpendiculars,
-    unit,
-)
+from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
 from tests.skipping import skip_incomplete
 from tests.stability.common import is_solid
 from tests.stability.mutants import as_of_a_shadow_ray

@@ -188,10 +188,8 @@ def perpendicular(axis: Vec) -> tuple[Vec, Vec]:
     sign = copysign(1.0, axis.z)
     a = -1.0 / (sign + axis.z)
     b = axis.x * axis.y * a
-    return (
-        Vec(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
-        Vec(b, sign + axis.y * axis.y * a, -axis.y),
-    )
+    across = Vec(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x)
+    return across, Vec(b, sign + axis.y * axis.y * a, -axis.y)
 
 
 def specular(material: Vec, normal: Vec, to_light: Vec, direction: Vec, lit: Mask) -> Number:

@@ -25,7 +25,6 @@ from minirt.kernel.shading.surfaces import (
     Surface,
     absorbed,
     brightest,
-    clearance,
     medium_behind,
     row_of,
     shares_at_angle,
@@ -33,23 +32,8 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shadow_rays import ShadowRays, unoccluded
-from minirt.kernel.trace import Hit, of_shape
-from minirt.lanes import (
-    Mask,
-    Number,
-    Vec,
-    any,
-    dot,
-    fabs,
-    first,
-    lane,
-    maximum,
-    minimum,
-    rarely,
-    splat,
-    sqrt,
-    where,
-)
+from minirt.kernel.trace import Hit, clearance, of_shape
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
 ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
 LEAST_COSINE = 2.0**-26  # of a shading normal that counts as leaning less than 90 degrees

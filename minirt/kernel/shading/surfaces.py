@@ -12,23 +12,8 @@ from typing import Any, NamedTuple
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, shading, surface, vector
 from minirt.kernel.shading.patterns import SPACING, apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
-from minirt.kernel.trace import ROUNDING, Hit, of_shape
-from minirt.lanes import (
-    Mask,
-    Number,
-    Vec,
-    any,
-    dot,
-    first,
-    lane,
-    max_norm,
-    maximum,
-    rarely,
-    splat,
-    sqrt,
-    unit_roundoff,
-    where,
-)
+from minirt.kernel.trace import Hit, of_shape
+from minirt.lanes import Mask, Number, Vec, any, dot, first, lane, maximum, rarely, splat, sqrt, where
 from minirt.lanes.mathematics import LOWEST, exp2
 
 MIN_WEIGHT = 2.0**-10  # rays that would add less than this share of their light to a pixel are not traced
@@ -123,11 +108,6 @@ class Surface(NamedTuple):
     filter: Vec  # shares of the light that the surface lets through, likewise
 
 
-def clearance(point: Vec, extent: Number) -> Number:
-    """Return the offset from a surface at which a ray starts: clear of it, and of surfaces that coincide with it."""
-    return ROUNDING * unit_roundoff(extent) * (max_norm(point) + extent)
-
-
 def surfaces(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> Surface:
     """Compute the surfaces that rays hit, from the shapes that own the hits and from the points within rounding.
 
@@ -172,19 +152,11 @@ def surface_at(scene: SceneArrays, memory: Any, index: int, point: Vec, t: Numbe
     fades = splat(Vec(0.0, 0.0, 0.0), point.x)
     if has_rows(scene.fades):
         fades = splat(Vec(scene.fades[index, 0], scene.fades[index, 1], 0.0), point.x)
+    glow = splat(scene.glow[index], point.x) if has_rows(scene.glow) else splat(0.0, point.x)
+    specular, media = row_of(scene.specular, index, point.x), row_of(scene.media, index, point.x)
+    passing = row_of(scene.media, index, point.x, FILTER)
     return Surface(
-        on,
-        side,
-        normal,
-        shading_normal,
-        base_normal,
-        colour,
-        row_of(scene.specular, index, point.x),
-        reflective,
-        splat(scene.glow[index], point.x) if has_rows(scene.glow) else splat(0.0, point.x),
-        fades,
-        row_of(scene.media, index, point.x),
-        row_of(scene.media, index, point.x, FILTER),
+        on, side, normal, shading_normal, base_normal, colour, specular, reflective, glow, fades, media, passing
     )
 
 

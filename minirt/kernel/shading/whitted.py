@@ -23,14 +23,13 @@ from minirt.kernel.shading.surfaces import (
     Surface,
     absorbed,
     brightest,
-    clearance,
     medium_behind,
     reflecting_normal,
     surfaces,
     tint,
 )
 from minirt.kernel.shading.texturing import background_light, weighted_background
-from minirt.kernel.trace import Hit, closest_hit
+from minirt.kernel.trace import Hit, clearance, closest_hit
 from minirt.lanes import (
     BYTES,
     Mask,

@@ -68,8 +68,7 @@ Bend = Callable[[str, SurfaceMaps, SurfaceMapping, Array], Array]
 
 def interpreted_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
     """Apply a bump or normal map to normals by the interpreted kernel."""
-    table = maps.bumps if name == "bump" else maps.normals
-    result = PLAIN[name](table, maps, 0, at.u, at.v, vec(at.along_u), vec(at.along_v), vec(normals))
+    result = PLAIN[name](maps, 0, at.u, at.v, vec(at.along_u), vec(at.along_v), vec(normals))
     return array(result, normals)
 
 
