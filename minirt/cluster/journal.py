@@ -25,7 +25,7 @@ from minirt.helpers import file_io
 from minirt.rendering.image import Image
 from minirt.rendering.outcome import Outcome
 
-TITLE = b"miniRT journal 2, work "
+TITLE = b"miniRT journal 3, work "
 HEAD = struct.Struct("<QQI")  # number, length and checksum of a record
 LEVEL = 1  # of compression
 BANDS = "bands of the picture"
