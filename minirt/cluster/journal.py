@@ -29,6 +29,7 @@ TITLE = b"miniRT journal 3, work "
 HEAD = struct.Struct("<QQI")  # number, length and checksum of a record
 LEVEL = 1  # of compression
 BANDS = "bands of the picture"
+OTHER_WORK = "was left by another scene, other settings or another version; without --resume the work begins anew"
 SHARE = 0.1  # of the time, that goes into keeping bands at most; cheap ones are sooner rendered again than kept
 
 
@@ -76,10 +77,7 @@ class Journal:
         start = self.file.read(len(self.start))
         if not (self.keeps_all or self.start.startswith(start)):  # a part: of a program killed before the first band
             self.file.close()
-            raise RenderError(
-                f"{self.path}: was left by another scene, other settings or another version; without --resume the "
-                "work begins anew"
-            )
+            raise RenderError(f"{self.path}: {OTHER_WORK}")
         if start != self.start:
             self.file.seek(0)
             self.file.truncate()
