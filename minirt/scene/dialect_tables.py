@@ -38,6 +38,7 @@ REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of 
 CHECKERS = "checkers become checker:"
 PICTURES = "pictures behind the colour become texture:, bump: or normal:"
 ABSENT = "pictures that cannot be read are left out"
+GLASS = "shares of transparency with an index become glass:"
 HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
 
 NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
@@ -45,7 +46,7 @@ NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
 # Other names of elements, by their identifiers.
 OTHER_NAMES = {
     "bo": "cu cb bx cube cub",
-    "ob": "obj",
+    "ob": "obj tm",
     "di": "ci dk ds disk circle",
     "pa": "pb par",
     "l": "lpt ptl pt lp",
@@ -54,11 +55,12 @@ OTHER_NAMES = {
 }
 CODES = {name: code for code, names in OTHER_NAMES.items() for name in names.split()}
 
-# First words of lines that are no shapes.
+# First words of lines that are no shapes; and of a face of a mesh whose points are in the scene.
+FACE = "f"
 LIGHT = r"sun|spot\w*|\w*(?:light|lamp)\w*|a?rl|sl\w?"
 SETTING = (
     r"@?(?:ma?t|mtl|tex|txt?|xpm|bmp|img|sky|set|render|res|max|aa|alias|win|title|name|depth|sampl|thread|pat)\w*[:=]?"
-    r"|[A-Z]|[a-z]_\w*|[-{}/=*+]+.*|@.*"
+    r"|[A-Z]|[a-z]_\w*|[-|{}/=*+]+.*|@.*"
 )
 
 
@@ -140,6 +142,7 @@ ROWS = (
     Row(rf"(?:-?-?\w+[:= ])?{FILE}", picture, PICTURES),
     Row(rf"-?-?(?:sh|shin\w*|ns|exp\w*|phong)[:= ]{N}", lambda text: highlight(0.5, float(text)), HIGHLIGHTS),
     Row(rf"-?-?(?:sp|spc|spec\w*)[:= ]{N}", lambda text: highlight(float(text), 32), HIGHLIGHTS),
+    Row(rf"trans\w*[:= ]{N} (?:ior|refr\w*)[:= ]{N}", lambda share, index: f"glass:{index},{share}", GLASS),
     Row(rf"-?-?(?:re|rf|refl\w*|mir\w*)[:= ]{N}", reflected, HIGHLIGHTS),
 )
 GUESSES = EXPONENT, REFLECTIVITY

@@ -29,7 +29,7 @@ from minirt.shapes import Cone
 # Blanks may stand around the commas of three numbers, and within quotes.
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
-FRAMING = re.compile(r"\(([^()]*,[^()]*)\),?|(?<![^ \t])\|(?![^ \t])")  # of three numbers, and between fields
+FRAMING = re.compile(r"\(([^()]*,[^()]*)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
 MOST_SUGGESTED = 3  # lines
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
@@ -82,7 +82,7 @@ def translated(
     kind = kind_of(code)
     if kind is None:
         is_setting = SETTING.fullmatch(code) or len(values) < 2 or not any(map(TRIPLE.fullmatch, values))
-        unread = tables.SETTINGS if is_setting else tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
+        unread = tables.SETTINGS if is_setting and code != tables.FACE else tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
         return Translation("", [(unread, code)])
     if kind.code in (seen or ()):
         kind = FURTHER.get(kind, kind)
@@ -97,7 +97,7 @@ def translated(
         return Translation("", [(tables.SETTINGS, code)]) if kind in (Resolution, FurtherCamera) else None
     if spelled is None:
         unread = tables.MISSING if kind in SHAPES else tables.LIGHTS if kind in LAMPS else tables.SETTINGS
-        return Translation("", [(unread, code)]) if values and kind not in (Ambient, Camera) else None
+        return Translation("", [(unread, code)]) if kind not in (Ambient, Camera) else None
     fields, others = spelled
     attributes = meanings(kind, others, folder, changes)
     return Translation(" ".join([kind.code, *fields, *attributes]) + comment, changes)
@@ -243,7 +243,8 @@ def fit(field: Field, value: Any) -> tuple[Any, str]:
 def meanings(kind: type[Element], words: list[str], folder: Path | None, changes: Changes) -> list[str]:
     """Return the attributes that words behind the fields mean."""
     keyed = fields_by_key(kind)
-    are_guessed = sum(re.fullmatch(NUMBER, word) is not None for word in words) <= MOST_NUMBERS
+    has_colour = tables.WHITE not in dict(changes)  # without one a number names a material
+    are_guessed = has_colour and sum(re.fullmatch(NUMBER, word) is not None for word in words) <= MOST_NUMBERS
     found: dict[str, str] = {}
 
     def hindrance(attribute: str) -> str:
