@@ -82,7 +82,8 @@ def translated(
     kind = kind_of(code)
     if kind is None:
         is_setting = SETTING.fullmatch(code) or len(values) < 2 or not any(map(TRIPLE.fullmatch, values))
-        unread = tables.SETTINGS if is_setting and code != tables.FACE else tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
+        unread = tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
+        unread = tables.SETTINGS if is_setting and code != tables.FACE else unread
         return Translation("", [(unread, code)])
     if kind.code in (seen or ()):
         kind = FURTHER.get(kind, kind)

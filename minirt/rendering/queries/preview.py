@@ -87,6 +87,7 @@ NARROWEST, WIDEST, USUAL = 20.0, 100.0, 60.0  # degrees of the field of view: ot
 MARGIN = 1.15  # of the distance at which the bounding ball of the scene fills the picture
 IN_PLANE = 1e-9  # distance from a plane, relative to the coordinates of the eye
 CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid)
+MOST_NAMED = 3  # shapes in a notice
 MOST_COMPARED = 200  # shapes of which one may be inside of another
 CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
 DIGITS = 3  # of coordinates, relative to the size of the scene
@@ -97,8 +98,10 @@ def notice_about(scene: Scene, pixels: np.ndarray) -> str:
     """Return a sentence for a picture, (h, w, channels), of one colour: why, and which camera would show the scene;
     empty for any other."""
     height, width = pixels.shape[:2]
-    if not is_blank(pixels) or not scene.shapes:
+    if not is_blank(pixels):
         return ""
+    if not scene.shapes:
+        return "the scene has no shapes"
     arrays = ShapeArrays()
     arrays.update(scene.shapes)
     if len(arrays.slots) > MOST_PRIMITIVES:
@@ -107,7 +110,7 @@ def notice_about(scene: Scene, pixels: np.ndarray) -> str:
     if len(seen) and not is_lit(scene):
         return "no light is on: all that is in view is black"
     reason = reason_for(scene, arrays, seen)
-    camera = reason and showing_camera(scene, arrays, width, height)
+    camera = len(seen) < len(scene.shapes) and showing_camera(scene, arrays, width, height)
     return f"{reason}; this line would show the scene: {camera}" if camera else reason
 
 
@@ -119,8 +122,7 @@ def is_lit(scene: Scene) -> bool:
 
 
 def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
-    """Return why a picture has one colour, in which the shapes with the indices `seen` are in view; empty if they are
-    the reason."""
+    """Return why a picture has one colour, in which the shapes with the indices `seen` are in view."""
     eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
     for index, shape in enumerate(scene.shapes):
         flat = shape.flat()
@@ -129,7 +131,9 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
         if not flat and encloses(shape, eye):
             return f"the eye is inside {shape_name(arrays, arrays.listed[index])}"
     if len(seen):
-        return ""
+        names = ", ".join(shape_name(arrays, arrays.listed[index]) for index in seen[:MOST_NAMED].tolist())
+        names += ", ..." * (len(seen) > MOST_NAMED)
+        return f"what is in view has one colour, or is smaller than a pixel: {names}"
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
     is_behind = depths.max() < 0 and not any(kind.infinite for kind in arrays.group_numbers)
     return "nothing is in view: all is behind the eye" if is_behind else "nothing is in view"

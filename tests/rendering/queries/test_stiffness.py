@@ -152,7 +152,7 @@ def test_a_picture_in_single_precision_tells_surfaces_that_only_float32_takes_fo
     carpet = Square((0, 0, 9 - gap), (0, 0, -1), 5, RED)
     scene, packing = Scene((Ambient(1, GREY), EYE, floor, carpet)), Packing(precision="single")
     packing.pack(scene, 64, 36)
-    notices = list(notices_about(scene, np.ones((36, 64, 4), np.uint8), (64, 36), packing))
+    notices = list(notices_about(scene, np.eye(36, 64, dtype=np.uint8)[..., None] * 255, (64, 36), packing))
     start = "single precision cannot show square 1 and square 2: taken for one surface in single precision"
     assert [each.startswith(start) for each in notices] == [True] * told
 

@@ -123,7 +123,8 @@ def test_a_first_picture_with_nothing_in_view_is_remarked_on_once():
     harness = SessionHarness()
     session = harness.session
     harness.finish(0.001)
-    assert session.state.message == ""
+    assert session.state.message.startswith("what is in view has one colour")
+    harness.play("press i")
     session.saved = scene(AWAY)
     session.state = initial_state(session.saved)
     session.update()
