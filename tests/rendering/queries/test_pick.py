@@ -15,7 +15,7 @@ from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL, picture
-from tests.kernel.test_coincident import EYE, SAME
+from tests.kernel.test_frame import ABOVE, SAME
 from tests.random_scenes import random_scene
 
 WIDTH, HEIGHT = 36, 24
@@ -51,8 +51,8 @@ def test_clicks_hit_the_shapes_of_random_scenes(seed: int) -> None:
 
 @pytest.mark.parametrize("name", SAME)
 def test_a_click_hits_the_visible_one_of_coincident_surfaces(name: str) -> None:
-    assert_picks(Scene((EYE, *SAME[name])))
-    assert_picks(Scene((EYE, *reversed(SAME[name]))))
+    assert_picks(Scene((ABOVE, *SAME[name])))
+    assert_picks(Scene((ABOVE, *reversed(SAME[name]))))
 
 
 def test_the_point_on_a_shape() -> None:
