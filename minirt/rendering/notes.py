@@ -34,8 +34,8 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
             yield f"light {number} is black"
         else:
             harmless = never_occludes(shape_arrays, np.array(scene.camera.position), light)
-            for index in shape_arrays.plane_indices[harmless].tolist():
-                yield f"{shape_name(shape_arrays, index)} hides nothing from light {number}"
+            for index in shape_arrays.owner[shape_arrays.plane_indices[harmless]].tolist():
+                yield f"{shape_name(scene.shapes, index)} hides nothing from light {number}"
 
 
 def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -> Iterator[str]:
@@ -58,12 +58,7 @@ def plurals(elements: set[type[Shape]]) -> str:
     return ", ".join(kind.element.plural for kind in ALL_KINDS if kind.element in elements)
 
 
-def shape_name(shape_arrays: ShapeArrays, index: int) -> str:
-    """Name a shape, or the mesh that owns a triangle, by its kind and number: plane 2."""
-    return numbered(shape_arrays.shapes, int(shape_arrays.owner[index]))
-
-
-def numbered(shapes: Sequence[Shape], index: int) -> str:
-    """Name a shape by its kind and its number among those of this kind."""
+def shape_name(shapes: Sequence[Shape], index: int) -> str:
+    """Name a shape by its kind and its number among those of this kind: plane 2."""
     kind = type(shapes[index])
     return f"{kind.title} {sum(type(shape) is kind for shape in shapes[: index + 1])}"

@@ -19,7 +19,7 @@ from minirt.kernel.frame import ray_direction
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame import thread_memory
-from minirt.rendering.notes import numbered, shape_name
+from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.materials import encloses
@@ -127,9 +127,9 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
     for index, shape in enumerate(scene.shapes):
         flat = shape.flat()
         if flat and abs(np.dot(np.subtract(eye, flat[0]), flat[1])) <= IN_PLANE * (1 + np.abs(eye).max()):
-            return f"the eye is in {shape_name(arrays, arrays.listed[index])}"
+            return f"the eye is in {shape_name(scene.shapes, index)}"
         if not flat and encloses(shape, eye):
-            return f"the eye is inside {shape_name(arrays, arrays.listed[index])}"
+            return f"the eye is inside {shape_name(scene.shapes, index)}"
     if len(seen):
         names = ", ".join(shape_name(arrays, arrays.listed[index]) for index in seen[:MOST_NAMED].tolist())
         names += ", ..." * (len(seen) > MOST_NAMED)
@@ -154,7 +154,7 @@ def hidden_shapes(scene: Scene) -> Iterator[str]:
             for index in np.flatnonzero(within).tolist():
                 corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
                 if index != outer and all(encloses(shape, np.array(at)) for at in corners):
-                    names = (numbered(shapes, each) for each in (index, outer))
+                    names = (shape_name(shapes, each) for each in (index, outer))
                     yield "{} is never seen: it is inside {}, which is opaque".format(*names)
 
 

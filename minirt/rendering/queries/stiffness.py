@@ -109,7 +109,8 @@ def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tu
     order = order[np.sort(first)]  # the worst primitive of each shape
     more = len(order) - LISTED
     for place, index in enumerate(order[:LISTED].tolist(), 1):
-        yield index, shape_name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
+        name = shape_name(tables.shapes, tables.owner[index])
+        yield index, name + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
 def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -165,7 +166,7 @@ def coincident(scene: Scene, tables: ShapeArrays, across: int = ACROSS, down: in
         shared = " and ".join(precision for precision, gaps in ties.items() if gaps <= 1)
         if count >= LEAST:
             yield Stiff(
-                f"{shape_name(tables, one)} and {shape_name(tables, other)}",
+                " and ".join(shape_name(tables.shapes, owner) for owner in tables.owner[[one, other]]),
                 f"taken for one surface in {shared} precision: the first is shown" if shared else "nearly coincide",
                 {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[selected]))}
                 | {f"in roundings, {precision}": gaps for precision, gaps in ties.items()},
