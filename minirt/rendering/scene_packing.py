@@ -21,7 +21,7 @@ from minirt.rendering.packing.bvh import build_bvh, pack_trees, without_boxes
 from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import distance_in_the_middle
-from minirt.rendering.packing.shape_arrays import ShapeArrays, extents_from
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.view import Rounding, View, in_single
 from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
 from minirt.scene import Lamp, Scene
@@ -37,8 +37,8 @@ class Packing:
     """Packs scene after scene, in "double" precision or, where a scene allows it, in "single".
 
     With `minirt.kernel.interpreted` as the kernel it does without compiled functions. `without` names what does not
-    cull: without `TILES` each tile has all shapes, without `LIGHT_BUFFERS` each light has one cell with all of them,
-    without `BOXES` each ray visits all of the BVH. Without `BVH` there is none.
+    cull: without `TILES` each tile has all shapes, and precision is double; without `LIGHT_BUFFERS` each light has one
+    cell with all shapes; without `BOXES` each ray visits all of the BVH. Without `BVH` there is none.
     """
 
     def __init__(
@@ -172,13 +172,9 @@ class Packing:
             bvh=self.bvh_of(scene.shapes) if needs_bvh and BVH not in self.without else None,
             **packed,
         )
-        if self.precision == "single" and fits_single(arrays):
-            rounding = Rounding(self.kernel, numbers[:3])
-            extents = self.view.bins.seen.extents if self.view else np.zeros((len(shapes.slots), 4), np.float32)
-            extents[:, 3] = extents_from(numbers[:3], shapes.boxes)
-            arrays = in_single(arrays, extents, rounding)
-            if self.view:
-                self.view.rounding = rounding
+        if self.precision == "single" and self.view and fits_single(arrays):
+            self.view.rounding = Rounding(self.kernel, numbers[:3])
+            return in_single(arrays, self.view.bins.seen.extents, self.view.rounding)
         return arrays
 
     def seen_by_lights(
