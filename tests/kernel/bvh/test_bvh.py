@@ -29,7 +29,7 @@ from minirt.kernel.bvh_nodes import (
 from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import aligned, block_type, build_bvh, wide_nodes
-from minirt.rendering.packing.generic_kernels import generalised_tree
+from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.cylinder import Cylinder
@@ -92,7 +92,9 @@ def trace(
 ) -> tuple[Array, Array, Array, Array]:
     """Trace rays: distances, owners, points and normals of their closest hits."""
     n = len(origins)
-    scene = generalised_tree(scene) if run is functions.trace_rays else scene  # by the kernel for all kinds
+    scene = (
+        generalised(scene, empty_arrays(FULL_DOUBLE).bvh) if run is functions.trace_rays else scene
+    )  # by the kernel for all kinds
     result = np.full(n, np.inf), np.full(n, -1), np.full((n, 3), np.nan), np.full((n, 3), np.nan)
     with np.errstate(all="ignore"):
         run(np.zeros(1, np.int64), scene, origins, directions, *result)
