@@ -131,7 +131,7 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
         if not flat and encloses(shape, eye):
             return f"the eye is inside {shape_name(scene.shapes, index)}"
     if len(seen):
-        names = ", ".join(shape_name(arrays, arrays.listed[index]) for index in seen[:MOST_NAMED].tolist())
+        names = ", ".join(shape_name(scene.shapes, index) for index in seen[:MOST_NAMED].tolist())
         names += ", ..." * (len(seen) > MOST_NAMED)
         return f"what is in view has one colour, or is smaller than a pixel: {names}"
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)

@@ -92,9 +92,8 @@ def trace(
 ) -> tuple[Array, Array, Array, Array]:
     """Trace rays: distances, owners, points and normals of their closest hits."""
     n = len(origins)
-    scene = (
-        generalised(scene, empty_arrays(FULL_DOUBLE).bvh) if run is functions.trace_rays else scene
-    )  # by the kernel for all kinds
+    if run is functions.trace_rays:  # by the kernel for all kinds
+        scene = generalised(scene, empty_arrays(FULL_DOUBLE).bvh)
     result = np.full(n, np.inf), np.full(n, -1), np.full((n, 3), np.nan), np.full((n, 3), np.nan)
     with np.errstate(all="ignore"):
         run(np.zeros(1, np.int64), scene, origins, directions, *result)
