@@ -99,7 +99,7 @@ lowest: $(NAME)  ## run a short part of the tests with the lowest versions of th
 	mkdir -p $(LOWEST)/cache
 	XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
 	    -m "not window" tests/materials tests/formats tests/kernel/test_compiler.py \
-	    tests/kernel/test_features.py tests/mlx tests/test_faulty_writes.py
+	    tests/kernel/test_features.py tests/mlx
 
 check: $(DEV)  ## lint, check types, and compare lines with the budget
 	$(VENV)/bin/ruff check .

@@ -1,7 +1,7 @@
 """Distribute tests to processes: each file is a whole, so that its fixtures are made once.
 
-Some files form a group in one process: those that open windows, which share a screen, and those that compile the
-kernels of all scenes.
+Some files form a group in one process: those that open windows, which share a screen, those that compile the kernels of
+all scenes, and those that ask about the rays of all regimes, which are slow to make.
 """
 
 from __future__ import annotations
@@ -13,14 +13,16 @@ import pytest
 
 from tests.paths import ROOT
 
-WINDOWS, SCENES = "windows", "scenes"
+WINDOWS, SCENES, REGIMES = "windows", "scenes", "regimes"
 # The groups and files that take longest start first, so that no process starts one when the others are idle.
-LARGEST = (WINDOWS, SCENES, "tests/stability/test_regimes.py", "tests/newcomer/test_newcomer.py")
-SCENE_TESTS = {
-    "tests/test_goldens.py",
-    "tests/rendering/packing/test_generic_kernels.py",
-    "tests/rendering/queries/test_preview.py",
-    "tests/stability/test_pictures.py",
+LARGEST = (WINDOWS, REGIMES, SCENES, "tests/newcomer/test_newcomer.py")
+GROUPS = {
+    "tests/test_goldens.py": SCENES,
+    "tests/rendering/packing/test_generic_kernels.py": SCENES,
+    "tests/rendering/queries/test_preview.py": SCENES,
+    "tests/stability/test_pictures.py": SCENES,
+    "tests/stability/test_regimes.py": REGIMES,
+    "tests/stability/test_certificates.py": REGIMES,
 }
 
 # Folders and files that `make quick` leaves out. They take most of the time, above all without compiled kernels, since
@@ -94,7 +96,7 @@ def opens_windows(file: str) -> bool:
 def work_group(test: str) -> str:
     """Return the name of the group of tests that run in one process with a test."""
     file = file_of(test)
-    return SCENES if file in SCENE_TESTS else WINDOWS if opens_windows(file) else file
+    return GROUPS.get(file) or (WINDOWS if opens_windows(file) else file)
 
 
 def order(test: str) -> int:

@@ -198,4 +198,4 @@ def check_extreme(data: bytes) -> str:
     return options[0]
 
 
-EXTREMES = Fuzzer(make_extreme, check_extreme, 1000)
+EXTREMES = Fuzzer(make_extreme, check_extreme, 400)

@@ -72,11 +72,13 @@ def code_of(function: Any, *arguments: Any) -> ObjectCode:
 
 @ELF
 def test_kernels_refer_to_nothing_outside_of_themselves_but_the_library_of_c() -> None:
+    """Those that were compiled ahead of time, at least the first of them."""
     calls = [call for group in ahead_of_time.calls() for call in group]
-    assert len({name for name, _ in calls}) > 3
-    for each in calls:
-        kernel = LIBRARY.code(LIBRARY.identity(each)) or skip_incomplete("kernels are not compiled: make all")
-        assert undefined_symbols(kernel) <= {"memset"}, each[0]  # clears what an outlined function returns
+    kernels = [(call[0], kernel) for call in calls if (kernel := LIBRARY.code(LIBRARY.identity(call)))]
+    if len({name for name, _ in kernels}) < 3:
+        skip_incomplete("kernels are not compiled: make all")
+    for name, kernel in kernels:
+        assert undefined_symbols(kernel) <= {"memset"}, name  # clears what an outlined function returns
     assert undefined_symbols(code_of(quotients, np.zeros(1), np.zeros(1))) == set()
 
 

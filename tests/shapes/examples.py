@@ -14,6 +14,7 @@ from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.shape_arrays import bounding_boxes
 from minirt.shapes import Kind, Shape
 from tests import oracle
+from tests.oracle.many import crossed
 from tests.shapes.execution_modes import compiled, surfaces
 from tests.shapes.regimes import RAYS, Array, Random, log_uniform, random_directions, unit
 
@@ -51,16 +52,13 @@ def place(shape: Shape) -> Array:
 
 def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, Array]:
     """Random points of the surface of a shape of size 1 and the normals there, (count, 3) each, by the oracle."""
-    found = []
-    while len(found) < count:
-        origin = place(shape) + log_uniform(random, 0.1, 10) * random_directions(random)
-        direction = unit(place(shape) + random.uniform(-0.6, 0.6, 3) - origin)
-        t = oracle.nearest(shape, origin, direction)
-        if t is not None:
-            point = origin + float(t) * direction
-            found.append((point, [float(x) for x in oracle.normal(shape, point)]))
-    points, normals = np.array(found).swapaxes(0, 1)
-    return points, normals
+    points = np.zeros((0, 3))
+    while len(points) < count:
+        origins = place(shape) + log_uniform(random, 0.1, 10, count, 1) * random_directions(random, count)
+        directions = unit(place(shape) + random.uniform(-0.6, 0.6, (count, 3)) - origins)
+        t = crossed(shape, origins, directions).nearest()[:, None]
+        points = np.concatenate([points, (origins + t * directions)[np.isfinite(t[:, 0])]])[:count]
+    return points, np.array([[float(x) for x in oracle.normal(shape, point)] for point in points])
 
 
 def scaled(shape: Shape, factor: float) -> Shape:

@@ -80,10 +80,10 @@ def test_hits_are_those_of_the_oracle_which_knows_all_fields(kind: Kind) -> None
     names = [each.name for each in fields_of(kind.element) if not (each.keyed or isinstance(each, Colour))]
     for name in names + ["roll"] * (kind in ANGULAR):
         wrong = rays._replace(shapes=[slipped(shape, name) for shape in rays.shapes])
-        assert wrong_of(rays, on_arrays(*wrong), most=4), (name, SEED)
+        assert wrong_of(rays, on_arrays(*wrong), most=1), (name, SEED)
     if kind in ANGULAR:
         unturned = rays._replace(shapes=[shape.replace(roll=0.0) for shape in rays.shapes])
-        assert wrong_of(rays, on_arrays(*unturned), most=4)
+        assert wrong_of(rays, on_arrays(*unturned), most=1)
 
 
 @pytest.mark.parametrize("kind", ORIENTED, ids=lambda kind: kind.element.title)

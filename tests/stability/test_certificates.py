@@ -27,7 +27,7 @@ from tests.shapes.execution_modes import on_arrays
 from tests.shapes.regimes import GREY, RAYS, Array, random_directions
 from tests.stability import regime
 from tests.stability.common import EYE, towards
-from tests.stability.regime import BOUND, ExactCertificate, Regime, certified, surfaces_at
+from tests.stability.regime import BOUND, ExactCertificate, Regime, certified, rays_of, surfaces_at
 from tests.stability.table import REGIMES
 
 WITHIN = 0.02  # relative difference of a certificate and the exact one
@@ -69,7 +69,7 @@ def wrong(rays: Any, t: Array, normals: Array, found: Certificate, indices: Any)
     ("kind", "regime"), REGIMES, ids=lambda each: each.element.title if isinstance(each, Kind) else each.name
 )
 def test_certificates_are_those_of_the_oracle_and_hits_hold_the_backward_bound(kind: Kind, regime: Regime) -> None:
-    rays = regime.make()
+    rays = rays_of(regime)
     t = on_arrays(*rays)
     normals = surfaces_at(rays, t)[1]
     found = certified(rays, t, normals)
