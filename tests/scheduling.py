@@ -41,7 +41,6 @@ SLOW = (
     "tests/fuzz/",
     "tests/kernel/",
     "tests/lanes/test_operators.py",
-    "tests/materials/test_textures.py",
     "tests/newcomer/",
     "tests/rendering/packing/test_planes.py",
     "tests/rendering/packing/test_visibility.py",

@@ -34,12 +34,6 @@ def test_the_stored_goldens_are_those_of_the_reference_renderer() -> None:
         assert (np.abs(golden(minirt.load(path)).astype(int) - stored(path)).max(axis=-1) > 0).mean() < 1e-3
 
 
-def test_no_golden_picture_is_blank() -> None:
-    for path in SCENES:
-        colours = stored(path).astype(np.uint32) @ np.array([1, 2**8, 2**16], np.uint32)
-        assert len(np.unique(colours)) > 20, path.stem
-
-
 def test_a_wrong_picture_fails() -> None:
     golden_picture = stored(SCENES[1])
     speck, shifted = golden_picture.copy(), np.roll(golden_picture, 1, axis=1)

@@ -6,7 +6,6 @@ import random
 from math import inf
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from minirt.errors import FileError, MiniRTError, SceneError
@@ -15,11 +14,10 @@ from minirt.meshes import obj_lines
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.packing import camera
 from tests.cli.program import program
-from tests.fuzz import scenes, soak
+from tests.fuzz import scenes
 from tests.fuzz.__main__ import FUZZERS
 from tests.fuzz.mutations import Fuzzer, seeded
 from tests.skipping import skip_incomplete
-from tests.usage import Record, Usage
 
 FRAME = "A 1 9,9,9\nC 0,0,0 0,0,1 60\n"
 
@@ -46,18 +44,6 @@ def test_extreme_scenes_are_drawn_by_processes_of_the_program(monkeypatch: pytes
     for data in (FAR.encode(), *(scenes.make_extreme(seeded("process", seed + more)) for more in range(2))):
         print(data)  # in the report of a failure
         assert scenes.check_extreme(data)
-
-
-def test_a_leak_of_each_picture_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    leaked: list[np.ndarray] = []
-    monkeypatch.setattr(soak, "render", lambda *_: leaked.append(np.ones(2**18)))
-
-    def measure() -> Usage:  # whatever other tests have left in memory, or free meanwhile
-        return Usage.of()._replace(memory=10**8 + sum(each.nbytes for each in leaked))
-
-    record = Record(6, measure)
-    soak.soak(lambda pictures: pictures / 24, 1, record)
-    assert not record.is_flat
 
 
 def refuse(path: Path, _: bytes) -> None:

@@ -25,7 +25,6 @@ from tests.windows import SCREEN, Desktop
 pytestmark = pytest.mark.window
 
 KEYBOARDS = {  # X11's names, with the option --keys and the key codes of letters that the keyboard does not print
-    "us": ("qwerty", None),
     "fr": ("azerty", None),
     "de": ("qwertz", None),
     "us dvorak": ("qwerty", None),
