@@ -32,11 +32,12 @@ $(NAME): pyproject.toml
 	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling editables  # what builds the project
 	$(call INSTALL,.)
 	$(VENV)/bin/python -m compileall -q minirt  # also for users who cannot write there
-	$(MAKE) --no-print-directory -j2 further-packages first-kernels
+	$(MAKE) --no-print-directory -j2 further-packages $(FIRST)
 	touch $@
 
 .DELETE_ON_ERROR:
 
+FIRST   := first-kernels
 FURTHER := '.[report,panel]'
 
 further-packages:
