@@ -98,7 +98,7 @@ lowest: $(NAME)  ## run a short part of the tests with the lowest versions of th
 	$(LOWEST)/bin/python -m pip --disable-pip-version-check install --quiet pytest pytest-xdist hypothesis mpmath gmpy2 \
 	    $$($(VENV)/bin/python -m tests.pythons lowest)
 	mkdir -p $(LOWEST)/cache
-	XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
+	MINIRT_REQUIRE_WINDOW= XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
 	    -m "not window" tests/materials tests/formats tests/kernel/test_compiler.py \
 	    tests/kernel/test_features.py tests/mlx
 
