@@ -77,8 +77,8 @@ pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each 
 newest: $(NAME)  ## run what may depend on the version of Python, with the newest of them alone
 	$(VENV)/bin/python -m tests.pythons newest
 
-FORMULAS := tests/lanes tests/kernel/test_features.py tests/kernel/test_frame.py \
-            $(addprefix tests/shapes/test_,protocol.py mapping.py known_answers.py torus.py triangle.py)
+FORMULAS := tests/lanes tests/kernel/test_features.py tests/kernel/test_frame.py tests/shapes/test_protocol.py \
+            tests/shapes/test_known_answers.py tests/shapes/test_torus.py tests/shapes/test_triangle.py
 # Formulas of single numbers, of numpy's arrays and of the interpreter are the same on each processor, and so is the
 # distance of single precision from double.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays] and not interpreted- and not random_scenes \
@@ -99,8 +99,7 @@ lowest: $(NAME)  ## run a short part of the tests with the lowest versions of th
 	    $$($(VENV)/bin/python -m tests.pythons lowest)
 	mkdir -p $(LOWEST)/cache
 	MINIRT_REQUIRE_WINDOW= XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
-	    -m "not window" tests/materials tests/formats tests/kernel/test_compiler.py \
-	    tests/kernel/test_features.py tests/mlx
+	    -m "not window" tests/materials tests/formats tests/kernel/test_compiler.py tests/mlx
 
 check: $(DEV)  ## lint, check types, and compare lines with the budget
 	$(VENV)/bin/ruff check .
