@@ -49,6 +49,7 @@ HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
 
+@cache
 def imports(source: str, late: bool = True, annotations: bool = False) -> set[str]:
     """The modules that a source imports at run time.
 
