@@ -105,7 +105,7 @@ def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
 def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: Regime, way: Way) -> None:
     rays = rays_of(regime)
     for shape, origins, directions, distances, points, found in zip(*rays, *way(rays), strict=True):
-        for i in np.flatnonzero(np.isfinite(distances))[::3]:
+        for i in np.flatnonzero(np.isfinite(distances))[::5]:
             coordinates = np.abs(points[i]).max() + np.abs(bounding_boxes([shape])).max()
             distance, error = off(shape, points[i], found[i])
             # Rays leave from ROUNDING roundings above the point, which must be above the surface.
@@ -123,7 +123,7 @@ def regimes(kind: Kind, names: Iterable[str]) -> list[Regime]:
 
 def errors(regime: Regime, intersect: Intersect) -> int:
     """Count wrong hits, of each shape the first few alone, since each is judged in 60 digits."""
-    return len(wrong_in(regime, intersect(*rays_of(regime)), most=6))
+    return len(wrong_in(regime, intersect(*rays_of(regime)), most=2))
 
 
 @pytest.mark.parametrize("name", mutants.ANY)
@@ -131,7 +131,7 @@ def errors(regime: Regime, intersect: Intersect) -> int:
 def test_no_remedy_without_a_scale_passes(kind: Kind, name: str) -> None:
     intersect, failing = mutants.ANY[name]
     for regime in regimes(kind, failing):
-        assert errors(regime, intersect) > 20
+        assert errors(regime, intersect) > 10
 
 
 @pytest.mark.parametrize("kind", mutants.CARELESS, ids=label)
