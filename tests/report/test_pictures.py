@@ -129,7 +129,8 @@ def test_the_options_of_the_command_line_draw_the_picture_of_a_setting() -> None
 
 
 def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
-    mirrors = ALL.replace(ALL.shapes[0], mirror=0.5).replace(ALL.shapes[1], mirror=0.9)
+    floor, ball, *_ = SHAPES
+    mirrors = Scene((AMBIENT, EYE, LAMP, floor.replace(mirror=0.5), ball.replace(mirror=0.9)))
     plain, names = (list({each.knob.name: 0 for each in settings(scene, 16, 0.0)}) for scene in (ALL, mirrors))
     assert plain == ["uniform", "adaptive", "auto", "single", "brute force"]
     assert names == [*plain[:3], plain[4], "no bounces", "1 bounce", "3 bounces"]

@@ -123,7 +123,7 @@ def regimes(kind: Kind, names: Iterable[str]) -> list[Regime]:
 
 def errors(regime: Regime, intersect: Intersect) -> int:
     """Count wrong hits, of each shape the first few alone, since each is judged in 60 digits."""
-    return len(wrong_in(regime, intersect(*rays_of(regime)), most=2))
+    return len(wrong_in(regime, intersect(*rays_of(regime)), most=3))
 
 
 @pytest.mark.parametrize("name", mutants.ANY)
@@ -131,7 +131,7 @@ def errors(regime: Regime, intersect: Intersect) -> int:
 def test_no_remedy_without_a_scale_passes(kind: Kind, name: str) -> None:
     intersect, failing = mutants.ANY[name]
     for regime in regimes(kind, failing):
-        assert errors(regime, intersect) > 10
+        assert errors(regime, intersect) > 8
 
 
 @pytest.mark.parametrize("kind", mutants.CARELESS, ids=label)
