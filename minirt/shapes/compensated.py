@@ -8,18 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import (
-    Number,
-    Vec,
-    fabs,
-    max_norm,
-    maximum,
-    product_error,
-    rounded_product,
-    splat,
-    unit_roundoff,
-    where,
-)
+from minirt.lanes import Number, Vec, fabs, max_norm, maximum, splat, two_product, unit_roundoff, where
 
 POSITION = 8.0  # unit roundoffs of the largest coordinate, by which a point that was computed may be off its surface
 Pair = tuple[Number, Number]  # a number of twice the precision: its rounded value, and what that lacks
@@ -31,11 +20,6 @@ def two_sum(a: Number, b: Number) -> tuple[Number, Number]:
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
-
-
-def two_product(a: Number, b: Number) -> tuple[Number, Number]:
-    """The rounded product a * b and its rounding error."""
-    return rounded_product(a, b), product_error(a, b)
 
 
 def quick_two_sum(a: Any, b: Any) -> tuple[Any, Any]:

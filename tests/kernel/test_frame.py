@@ -20,27 +20,13 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import reference
 from tests.compare import edges
-from tests.kernel.pictures import (
-    ALL,
-    AMBIENT,
-    BLUE,
-    EYE,
-    GREEN,
-    LAMP,
-    ONE,
-    RED,
-    SHAPES,
-    TWO,
-    interpreted,
-    linear,
-    picture,
-)
+from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, TWO, interpreted, linear, picture
 
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
 
 
 def test_one_thread_and_many_give_the_same_bits() -> None:
-    pixels, light = picture(ALL, 150, 83, renderer=ONE)
+    pixels, light = picture(ALL, 150, 83, renderer=Renderer(1))
     for threads in (TWO, Renderer(7)):
         again, same = picture(ALL, 150, 83, renderer=threads)
         assert np.array_equal(pixels, again)

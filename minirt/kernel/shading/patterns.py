@@ -15,22 +15,7 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
-from minirt.lanes import (
-    Number,
-    Vec,
-    any,
-    copysign,
-    dot,
-    fabs,
-    floor,
-    inverse_root,
-    maximum,
-    minimum,
-    splat,
-    sqrt,
-    unit,
-    where,
-)
+from minirt.lanes import Number, Vec, any, copysign, dot, fabs, floor, inverse_root, maximum, splat, sqrt, unit, where
 from minirt.lanes.mathematics import noise_and_gradient
 
 SHARP, GONE = 0.2, 0.75  # footprints, in cells of the noise, at which an octave begins to fade and has faded
@@ -107,7 +92,7 @@ def marble(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
     """Veins one size apart, dark in their middle, that turbulence moves (Perlin 1985)."""
     phase = ACROSS_X * p.x + ACROSS_Y * p.y + ACROSS_Z * p.z + TURBULENCE * noise.total
     part = phase - floor(phase) - 0.5
-    wave = minimum(2.0 * fabs(part), 1.0)  # 1 in the middle of a vein, and for NaN, which rays that hit nothing have
+    wave = clamp_to_unit(2.0 * fabs(part))  # 1 in the middle of a vein; 0 for NaN, which rays that hit nothing have
     vein = smoothstep(wave)
     second = vein * vein
     seventh = second * second * second * vein
@@ -122,7 +107,7 @@ def wood(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
     radius = sqrt(p.x * p.x + p.y * p.y)
     phase = radius + WARP * noise.total
     part = phase - floor(phase)
-    growth = minimum(part * (1.0 / EARLY), 1.0)
+    growth = clamp_to_unit(part * (1.0 / EARLY))
     end = clamp_to_unit((part - EARLY) * (1.0 / (1.0 - EARLY)))
     early, late = smoothstep(growth), 1.0 - smoothstep(end)
     kept = 1.0 - faded(2.0 * footprint)

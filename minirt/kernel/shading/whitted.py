@@ -30,31 +30,14 @@ from minirt.kernel.shading.surfaces import (
 )
 from minirt.kernel.shading.texturing import background_light, weighted_background
 from minirt.kernel.trace import Hit, clearance, closest_hit
-from minirt.lanes import (
-    BYTES,
-    Mask,
-    Number,
-    Vec,
-    any,
-    dot,
-    lane,
-    load,
-    load_vec,
-    maximum,
-    save,
-    save_vec,
-    splat,
-    sqrt,
-    unit,
-    where,
-    width,
-)
+from minirt.lanes import Mask, Number, Vec, any, dot, lane, load_vec, maximum, save_vec, splat, sqrt, unit, where, width
 
 MAX_DEPTH = 32  # the largest depth that a scene may ask for
-# Where a packet of waiting rays has its parts, in rows of lanes; scenes without a feature leave its rows unused.
-DIRECTION, WEIGHT, LEVEL, FADE, COLOUR, MEDIUM = 3, 6, 7, 8, 9, 12
+# Where a packet of waiting rays has its parts, in rows of lanes: its origin; its direction; its weight, level and fade;
+# its colour and its medium, which scenes without tinted glass leave unused.
+DIRECTION, WEIGHT, COLOUR, MEDIUM = 3, 6, 9, 12
 RAY_ROWS = 15  # rows of lanes of a packet of waiting rays
-STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * BYTES // 8
+STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * width(np.empty(0))
 
 
 def ray_stack() -> Any:
@@ -68,10 +51,7 @@ def push_rays(scene: SceneArrays, stack: Any, waiting: int, ray: Ray, level: int
     at = waiting * RAY_ROWS * count
     save_vec(ray.origin, stack, at)
     save_vec(ray.direction, stack, at + DIRECTION * count)
-    save(ray.weight, stack, at + WEIGHT * count)
-    save(splat(level + 1.0, ray.weight), stack, at + LEVEL * count)
-    if scene.fades is not None:
-        save(ray.fade, stack, at + FADE * count)
+    save_vec(Vec(ray.weight, splat(level + 1.0, ray.weight), ray.fade), stack, at + WEIGHT * count)
     if scene.media is not None:
         save_vec(ray.colour, stack, at + COLOUR * count)
         save_vec(ray.medium, stack, at + MEDIUM * count)
@@ -82,15 +62,12 @@ def load_rays(scene: SceneArrays, stack: Any, number: int, zero: Number) -> tupl
     """Load a packet of rays from the stack, and its level."""
     count = width(zero)
     at = number * RAY_ROWS * count
-    fade = zero
     colour = medium = Vec(zero, zero, zero)
-    if scene.fades is not None:
-        fade = load(stack, at + FADE * count)
     if scene.media is not None:
         colour, medium = load_vec(stack, at + COLOUR * count), load_vec(stack, at + MEDIUM * count)
     origin, direction = load_vec(stack, at), load_vec(stack, at + DIRECTION * count)
-    level = int(lane(load(stack, at + LEVEL * count), 0))
-    return Ray(origin, direction, load(stack, at + WEIGHT * count), fade, colour, medium), level
+    numbers = load_vec(stack, at + WEIGHT * count)
+    return Ray(origin, direction, numbers.x, numbers.z, colour, medium), int(lane(numbers.y, 0))
 
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:

@@ -22,7 +22,6 @@ from minirt.kernel.machine_code.arguments import key_of, signature_of, words_of
 from minirt.kernel.machine_code.cache import CodeCache
 from minirt.kernel.machine_code.fingerprint import processor
 from minirt.kernel.machine_code.library import Call, Entry, Library
-from tests.kernel.machine_code import small_kernels
 from tests.kernel.machine_code.small_kernels import (
     Compiler,
     Inner,
@@ -125,7 +124,7 @@ def test_a_failure_is_reported_and_leaves_nothing_behind(tmp_path: Path, folder:
 
 def is_freed_with_its_last_reference(kernels: Library) -> bool:
     """Whether the machine code of a kernel lives as long as it may be called, and no longer."""
-    entry = small_kernels.compiled(kernels, DOUBLE, Compiler())
+    entry = compiled(kernels, DOUBLE, Compiler())
     code = weakref.ref(entry.code)
     kernels.entries.clear()
     gc.collect()
