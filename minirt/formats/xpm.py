@@ -123,7 +123,7 @@ def colour(definition: bytes, number: int) -> int:
             key = word
         elif key:
             values[key] = f"{values.get(key, '')}{word}"
-    value = next((values[key] for key in KEYS[:-1] if key in values), "")
+    value = next((values[key] for key in KEYS if key in values), "")
     if match := HEX.fullmatch(value):
         digits = len(match[1]) // 3
         most = int(16**digits) - 1

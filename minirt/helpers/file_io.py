@@ -187,22 +187,29 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
 
 
 def read_once(read: Callable[[Path], Content]) -> Callable[[str | os.PathLike[str]], Content]:
-    """Decorate a reader of a file that a scene names: it gives the same object until the file changes. FileError."""
-    entries: dict[str, tuple[tuple[int, ...], Content]] = {}
+    """Decorate a reader of a file that a scene names: it gives the same object until the file changes, or one of the
+    `libraries` that the object names. FileError."""
+    entries: dict[str, tuple[list[tuple[int, ...]], Content]] = {}
     lock = ForkSafeLock()
 
     @wraps(read)
     def cached(path: str | os.PathLike[str]) -> Content:
-        found = status(path, LARGEST_ASSET)
-        stamp = found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+        status(path, LARGEST_ASSET)
         key = os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
         with lock:
-            if key not in entries or entries[key][0] != stamp:
+            if key not in entries or entries[key][0] != stamps(path, entries[key][1]):
                 entries.pop(key, None)
-                entries[key] = stamp, read(Path(path))
+                content = read(Path(path))
+                entries[key] = stamps(path, content), content
             return entries[key][1]
 
     return cached
+
+
+def stamps(path: str | os.PathLike[str], content: object) -> list[tuple[int, ...]]:
+    """Return numbers that differ when a file has changed, or one of the `libraries` of its content."""
+    found = [Path(each).stat() for each in (path, *getattr(content, "libraries", ())) if Path(each).exists()]
+    return [(each.st_dev, each.st_ino, each.st_size, each.st_mtime_ns) for each in found]
 
 
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:

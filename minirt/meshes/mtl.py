@@ -38,14 +38,15 @@ class MeshMaterial(Attributes):
     colour: Triple = declare(Colour, "colour", default=(255, 255, 255))
 
 
-def read_libraries(names: Iterable[str], folder: Path) -> tuple[dict[str, MeshMaterial], set[str]]:
-    """Return the materials of files beside a mesh, by their names, and words for what is not used of them.
+def library_paths(names: Iterable[str], folder: Path) -> tuple[Path, ...]:
+    """Return the files of materials that lines of a mesh name: several a line, or one whose name has blanks."""
+    return tuple(folder / each for name in names for each in ([name] if (folder / name).is_file() else name.split()))
 
-    A line may name several files, or one whose name has blanks.
-    """
+
+def read_libraries(paths: Iterable[Path], folder: Path) -> tuple[dict[str, MeshMaterial], set[str]]:
+    """Return the materials of files beside a mesh, by their names, and words for what is not used of them."""
     found: dict[str, dict[str, str]] = {}
     unused: set[str] = set()
-    paths = [folder / each for name in names for each in ([name] if (folder / name).is_file() else name.split())]
     for path in paths:
         said: dict[str, str] = {}
         try:

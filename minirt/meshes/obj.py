@@ -83,18 +83,21 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
     if len(whole.colours) == len(whole.points):
         colours = np.rint(255 * np.clip(whole.colours, 0, 1)[corners].mean(axis=1)).astype(np.uint8)
         notices.append("has colours of points: each triangle has the mean of those of its corners")
-    looks = materials_of(whole, cut[:, 0], folder, notices) if folder and len(whole.libraries) else (None, ())
-    return Triangles(whole.points, corners, normals, uvs, colours, *looks, tuple(notices))
+    if not folder or not len(whole.libraries):
+        return Triangles(whole.points, corners, normals, uvs, colours, notices=tuple(notices))
+    numbers, materials, libraries = materials_of(whole, cut[:, 0], folder, notices)
+    return Triangles(whole.points, corners, normals, uvs, colours, numbers, materials, tuple(notices), libraries)
 
 
 def materials_of(
     whole: Block, firsts: np.ndarray, folder: Path, notices: list[str]
-) -> tuple[np.ndarray | None, tuple[Any, ...]]:
-    """Return the index of the material of each triangle, given its first corner, and the materials; add what is not
-    used of them to the notices. The first material is that of the mesh, without a file."""
+) -> tuple[np.ndarray, tuple[Any, ...], tuple[Path, ...]]:
+    """Return the index of the material of each triangle, given its first corner, the materials, and their files; add
+    what is not used of them to the notices. The first material is that of the mesh, without a file."""
     from minirt.meshes import mtl
 
-    found, unused = mtl.read_libraries(map(decoded, whole.libraries), folder)
+    libraries = mtl.library_paths(map(decoded, whole.libraries), folder)
+    found, unused = mtl.read_libraries(libraries, folder)
     names = ["", *map(decoded, whole.materials)]
     index = {name: number for number, name in enumerate(dict.fromkeys(names))}
     if found and index.keys() - {"", *found}:
@@ -104,7 +107,7 @@ def materials_of(
     faces = np.searchsorted(np.cumsum(whole.sizes), firsts, side="right")
     uses = np.searchsorted(whole.material_lines, whole.lines[faces])
     own = mtl.MeshMaterial()
-    return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index)
+    return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index), libraries
 
 
 def decoded(name: bytes) -> str:

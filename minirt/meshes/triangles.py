@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ class Triangles:
     material_of: np.ndarray | None = None  # (m,) index of the material of each triangle
     materials: tuple[Any, ...] = ()  # `minirt.meshes.mtl.MeshMaterial`
     notices: tuple[str, ...] = ()  # what was left out of the file
+    libraries: tuple[Path, ...] = ()  # files of its materials
 
     def __len__(self) -> int:
         return len(self.corners)

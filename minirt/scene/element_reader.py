@@ -19,7 +19,7 @@ from minirt.helpers import file_io
 from minirt.materials import pictures
 from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
-from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_key
+from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_word
 
 SLASHES = re.compile(r"(?<![^ \t])//")
 KEY = re.compile(r"(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):")
@@ -131,7 +131,7 @@ def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line:
     del log.errors[before + 1 :]  # later fields may be off by one
     if len(log.errors) == before:
         keyed = fields_by_key(kind)
-        guess = nearest_key(extra.text, list(keyed))
+        guess = nearest_word(extra.text, list(keyed))
         expected = hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
         why = " (one element a line)" if extra.text in SPELLINGS else expected
         log.error(line, f"{kind.title} has no further field {quoted(extra.text)}{why}", *extra.span(None))
@@ -166,7 +166,9 @@ def unknown_key_message(kind: type[Element], key: str) -> str:
     if owners:
         return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
     own = fields_by_key(kind)
-    guess = nearest_key(key, list(own)) or nearest_key(key, [name for keys in keys_by_title.values() for name in keys])
+    guess = nearest_word(key, list(own)) or nearest_word(
+        key, [name for keys in keys_by_title.values() for name in keys]
+    )
     names = list(own)
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
 

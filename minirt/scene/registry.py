@@ -35,17 +35,6 @@ LOOKALIKES = str.maketrans("1I0", "llo")
 GLUED = re.compile(r"([A-Za-z]++)[-+.0-9]")  # an identifier without a blank before the first number
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
 
-# The key that is meant by attributes of other programs that begin so, where spelling does not tell it.
-FOREIGN_KEYS = {
-    "mirror": ("refl",),
-    "glass": ("refr", "ior", "trans"),
-    "specular": ("shin", "phong"),
-    "texture": ("tex", "xpm", "image"),
-    "bump": ("height", "bump"),
-    "checker": ("chess", "chequer"),
-    "reach": ("atten",),
-}
-
 
 def nearest_word(word: str, known: list[str]) -> str:
     """Return the entry of `known` with the most similar spelling, or '' when none is similar."""
@@ -60,9 +49,3 @@ def nearest_element(word: str) -> str:
         return SPELLINGS[glued[1]].code
     names = {name: kind.code for kind in ELEMENTS.values() for name in (kind.title, kind.plural)}
     return nearest_word(word, list(ELEMENTS)) or names.get(nearest_word(word, list(names)), "")
-
-
-def nearest_key(word: str, known: list[str]) -> str:
-    """Return the key of `known` that `word` may mean, or ''."""
-    key = next((key for key, beginnings in FOREIGN_KEYS.items() if word.lower().startswith(beginnings)), "")
-    return key if key in known else nearest_word(word, known)

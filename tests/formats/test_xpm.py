@@ -62,6 +62,7 @@ def test_the_pixels_are_those_that_pillow_finds(tmp_path: Path, length: int) -> 
         ("c green", 0xFF00FF00),
         ("c None", 0),
         ("s none c none", 0),
+        ("s red", 0xFFFF0000),
         ("s roof c #010203", 0xFF010203),
         ("s red m white c blue", 0xFF0000FF),
         ("m black g4 #888888 c #00ff00", 0xFF00FF00),

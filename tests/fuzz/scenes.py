@@ -1,7 +1,8 @@
 """Fuzzers of the scene reader, with the strict grammar as the referee, and of rendering extreme scenes.
 
 Each file is read twice: as it is, by the diagnosing reader, and behind many comments, by the fast reader. Both must
-agree with the referee. A lenient reader accepts whatever a strict one does.
+agree with the referee. A lenient reader accepts whatever a strict one does, and what it makes of others is saved in
+this format.
 """
 
 from __future__ import annotations
@@ -82,8 +83,12 @@ def check_scene(data: bytes) -> str:
     assert (scene is None) == (behind is None), "the fast and the diagnosing reader disagree"
     assert expected is None or expected == (scene is not None), f"the grammar says {expected}, the reader the opposite"
     if scene is None:
-        read(data, lenient=True)
-        return "refused"
+        translated = read(data, lenient=True)
+        saved = translated and read(dump(translated).encode())
+        assert not translated or (saved and saved.elements == translated.elements), (
+            "what is saved is not in this format"
+        )
+        return "translated" if translated else "refused"
     assert scene.elements == getattr(behind, "elements", None), (
         "the fast and the diagnosing reader read different values"
     )

@@ -61,6 +61,8 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
     ("name", "text", "where", "wrong", "error"),
     [
         ("scenes", LONG, "minirt.fields.scalars.LONGEST", 302, AssertionError),
+        ("scenes", "", "minirt.scene.dialects.complete", lambda items, *_: items.reverse(), AssertionError),
+        ("scenes", "", "minirt.scene.parser.MISSING", "missing: ", AssertionError),  # which is no comment
         ("meshes", "", "minirt.meshes.obj_lines.corner_table", lambda faces: abs(TABLE(faces)), AssertionError),
         ("pictures", "", "minirt.materials.pictures.decode_by_pillow", refuse, AssertionError),
         ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),

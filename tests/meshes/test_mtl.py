@@ -182,6 +182,18 @@ def test_parts_of_a_file_of_gltf_keep_colours_and_pictures(folder: Path) -> None
     assert {np.ptp(mesh.uvs[mesh.material_of == number]) for number in mesh.material_of} == {0, 1}
 
 
+def test_a_mesh_is_read_again_when_only_its_materials_have_changed(folder: Path) -> None:
+    material(folder, "Kd 1 0 0")
+    before = load_mesh(folder / "a.obj")
+    assert load_mesh(folder / "a.obj") is before
+    (folder / "a.mtl").write_text("newmtl one\nKd 0 0 1")
+    after = load_mesh(folder / "a.obj")
+    assert [each.colour for each in after.materials[1:]] == [(0, 0, 255)]
+    (folder / "a.mtl").unlink()
+    (notice,) = load_mesh(folder / "a.obj").notices
+    assert notice.endswith("a file of materials that cannot be read")
+
+
 def test_the_extra_that_reads_other_files_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "trimesh", None)
     (folder / "a.stl").write_bytes(b"solid")

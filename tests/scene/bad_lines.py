@@ -160,10 +160,7 @@ SHAPES: list[Case] = on_sphere(
     ("speculr:0.5,30", 0, "unknown attribute 'speculr', did you mean 'specular'?"),
     ("Mirror:0.5", 0, "unknown attribute 'Mirror', did you mean 'mirror'?"),
     ("zzz:0.5", 0, f"unknown attribute 'zzz': {OWN}"),
-    ("refl:0.5", 0, "unknown attribute 'refl', did you mean 'mirror'?"),
-    ("shininess:200", 0, "unknown attribute 'shininess', did you mean 'specular'?"),
     ("fade:5", 0, "sphere has no attribute 'reach': it belongs to light, further light, spot light"),
-    ("chessboard", 0, "sphere has no further field 'chessboard', did you mean 'checker:size[,R,G,B]'?"),
 )
 
 LIGHTS: list[Case] = [
