@@ -18,6 +18,7 @@ from minirt.records import record
 __all__ = ["Ambient", "Background", "Camera", "FurtherCamera", "FurtherLight", "Lamp", "Light", "ParallelLight"]
 __all__ += ["Resolution", "SpotLight"]
 
+DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 ENDS = "renders as the nearest angle that can be drawn"
 FieldOfView = partial(Real, unit="degree", low=0.0, high=180.0, step=2.0, ends=ENDS)
 Focus = partial(Length, initial=8.0)
@@ -38,8 +39,8 @@ class Resolution(Element):
     """`R width height`: size of the window and of pictures, in pixels."""
 
     code, title, plural, once = "R", "resolution", "resolutions", True
-    width: int = declare(Whole, "width of the picture", unit="pixel", low=1, high=16384)
-    height: int = declare(Whole, "height of the picture", unit="pixel", low=1, high=16384)
+    width: int = declare(Whole, "width of the picture", unit="pixel", low=1, high=16384, initial=DEFAULT_SIZE[0])
+    height: int = declare(Whole, "height of the picture", unit="pixel", low=1, high=16384, initial=DEFAULT_SIZE[1])
 
 
 @record()

@@ -17,6 +17,7 @@ from minirt.helpers import file_io
 from minirt.records import Immutable
 from minirt.scene import writer
 from minirt.scene.elements import (
+    DEFAULT_SIZE,
     Ambient,
     Background,
     Camera,
@@ -31,7 +32,6 @@ from minirt.scene.pages import Answer, Item, Page, replace_item, split_into_page
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
-DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 Kind = TypeVar("Kind")
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 

@@ -162,10 +162,9 @@ def remember_panel(*, is_open: bool) -> None:
 
 def panel_was_open() -> bool:
     """Whether the panel was open when a window was last closed."""
-    try:
+    with suppress(OSError, RuntimeError):  # the user has no home
         return state_folder().with_name(PANEL_MARK).exists()
-    except (OSError, RuntimeError):  # the user has no home
-        return False
+    return False
 
 
 def name_of(file: Path) -> str:

@@ -18,7 +18,8 @@ from minirt.viewer.editing.values import part_names
 from tests.paths import ROOT
 from tests.viewer.fake import played
 
-SAYS = {"with_message", "say", "FieldError", "error", "FileError"}  # functions whose texts the window shows
+# Functions whose texts the window shows.
+SAYS = {"with_message", "say", "FieldError", "error", "FileError", "LookupError", "translated", "option", "whole"}
 PARTS = ("viewer", "fields", "materials", "scene")
 CATALOGUES = ROOT / "minirt/viewer/locale"
 AXIS = "a b.rt:5:10: sphère axe ne doit pas être 0,0,0 : cela n'indique aucune direction\net 2 de plus"

@@ -26,8 +26,10 @@ from minirt.viewer.editing.values import Value, values
 from tests.processes import run
 from tests.viewer.editing.test_every_kind import BARE, path  # noqa: F401  (a fixture)
 from tests.viewer.fake import TEXT, FakeRenderer
+from tests.waiting import HANG_LIMIT
 
 pytest.importorskip("slimgui", reason="the panel needs slimgui: make installs it")
+from minirt.viewer.panel.pages import ONCE
 
 SIZE = (300, 2000)
 WITH_ATTRIBUTES = ("sp", "sl", "C")  # kinds whose attributes are those of all others
@@ -227,10 +229,10 @@ def test_every_attribute_is_switched_on_and_off(kind: type[Element], path: Path)
     user = user_of(kind, path, attributes=False)
     for field in fields_of(kind):
         if field.keyed and field.default is None:
-            user.click(f"{field.name} on")
+            user.click(f"{field.title} on")
             assert getattr(user.saved(), field.name) is not None
             assert len(user.state.undo_stack) == 1
-            user.go_to(f"{field.name} on")
+            user.go_to(f"{field.title} on")
             user.press(Key.SPACE)
             assert getattr(user.saved(), field.name) is None
             user.press(Key.CONTROL_L, Key.Z)
@@ -329,6 +331,73 @@ def test_the_scene_the_history_and_pictures_have_pages(tmp_path: Path) -> None:
     user.click("Picture")
     user.click("save")
     assert load(tmp_path / "scene.rt").scene.spheres[0].diameter == 5
+
+
+@pytest.mark.parametrize("kind", [each for each in ONCE if not each.required], ids=lambda kind: kind.code)
+def test_a_setting_that_the_scene_lacks_is_added_changed_saved_and_deleted(kind: type[Element]) -> None:
+    user = User(parse(TEXT, "scene.rt").scene)
+    user.click("Scene")
+    user.click(f"{kind.title} on")
+    added = user.saved()
+    assert type(added) is kind
+    assert dump(user.state.scene).startswith(TEXT)
+    value = number_values(added)[0]
+    user.click(value.name)
+    user.type("77")
+    assert value.current(user.saved()) == 77
+    user.click(f"{kind.title} on")
+    assert dump(user.state.scene) == TEXT
+    for _ in range(3):
+        user.press(Key.CONTROL_L, Key.Z)
+    assert user.state.scene.elements == parse(TEXT, "scene.rt").scene.elements
+    assert not user.state.undo_stack
+
+
+def finished(user: User) -> str:
+    """What the panel says of the film, once that is made or stopped."""
+    film = user.panel._pages._thread
+    assert film is not None
+    film.join(HANG_LIMIT)
+    user.memory.play()
+    return str(user.panel._pages.film)
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp", ".png"])
+def test_a_film_is_that_of_the_command_line_and_can_be_stopped(suffix: str, tmp_path: Path) -> None:
+    (tmp_path / "scene.rt").write_text(TEXT)
+    user = User(load(tmp_path / "scene.rt").scene, (640, 480))
+    user.click("Picture")
+    user.click("format")
+    user.click(f"format {suffix}")
+    x, y = user.place("pictures")
+    user.memory.click(x - 30, y)
+    user.memory.tap(Key.CONTROL_L, Key.A)
+    for character in "3":
+        user.memory.text(character)
+    user.memory.play()
+    user.click("film")
+    made = tmp_path / f"scene-1{'-0001' if suffix == '.png' else ''}{suffix}"
+    assert finished(user) == f"film: {made}"
+    command = [sys.executable, "-m", "minirt", str(user.session.path), "--turntable", "3", "--size", "640x480"]
+    assert run([*command, "-o", str(tmp_path / f"film{suffix}"), "--no-metadata"]).returncode == 0
+    assert made.read_bytes() == (tmp_path / made.name.replace("scene-1", "film")).read_bytes()
+    user.click("pictures")
+    user.click("film")
+    user.click("film")
+    assert finished(user) == "the film was stopped"
+    assert not (tmp_path / f"scene-2{suffix}").exists()
+
+
+def test_the_panel_speaks_french(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LANGUAGE", "fr")
+    user = User(parse(TEXT, "scene.rt").scene, (640, 700), select=3)
+    assert list(user.panel._tabs) == ["Éléments", "Scène", "Historique", "Image"]
+    user.click("diameter")
+    user.type("-3")
+    assert user.rows.error == ("diameter", "sphere diameter must be > 0, got -3")
+    user.click("Historique")
+    user.click("Image")
+    assert "film" in user.rows.places
 
 
 def test_names_are_the_comments_before_lines_and_the_search_finds_them() -> None:

@@ -19,6 +19,7 @@ from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import values
+from minirt.viewer.language import translated
 from minirt.viewer.panel.gui import Rgba
 from minirt.viewer.panel.rows import Rows
 
@@ -44,7 +45,7 @@ class Elements:
     def show(self) -> None:
         """Show the list, and below it the rows of the selected element."""
         imgui.set_next_item_width(-1.0)
-        self._wanted = imgui.input_text_with_hint("###search", "search", self._wanted)[1]
+        self._wanted = imgui.input_text_with_hint("###search", translated("search"), self._wanted)[1]
         self.rows.note("search")
         height = imgui.get_content_region_avail()[1]
         self.list(LISTED * height)
@@ -78,7 +79,7 @@ class Elements:
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
         self.rows.note(f"shown {index}")
-        imgui.set_item_tooltip("shown while you edit; the file keeps it")
+        imgui.set_item_tooltip(translated("shown while you edit; the file keeps it"))
         if changed:
             self.rows.gui.show(replace(state, hidden=state.hidden ^ {index}))
         imgui.same_line()
@@ -120,13 +121,9 @@ class Elements:
         """Show the box of an attribute, with its rows or the reason why it cannot be had."""
         there = getattr(self.rows.element, field.name) is not None
         reason = "" if there else self.reasons().get(field.name, "")
-        imgui.begin_disabled(bool(reason))
-        changed, _ = imgui.checkbox(f"{field.title}###{field.name} on", there)
-        self.rows.note(f"{field.name} on")
-        imgui.end_disabled()
-        imgui.set_item_tooltip(field.doc)
+        changed = self.rows.box(field.title, there, field.doc, disabled=bool(reason))
         if reason:
-            imgui.text_disabled(reason)
+            imgui.text_disabled(translated(reason))
         if changed:
             switch = partial(without, field=field) if there else partial(structure.with_attribute, field=field)
             self.rows.apply(lambda state: switch(state).end_merging(), field.title)

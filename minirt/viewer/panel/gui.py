@@ -52,6 +52,7 @@ class Gui(ABC):
         self.is_open = False
         self.io = imgui.create_context().io
         self.size = 0  # of text, in pixels
+        self.left = 0.0  # border of the panel, in pixels
         self.typed = ""  # characters since the last frame
         self.has_popup = False  # whether a list or a picker is open
         self.unsettled = 0  # frames that have to follow
@@ -59,7 +60,6 @@ class Gui(ABC):
         self._held: set[int] = set()  # keys that are down in the panel
         self._context = imgui.get_current_context()
         self._time = session.now
-        self._is_building = False
         self._is_changed = False  # whether the frame that is being made has changed the session's state
         self.io.ini_filename = self.io.log_filename = None
         self.io.config_input_text_cursor_blink = False
@@ -76,10 +76,6 @@ class Gui(ABC):
     @abstractmethod
     def build(self) -> None:
         """Declare the widgets of a frame."""
-
-    @abstractmethod
-    def is_near(self, x: int) -> bool:
-        """Whether a motion of the pointer to a column concerns the panel."""
 
     @property
     def is_busy(self) -> bool:
@@ -106,7 +102,7 @@ class Gui(ABC):
             case _ if not self.is_open:
                 pass
             case Event.MOTION_NOTIFY, (x, y):
-                if not self.session.pressed and (self.is_near(x) or self.io.want_capture_mouse):
+                if not self.session.pressed and (x >= self.left or self.has_popup or self.io.want_capture_mouse):
                     self.point(x, y)
                     taken = bool(self.io.want_capture_mouse)
             case ((Event.BUTTON_PRESS | Event.BUTTON_RELEASE), (button, x, y)):
@@ -172,27 +168,21 @@ class Gui(ABC):
         self.session.state, self._is_changed = state, True
 
     def frame(self) -> None:
-        """Make a frame, unless one is being made."""
-        if self._is_building:
-            return
-        self._is_building = True
-        try:
-            imgui.set_current_context(self._context)
-            now, window = self.session.now, self.session.window
-            self.io.delta_time, self._time = max(now - self._time, SHORTEST), now
-            self.io.display_size = window.width, window.height
-            imgui.new_frame()
-            imgui.push_font(None, float(self.size))
-            self.build()
-            imgui.pop_font()
-            imgui.render()
-            self.typed = ""
-            window.stale = True
-            if self._is_changed:
-                self._is_changed = False
-                self.session.show(self.session.state)
-        finally:
-            self._is_building = False
+        """Make a frame, and let the window show what it has changed."""
+        imgui.set_current_context(self._context)
+        now, window = self.session.now, self.session.window
+        self.io.delta_time, self._time = max(now - self._time, SHORTEST), now
+        self.io.display_size = window.width, window.height
+        imgui.new_frame()
+        imgui.push_font(None, float(self.size))
+        self.build()
+        imgui.pop_font()
+        imgui.render()
+        self.typed = ""
+        window.stale = True
+        if self._is_changed:
+            self._is_changed = False
+            self.session.show(self.session.state)
 
     def resize_text(self, size: int) -> None:
         """Set the size of text, and of all spaces with it, from the next frame on."""

@@ -8,14 +8,18 @@ from threading import Thread
 
 from slimgui import imgui
 
-from minirt.element import fields_of
+from minirt.element import Element, fields_of
 from minirt.errors import MiniRTError
-from minirt.movie import save_movie
+from minirt.formats.table import FORMATS
+from minirt.movie import FPS, QUALITY, numbered, save_movie
 from minirt.rendering.image import Image
 from minirt.rendering.settings import render
 from minirt.scene import Lamp, Scene
+from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.session import Session
+from minirt.viewer.bindings import BINDINGS
+from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.motion import turntable
 from minirt.viewer.editing.state import Snapshot
@@ -24,8 +28,11 @@ from minirt.viewer.panel.elements import Elements, seen
 from minirt.viewer.panel.rows import Rows
 
 SAMPLES = ("1", "4", "16", "64", "256")  # rays per pixel
-FRAMES = ("24", "60", "120", "240")  # pictures of a film
-COMMAND_TITLES = {"screenshot": "save the picture", "save": "save the scene", "save copy": "save a copy"}
+BUTTONS = [each for each in BINDINGS if each.action in ("screenshot", "save", "save copy")]
+ONCE = [kind for kind in ELEMENTS.values() if kind.once and not issubclass(kind, Lamp)]  # settings of a scene
+# Formats of films by their suffixes; .png stands for numbered pictures.
+FILMS = {each.suffixes[0]: each for each in FORMATS.values() if each.is_film} | {".png": FORMATS["PNG"]}
+MOST_PICTURES, BEST_QUALITY = 3600, 100  # as on the command line
 
 
 class Pages:
@@ -34,7 +41,8 @@ class Pages:
     def __init__(self, session: Session, rows: Rows, elements: Elements) -> None:
         self.session, self.rows, self.elements = session, rows, elements
         self.film = ""  # what the window shows of the film: its progress, or its end
-        self._frames = FRAMES[1]
+        self._share = 0.0  # of the film that is made
+        self._format, self._pictures, self._quality = ".gif", 120, QUALITY
         self._is_stopped = False
         self._thread: Thread | None = None
 
@@ -44,13 +52,28 @@ class Pages:
         if samples := self.rows.option("samples", SAMPLES, str(refinement.samples)):
             refinement.restart(int(samples))
             self.session.update()
-        for index, element in enumerate(self.session.state.scene.elements):
-            if type(element).once and not isinstance(element, Lamp):
-                imgui.push_id(index)
-                imgui.separator_text(element.title)
-                self.rows.show(index)
-                self.elements.attributes()
-                imgui.pop_id()
+        for kind in ONCE:
+            imgui.push_id(kind.code)
+            self.setting(kind)
+            imgui.pop_id()
+
+    def setting(self, kind: type[Element]) -> None:
+        """Show the rows of an element that a scene has once; a box adds and deletes one that it may lack."""
+        state = self.session.state
+        index = next((each for each in state.scene.indices_of(kind) if type(state.scene.elements[each]) is kind), None)
+        if kind.required:
+            imgui.separator_text(kind.title)
+        elif self.rows.box(kind.title, index is not None):
+            after = (
+                structure.with_element(state, kind)
+                if index is None
+                else structure.delete(state.select(index), 1.0, 0.0)
+            )
+            self.rows.gui.show(after)
+            return
+        if index is not None:
+            self.rows.show(index)
+            self.elements.attributes()
 
     def history(self) -> None:
         """Show the steps of undo and redo, the oldest first; a click goes there."""
@@ -58,50 +81,66 @@ class Pages:
         steps = [*state.undo_stack, state.snapshot, *reversed(state.redo_stack)]
         now = len(state.undo_stack)
         for number in seen(len(steps)):
-            title = step_title(steps[number - 1], steps[number]) if number else "as opened"
-            undone = "  (undone)" if number > now else ""
-            if imgui.selectable(f"{number}  {title}{undone}###{number}", number == now)[0]:
+            title = step_title(steps[number - 1], steps[number]) if number else translated("as opened")
+            undone = translated("(undone)") if number > now else ""
+            if imgui.selectable(f"{number}  {title}  {undone}###{number}", number == now)[0]:
                 for _ in range(abs(number - now)):
                     state = apply(state, "redo" if number > now else "undo")
                 self.rows.gui.show(state)
             self.rows.note(f"step {number}")
 
     def picture(self) -> None:
-        """Show the buttons that save the picture and the scene, and make a film of a turntable."""
-        for action, title in COMMAND_TITLES.items():
-            if imgui.button(f"{title}###{action}"):
-                self.session.attempt(COMMANDS[action])
+        """Show the buttons that save the picture and the scene, and the settings of a film of a turntable."""
+        for binding in BUTTONS:
+            if imgui.button(f"{translated(binding.help)}###{binding.action}"):
+                self.session.attempt(COMMANDS[binding.action])
                 self.rows.gui.show(self.session.state)
-            self.rows.note(action)
-        imgui.separator_text("turntable")
-        self._frames = self.rows.option("frames", FRAMES, self._frames) or self._frames
+            self.rows.note(binding.action)
+        imgui.separator_text(translated("turntable"))
+        self._format = self.rows.option("format", FILMS, self._format) or self._format
+        self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
+        if FILMS[self._format].is_lossy:
+            self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
+        width, height, samples = self.picture_settings
+        imgui.text(f"{self._pictures / FPS:g} s, {width}x{height}, {samples} {translated('samples')}")
         is_running = self._thread is not None and self._thread.is_alive()
-        if imgui.button("stop###film" if is_running else "save a film###film"):
+        if imgui.button(translated("stop" if is_running else "save a film") + "###film"):
             self._is_stopped = is_running
             if not is_running:
                 self._thread = Thread(target=self.make_film, name="minirt-film", daemon=True)
                 self._thread.start()
         self.rows.note("film")
-        imgui.text_wrapped(translated(self.film))
+        if is_running:
+            imgui.progress_bar(self._share, overlay=translated(self.film))
+        else:
+            imgui.text_wrapped(translated(self.film))
+
+    @property
+    def picture_settings(self) -> tuple[int, int, int]:
+        """Width and height of the picture in the window, and its samples."""
+        return self.session.window.width, self.session.window.height, self.session.refinement.samples
 
     def make_film(self) -> None:
         """Render and write the film, in a thread of its own; the window goes on meanwhile."""
         path = self.session.path
-        names = (path.with_name(f"{path.stem}-{number}.gif") for number in count(1))
-        file = next(each for each in names if not each.exists())
+        names = (path.with_name(f"{path.stem}-{number}{self._format}") for number in count(1))
+        file = next(each for each in names if not each.exists() and not numbered(each, 1).exists())
+        quality = self._quality if FILMS[self._format].is_lossy else None
+        self._share = 0.0
         try:
-            save_movie(self.frames(self.session.shown_scene, int(self._frames)), file)
-            self.say(f"film: {file}")
+            pictures = self.frames(self.session.shown_scene, self._pictures)
+            self.say(f"film: {save_movie(pictures, file, quality=quality)[0]}")
         except (MiniRTError, OSError) as error:
             self.say(str(error))
 
     def frames(self, scene: Scene, total: int) -> Iterator[Image]:
         """Yield the pictures of the film, as large and with as many samples as the picture in the window."""
-        size, samples = (self.session.window.width, self.session.window.height), self.session.refinement.samples
+        width, height, samples = self.picture_settings
         for number, view in enumerate(turntable(scene, total), 1):
             if self._is_stopped:
                 raise MiniRTError("the film was stopped")
-            yield render(view, *size, samples=samples)
+            yield render(view, width, height, samples=samples)
+            self._share = number / total
             self.say(f"{number} of {total} pictures")
 
     def say(self, text: str) -> None:
@@ -114,7 +153,7 @@ def step_title(before: Snapshot, after: Snapshot) -> str:
     """Description of the edit between two versions of a scene."""
     old, new = before.scene.elements, after.scene.elements
     if len(old) != len(new):
-        return f"add {new[after.selected].title}" if len(new) > len(old) else f"delete {old[before.selected].title}"
+        return f"+ {new[after.selected].title}" if len(new) > len(old) else f"- {old[before.selected].title}"
     one, other = old[after.selected], new[after.selected]
     changed = [
         each.title for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None)

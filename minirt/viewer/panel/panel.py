@@ -11,7 +11,7 @@ from collections.abc import Callable
 from slimgui import imgui
 
 from minirt.viewer.app.session import Session
-from minirt.viewer.editing.state import State
+from minirt.viewer.language import translated
 from minirt.viewer.panel.elements import Elements
 from minirt.viewer.panel.gui import Gui
 from minirt.viewer.panel.pages import Pages
@@ -31,15 +31,14 @@ class Panel(Gui):
         self.rows = Rows(session, self)
         self._close = close
         self._wants_focus = False
-        self._state: State | None = None  # that the last frame shows
-        self._others: tuple[object, ...] = ()  # what else it shows
+        self._shown: tuple[object, ...] = ()  # inputs of the last frame
         elements = Elements(session, self.rows)
         self._pages = Pages(session, self.rows, elements)
         self._tabs = {
-            "Elements": elements.show,
-            "Scene": self._pages.scene,
-            "History": self._pages.history,
-            "Picture": self._pages.picture,
+            translated("Elements"): elements.show,
+            translated("Scene"): self._pages.scene,
+            translated("History"): self._pages.history,
+            translated("Picture"): self._pages.picture,
         }
 
     def open(self, is_open: bool, has_keys: bool) -> None:
@@ -53,28 +52,20 @@ class Panel(Gui):
 
     def follow(self) -> None:
         """Make a frame if the session shows something else than the last one."""
-        if self.is_open and (self._state is not self.session.state or self._others != self.others):
+        if self.is_open and self._shown != self.inputs:
             self.frame()
 
     @property
-    def others(self) -> tuple[object, ...]:
-        """Inputs of a frame besides the state: the size of the window, the scale of its texts and the film."""
-        window = self.session.window
-        return window.width, window.height, self.session.screen.scale, self._pages.film
-
-    @property
-    def left(self) -> float:
-        """The left border, in pixels."""
-        width = self.session.window.width
-        return width - min(WIDTH * self.size, SHARE * width)
-
-    def is_near(self, x: int) -> bool:
-        return x >= self.left or self.has_popup
+    def inputs(self) -> tuple[object, ...]:
+        """Inputs of a frame: the state, the size of the window, the scale of its texts and the film."""
+        session, window = self.session, self.session.window
+        return session.state, window.width, window.height, session.screen.scale, self._pages.film
 
     def build(self) -> None:
         window = self.session.window
-        self._state, self._others = self.session.state, self.others
+        self._shown = self.inputs
         self.resize_text(max(READABLE, min(self.session.screen.text_size, window.width // LETTERS)))
+        self.left = window.width - min(WIDTH * self.size, SHARE * window.width)
         self.rows.begin_frame()
         imgui.set_next_window_pos((self.left, 0.0))
         imgui.set_next_window_size((window.width - self.left, float(window.height)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
+from itertools import chain
 from typing import Any
 
 from slimgui import imgui
@@ -22,6 +23,7 @@ from minirt.viewer.editing.state import State
 from minirt.viewer.editing.typed import CHARACTERS, set_typed, with_value
 from minirt.viewer.editing.values import CHANNELS, Value, part_names, seen_fields, values_of_field
 from minirt.viewer.files import next_file, usable_files
+from minirt.viewer.language import translated
 from minirt.viewer.panel.gui import GOLD, Gui
 
 PIXELS = 6  # of a drag to the right or upwards, for one step
@@ -49,7 +51,6 @@ class Rows:
         self._pressed = ""  # name of the number under the button that is down
         self._start: Element | None = None  # the element when the button went down
         self._slid = 0.0  # steps since
-        self._files: list[str | MeshFile] = []  # those of the list that is open
 
     @property
     def element(self) -> Element:
@@ -108,7 +109,7 @@ class Rows:
             if changed:
                 self.set(value, new)
         elif isinstance(leaf, Choice):
-            if word := self.option(value.name, leaf.words, old, label=False):
+            if word := self.option(value.name, leaf.words, old, room):
                 self.set(value, word)
         elif isinstance(leaf, Three) and not isinstance(old, str):
             self.show_triple(value, room)
@@ -116,7 +117,7 @@ class Rows:
             self.number(value, room)
         if self.error[0].startswith(value.name):
             imgui.push_style_color(imgui.Col.TEXT, GOLD)
-            imgui.text_wrapped(f"! {self.error[1]}")
+            imgui.text_wrapped(f"! {translated(self.error[1])}")
             imgui.pop_style_color()
         imgui.pop_id()
 
@@ -147,35 +148,44 @@ class Rows:
         if imgui.is_item_deactivated():
             self.session.state = self.session.state.end_merging()
 
-    def option(self, name: str, options: Iterable[str], shown: str, label: bool = True) -> str:
-        """Show a list of words; return the one that is chosen now, or an empty string."""
-        chosen = ""
-        imgui.set_next_item_width(-1.0 if not label else imgui.get_content_region_avail()[0] / 2)
-        if imgui.begin_combo(f"{name}###{name}" if label else f"###{name}", shown):
+    def option(self, name: str, options: Iterable[Any], shown: Any, width: float = 0.0) -> Any:
+        """Show a list, with its name unless a `width` is given; return the option that is chosen now, or None."""
+        chosen = None
+        imgui.set_next_item_width(width or imgui.get_content_region_avail()[0] / 2)
+        if imgui.begin_combo(f"{'' if width else translated(name)}###{name}", option_title(shown)):
             for option in options:
-                if imgui.selectable(option, option == shown)[0]:
+                if imgui.selectable(option_title(option), option == shown)[0]:
                     chosen = option
-                self.note(f"{name} {option}")
+                self.note(f"{name} {option_title(option)}")
             imgui.end_combo()
         else:
             self.note(name)
         return chosen
 
+    def whole(self, name: str, number: int, high: int) -> int:
+        """Show a whole number from 1 to `high`; return what it is now."""
+        imgui.set_next_item_width(imgui.get_content_region_avail()[0] / 2)
+        number = imgui.input_int(f"{translated(name)}###{name}", number)[1]
+        self.note(name)
+        return min(max(number, 1), high)
+
+    def box(self, title: str, is_on: bool, doc: str = "", disabled: bool = False) -> bool:
+        """Show a box that switches something on and off; return whether it is clicked now."""
+        imgui.begin_disabled(disabled)
+        clicked, _ = imgui.checkbox(f"{title}###{title} on", is_on)
+        self.note(f"{title} on")
+        imgui.end_disabled()
+        imgui.set_item_tooltip(doc)
+        return bool(clicked)
+
     def choose_file(self, value: Value, room: float) -> None:
         """Show the list of the pictures, or meshes, beside the scene; in place of a picture there may be a colour."""
-        leaf, old = value.leaf, value.get(self.element)
-        name = f"{value.name} file"
-        imgui.set_next_item_width(room)
-        if not imgui.begin_combo(f"###{name}", file_title(old)):
-            self.note(name)
-            return
-        if imgui.is_window_appearing():
-            self._files = list(usable_files(self.session.state.scene, isinstance(leaf, MeshField)))
-        for file in [*([leaf.initial] if isinstance(leaf, Paint) else []), *self._files]:
-            if imgui.selectable(file_title(file), file == old)[0]:
-                self.set(value, file)
-            self.note(f"{value.name} {file_title(file)}")
-        imgui.end_combo()
+        leaf = value.leaf
+        files: Iterable[Any] = usable_files(self.session.state.scene, isinstance(leaf, MeshField))
+        files = chain([leaf.initial], files) if isinstance(leaf, Paint) else files
+        file = self.option(f"{value.name} file", files, value.get(self.element), room)
+        if file is not None:
+            self.set(value, file)
 
     def number(self, value: Value, width: float, prefix: str = "") -> None:
         """Show a number, which is dragged, typed or stepped."""
@@ -184,7 +194,7 @@ class Rows:
             return
         entered = imgui.button(f"{prefix} {value.current(self.element):.6g}###{value.name}".strip(), (width, 0.0))
         self.note(value.name)
-        imgui.set_item_tooltip(f"{value.name}: drag it, click to type it, or + and -; Shift: finer")
+        imgui.set_item_tooltip(translated("drag it, click to type it, or + and -; Shift: finer"))
         if imgui.is_item_activated():
             self._pressed, self._start, self._slid = value.name, self.element, 0.0
             self.session.state = self.session.state.end_merging()
@@ -267,6 +277,6 @@ class Rows:
         self.gui.show(after)
 
 
-def file_title(file: Any) -> str:
-    """Name of a file, or of a colour in its place, in a list."""
-    return file.name if isinstance(file, MeshFile) else file if isinstance(file, str) else COLOUR_OR
+def option_title(option: Any) -> str:
+    """Name of a word, a file, or a colour in place of a file, in a list."""
+    return option.name if isinstance(option, MeshFile) else option if isinstance(option, str) else COLOUR_OR
