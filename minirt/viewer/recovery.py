@@ -97,7 +97,9 @@ class Recovery:
             self._delete()
         if unsaved:
             if self.path is None:
-                path = created_state_folder() / f"{name_of(version.file)}-{os.urandom(6).hex()}.rt"
+                folder = state_folder()
+                folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
+                path = folder / f"{name_of(version.file)}-{os.urandom(6).hex()}.rt"
                 self.path, self._lock = path, open_lock(path)
             file_io.write(self.path, dump(version.scene).encode(), file_io.PRIVATE_FILE)
             with suppress(OSError):  # clocks are set back, too: what was changed is never newer than its changes
@@ -146,17 +148,11 @@ def state_folder() -> Path:
     return file_io.user_folder("XDG_STATE_HOME", "Application Support", ".local/state") / "minirt" / "unsaved"
 
 
-def created_state_folder() -> Path:
-    """Return the folder of this user's unsaved changes, which is created if necessary; RuntimeError, OSError."""
-    folder = state_folder()
-    folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
-    return folder
-
-
 def remember_panel(*, is_open: bool) -> None:
     """Remember for the next window whether the panel is open, by an empty file."""
     with suppress(OSError, RuntimeError):
-        mark = created_state_folder().with_name(PANEL_MARK)
+        mark = state_folder().with_name(PANEL_MARK)
+        mark.parent.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
         mark.touch(file_io.PRIVATE_FILE) if is_open else mark.unlink(missing_ok=True)
 
 

@@ -5,9 +5,11 @@ The user of the tests finds widgets by the names of values, with the pointer or 
 
 from __future__ import annotations
 
+import os
 import random
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,6 +22,7 @@ from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Job, Painter
+from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
 from minirt.viewer.editing.values import Value, values
@@ -30,6 +33,7 @@ from tests.waiting import HANG_LIMIT
 
 pytest.importorskip("slimgui", reason="the panel needs slimgui: make installs it")
 from minirt.viewer.panel.pages import ONCE
+from minirt.viewer.panel.rows import Rows
 
 SIZE = (300, 2000)
 WITH_ATTRIBUTES = ("sp", "sl", "C")  # kinds whose attributes are those of all others
@@ -419,14 +423,33 @@ def test_attributes_that_cannot_be_had_are_refused_with_the_reason(tmp_path: Pat
     assert not user.state.undo_stack
 
 
+def test_a_row_that_drops_a_change_is_found(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    """A panel that loses the last part of every triple fails the tests of every number."""
+    change = Rows.change
+
+    def dropping(rows: Rows, value: Value, *rest: Any) -> None:
+        if value.channel != 2:
+            change(rows, value, *rest)
+
+    monkeypatch.setattr(Rows, "change", dropping)
+    with pytest.raises(AssertionError, match="blue|centre: z"):
+        test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(ELEMENTS["sp"], path)
+    with pytest.raises(AssertionError, match="blue|centre: z"):
+        test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(ELEMENTS["sp"], path)
+
+
 @pytest.mark.parametrize("size", [(400, 300), (1280, 720)], ids="{0[0]}x{0[1]}".format)
-def test_random_input_leaves_a_scene_that_is_saved_and_a_panel_that_works(size: tuple[int, int], path: Path) -> None:  # noqa: F811
+def test_random_input_leaves_a_scene_that_is_saved_and_undone_to_the_first_byte(size: tuple[int, int], path: Path):  # noqa: F811
+    """`MINIRT_PANEL_INPUTS` is the number of inputs."""
     seed = random.SystemRandom().randrange(10**6)
     chance = random.Random(seed)
-    user = User(parse(BARE + "sp 0,0,0 2 9,9,9\nbo 0,0,5 0,1,0 1,2,3 9,9,9\nL 0,9,0 0.5\n", path).scene, size)
-    keys = [*range(Key.A, Key.Z + 1), Key.TAB, Key.RETURN, Key.SPACE, Key.UP, Key.DOWN, Key.LEFT, Key.RIGHT, Key.ESCAPE]
-    keys = [key for key in keys if key not in (Key.ESCAPE, Key.P)]
-    for _ in range(150):
+    text = BARE + "sp 0,0,0 2 9,9,9\nbo 0,0,5 0,1,0 1,2,3 9,9,9\nL 0,9,0 0.5\n"
+    keys = [*range(Key.A, Key.Z + 1), Key.TAB, Key.RETURN, Key.SPACE, Key.UP, Key.DOWN, Key.LEFT, Key.RIGHT]
+    keys.remove(Key.P)
+    files = set(path.parent.iterdir())
+    for number in range(int(os.environ.get("MINIRT_PANEL_INPUTS", "300"))):
+        if number % 300 == 0:  # fewer edits than are kept for undo
+            user = User(parse(text, path).scene, size)
         x, y = chance.randrange(size[0] // 2, size[0]), chance.randrange(size[1])
         match chance.randrange(6):
             case 0:
@@ -446,9 +469,20 @@ def test_random_input_leaves_a_scene_that_is_saved_and_a_panel_that_works(size: 
         try:
             user.memory.play()
             user.saved()
+            if number % 300 == 299:
+                assert dump(undone(user.state).scene) == text
         except BaseException as error:
-            error.add_note(f"seed {seed}")
+            error.add_note(f"seed {seed}, input {number}")
             raise
+    for file in set(path.parent.iterdir()) - files:  # copies and pictures
+        file.unlink()
+
+
+def undone(state: State) -> State:
+    """The state after all undos."""
+    while state.undo_stack:
+        state = apply(state, "undo")
+    return state
 
 
 def test_slimgui_is_imported_when_the_panel_opens_and_without_it_f1_names_the_extra() -> None:

@@ -51,6 +51,7 @@ class Screen:
         self.banner = ""  # a message that stays until its reason is gone
         self.panel: Panel | None = None  # a value that is typed, or a list to choose from
         self.handles = False  # whether those of the selected element are shown
+        self.covered = 0  # columns at the right that the panel covers: text keeps clear of them
         self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
         self.image = mlx.mlx_new_image(window.display, 1, 1)
@@ -94,12 +95,12 @@ class Screen:
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
         shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
-        contents = described, picture, message, *shown, width, height, scale
+        contents = described, picture, message, *shown, self.covered, width, height, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
         self.image = Image(self.picture_alone(picture))
-        bottom = 0
+        bottom, clear = 0, self.frame[:, : width - self.covered]
         if self.help:
             draw_help(self.frame, self.layout, self.search, size, self.help)
         elif self.level:
@@ -107,16 +108,16 @@ class Screen:
                 job = picture.job
                 marks = {"icons": self.icons, "handles": handles}
                 draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
-            bottom = overlay.draw_hud(self.frame, state, picture, self.level, rate, size)
+            bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
         if self.has_tab and not self.help:
             overlay.draw_tab(self.frame, size)
         if self.panel and not self.help:
-            overlay.draw_panel(self.frame, self.panel, size)
-        elif self.tips and self.level and not message:
+            overlay.draw_panel(clear, self.panel, size)
+        elif self.tips and self.level and not message and not self.covered:
             message = TIPS
         if message and not self.help:  # above the text at the bottom
-            words = wrap(translated(message), width, size)
-            overlay.draw_lines(self.frame, -MARGIN - bottom, words, MESSAGE_COLOUR, size)
+            words = wrap(translated(message), clear.shape[1], size)
+            overlay.draw_lines(clear, -MARGIN - bottom, words, MESSAGE_COLOUR, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 

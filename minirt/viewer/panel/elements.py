@@ -13,12 +13,10 @@ from minirt.element import Element, fields_of
 from minirt.errors import ElementError
 from minirt.fields import Colour, Field
 from minirt.scene import Scene
-from minirt.scene.pages import Item
 from minirt.viewer.app.session import Session
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import values
 from minirt.viewer.language import translated
 from minirt.viewer.panel.gui import Rgba
 from minirt.viewer.panel.rows import Rows
@@ -135,10 +133,9 @@ class Elements:
     def reasons(self) -> dict[str, str]:
         """Why attributes cannot be had, by their names; as it was at the press while a number is dragged."""
         scene, index = self.session.state.scene, self.rows.index
-        if (self._asked[0] is not scene or self._asked[1] != index) and not self.rows.is_sliding:
+        if (self._asked[0] is not scene or self._asked[1] != index) and not self.rows.pressed:
             self._asked = scene, index
-            state = self.session.state.select(index)
-            self._reasons = {field.name: refusal(state, field) for field in optional_fields(state.element)}
+            self._reasons = dict(refusals(self.session.state.select(index)))
         return self._reasons
 
 
@@ -147,30 +144,26 @@ def optional_fields(element: Element) -> list[Field]:
     return [field for field in fields_of(type(element)) if field.keyed and field.default is None]
 
 
-def refusal(state: State, field: Field) -> str:
-    """Why the selected element cannot have an attribute that it lacks; empty if it can."""
-    try:
-        structure.with_attribute(state, field)
-    except (LookupError, ElementError) as error:
-        return str(error)
-    return ""
+def refusals(state: State) -> Iterator[tuple[str, str]]:
+    """Yield the names of the attributes that the selected element cannot have, and why."""
+    for field in optional_fields(state.element):
+        try:
+            structure.with_attribute(state, field)
+        except (LookupError, ElementError) as error:
+            yield field.name, str(error)
 
 
 def without(state: State, field: Field) -> State:
     """The state whose selected element has lost an attribute."""
-    index = [value.field.name for value in values(state.element)].index(field.name)
-    return structure.remove_attribute(replace(state, value_index=index), 1.0, 0.0)
+    changed = state.element.replace(**{field.name: None})
+    return replace(state.change(state.scene.edit(state.selected, changed), "", 0.0), value_index=0)
 
 
 def names(scene: Scene) -> list[str]:
     """Names of all elements: the comments on the lines before them."""
     pairs = pairwise(("", *scene.items))
-    return [comment_text(before) for before, item in pairs if isinstance(item, Element)]
-
-
-def comment_text(item: Item) -> str:
-    """The words of a comment; empty for any other line."""
-    return item.lstrip("# ").strip() if isinstance(item, str) and item.lstrip().startswith("#") else ""
+    lines = [before if isinstance(before, str) else "" for before, item in pairs if isinstance(item, Element)]
+    return [line.lstrip("# ").strip() if line.lstrip().startswith("#") else "" for line in lines]
 
 
 def colour_of(element: Element) -> Rgba:

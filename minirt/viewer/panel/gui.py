@@ -32,16 +32,7 @@ NOWHERE = -3.4028234663852886e38  # where the pointer is when it has left the wi
 SETTLING = 2  # frames after an event: the second one shows what the first one has changed
 SHORTEST = 1e-3  # seconds between two frames
 Rgba = tuple[float, float, float, float]
-# Blue and yellow, which people with any kind of colour blindness tell apart; nothing is told by red and green.
-GOLD: Rgba = (1.0, 0.84, 0.37, 1.0)
-COLOURS: dict[Rgba, tuple[str, ...]] = {
-    (0.95, 0.95, 0.95, 1.0): ("TEXT", "CHECK_MARK"),
-    (0.09, 0.10, 0.12, 0.94): ("WINDOW_BG", "POPUP_BG"),
-    (0.22, 0.24, 0.28, 1.0): ("BUTTON", "FRAME_BG", "TAB", "TAB_DIMMED"),
-    (0.16, 0.38, 0.66, 1.0): ("HEADER", "TAB_SELECTED", "TAB_DIMMED_SELECTED", "BUTTON_ACTIVE", "TEXT_SELECTED_BG"),
-    (0.24, 0.46, 0.74, 1.0): ("BUTTON_HOVERED", "FRAME_BG_HOVERED", "HEADER_HOVERED", "TAB_HOVERED"),
-    GOLD: ("NAV_CURSOR", "TAB_SELECTED_OVERLINE", "PLOT_HISTOGRAM"),
-}
+GOLD: Rgba = (1.0, 0.84, 0.37, 1.0)  # on blue and grey, which people with any kind of colour blindness tell apart
 
 
 class Gui(ABC):
@@ -69,9 +60,10 @@ class Gui(ABC):
         self.io.backend_flags |= imgui.BackendFlags.RENDERER_HAS_TEXTURES
         font: Any = ImageFont.load_default(16)  # that of the window's own texts
         self.io.fonts.add_font_from_memory_ttf(font.font_bytes)
-        for colour, names in COLOURS.items():
-            for name in names:
-                imgui.get_style().colors[imgui.Col[name]] = colour
+        accented = imgui.FontConfig()  # letters that the first font lacks
+        accented.merge_mode = True
+        self.io.fonts.add_font_default(accented)
+        imgui.get_style().colors[imgui.Col.NAV_CURSOR] = GOLD
 
     @abstractmethod
     def build(self) -> None:
@@ -190,7 +182,7 @@ class Gui(ABC):
             self.size = size
             style = imgui.get_style()
             style.window_padding = style.item_spacing = 0.4 * size, 0.25 * size
-            style.frame_padding = style.item_inner_spacing = 0.3 * size, 0.15 * size
+            style.frame_padding = style.item_inner_spacing = 0.22 * size, 0.15 * size
             style.indent_spacing, style.scrollbar_size, style.grab_min_size = 0.5 * size, 0.7 * size, 0.7 * size
             style.frame_rounding = style.tab_rounding = 0.15 * size
 

@@ -101,8 +101,7 @@ class Pages:
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
         if FILMS[self._format].is_lossy:
             self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
-        width, height, samples = self.picture_settings
-        imgui.text(f"{self._pictures / FPS:g} s, {width}x{height}, {samples} {translated('samples')}")
+        imgui.text(f"{self._pictures / FPS:g} s")
         is_running = self._thread is not None and self._thread.is_alive()
         if imgui.button(translated("stop" if is_running else "save a film") + "###film"):
             self._is_stopped = is_running
@@ -114,11 +113,6 @@ class Pages:
             imgui.progress_bar(self._share, overlay=translated(self.film))
         else:
             imgui.text_wrapped(translated(self.film))
-
-    @property
-    def picture_settings(self) -> tuple[int, int, int]:
-        """Width and height of the picture in the window, and its samples."""
-        return self.session.window.width, self.session.window.height, self.session.refinement.samples
 
     def make_film(self) -> None:
         """Render and write the film, in a thread of its own; the window goes on meanwhile."""
@@ -135,11 +129,11 @@ class Pages:
 
     def frames(self, scene: Scene, total: int) -> Iterator[Image]:
         """Yield the pictures of the film, as large and with as many samples as the picture in the window."""
-        width, height, samples = self.picture_settings
+        size, samples = (self.session.window.width, self.session.window.height), self.session.refinement.samples
         for number, view in enumerate(turntable(scene, total), 1):
             if self._is_stopped:
                 raise MiniRTError("the film was stopped")
-            yield render(view, width, height, samples=samples)
+            yield render(view, *size, samples=samples)
             self._share = number / total
             self.say(f"{number} of {total} pictures")
 

@@ -17,7 +17,7 @@ from minirt.viewer.panel.gui import Gui
 from minirt.viewer.panel.pages import Pages
 from minirt.viewer.panel.rows import Rows
 
-WIDTH, SHARE = 21.0, 0.55  # of the panel: in sizes of text, and of a narrow window
+WIDTH, SHARE = 21.0, 0.6  # of the panel: in sizes of text, and of a narrow window
 LETTERS, READABLE = 30, 12  # in a narrow window text becomes smaller, so that so many fit, but not below so many pixels
 FRAME = imgui.WindowFlags.NO_DECORATION | imgui.WindowFlags.NO_MOVE | imgui.WindowFlags.NO_SAVED_SETTINGS
 ANY_POPUP = imgui.PopupFlags.ANY_POPUP_ID | imgui.PopupFlags.ANY_POPUP_LEVEL
@@ -49,6 +49,8 @@ class Panel(Gui):
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
         if is_open:
             self.settle()
+        self.session.screen.covered = self.session.window.width - int(self.left) if is_open else 0
+        self.session.refresh()
 
     def follow(self) -> None:
         """Make a frame if the session shows something else than the last one."""
@@ -73,7 +75,7 @@ class Panel(Gui):
             imgui.set_next_window_focus()
             self._wants_focus = False
         imgui.begin("panel", False, FRAME)
-        if imgui.begin_tab_bar("pages"):
+        if imgui.begin_tab_bar("pages", imgui.TabBarFlags.FITTING_POLICY_SHRINK):
             for name, show in self._tabs.items():
                 visible, _ = imgui.begin_tab_item(name)
                 self.rows.note(name)

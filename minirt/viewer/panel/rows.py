@@ -48,7 +48,7 @@ class Rows:
         self.index = 0  # of the element whose rows are shown
         self._typing: Value | None = None  # the number that is typed
         self._text, self._first = "", ""  # what is typed, and the character that began it
-        self._pressed = ""  # name of the number under the button that is down
+        self.pressed = ""  # name of the number under the button that is down
         self._start: Element | None = None  # the element when the button went down
         self._slid = 0.0  # steps since
 
@@ -56,11 +56,6 @@ class Rows:
     def element(self) -> Element:
         """The element whose rows are shown, as it is now."""
         return self.session.state.scene.elements[self.index]
-
-    @property
-    def is_sliding(self) -> bool:
-        """Whether the button is down on a number."""
-        return bool(self._pressed)
 
     def begin_frame(self) -> None:
         """Forget what the last frame had; a number that is not shown any more is not typed any more."""
@@ -192,20 +187,22 @@ class Rows:
         if self._typing == value:
             self.type(value, width)
             return
-        entered = imgui.button(f"{prefix} {value.current(self.element):.6g}###{value.name}".strip(), (width, 0.0))
+        texts = [f"{prefix} {value.current(self.element):.{digits}g}".strip() for digits in (6, 4, 3, 2)]
+        text = next((each for each in texts if imgui.calc_text_size(each)[0] < width - self.gui.size / 2), texts[-1])
+        entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
         self.note(value.name)
         imgui.set_item_tooltip(translated("drag it, click to type it, or + and -; Shift: finer"))
         if imgui.is_item_activated():
-            self._pressed, self._start, self._slid = value.name, self.element, 0.0
+            self.pressed, self._start, self._slid = value.name, self.element, 0.0
             self.session.state = self.session.state.end_merging()
-        if self._pressed == value.name:
+        if self.pressed == value.name:
             self.drag(value)
         if entered and not self._slid:
             self.begin_typing(value, "")
         elif imgui.is_item_focused() and self.gui.typed and not self.gui.types:
             self.on_character(value, self.gui.typed)
-        if self._pressed == value.name and not imgui.is_item_active():
-            self._pressed = ""
+        if self.pressed == value.name and not imgui.is_item_active():
+            self.pressed = ""
             self.session.state = self.session.state.end_merging()
 
     def drag(self, value: Value) -> None:
