@@ -280,6 +280,14 @@ def test_keys_are_those_of_the_picture_until_the_panel_has_the_focus_and_after_e
     before = user.state.scene
     user.press(Key.D)
     assert user.state.scene is not before
+    user.click("element 3")
+    user.press(Key.N)  # a letter that is no part of a text gives the keys back, too
+    user.memory.text("7")
+    user.press(Key.RETURN)
+    assert user.element.diameter == 7
+    user.click("diameter")
+    user.press(Key.N, Key.DELETE)
+    assert user.state.selected == 6
 
 
 def test_an_eye_hides_an_element_and_nothing_is_saved_of_it() -> None:

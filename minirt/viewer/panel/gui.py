@@ -19,7 +19,8 @@ ARROWS = {key: f"KEY_{key.name}_ARROW" for key in (Key.LEFT, Key.RIGHT, Key.UP, 
 ENTER = {Key.RETURN: "KEY_ENTER", Key.KEYPAD_ENTER: "KEY_ENTER"}
 NAMED = {each: f"KEY_{each.name}" for each in Key if f"KEY_{each.name}" in imgui.Key.__members__}
 KEYS: dict[int, Any] = {key: imgui.Key[name] for key, name in (NAMED | ARROWS | ENTER).items()}
-SHORTCUTS = range(Key.F1, Key.F12 + 1)  # keys of the window even while the panel has the keys
+FUNCTION_KEYS = range(Key.F1, Key.F12 + 1)  # of the window even while the panel has the keys
+OF_THE_PICTURE = (*range(Key.A, Key.Z + 1), Key.DELETE)  # unless a text is edited
 MODIFIERS = {
     Modifier.CTRL: imgui.Key.MOD_CTRL,
     Modifier.SHIFT: imgui.Key.MOD_SHIFT,
@@ -132,11 +133,14 @@ class Gui(ABC):
         return taken
 
     def on_key(self, code: int, down: bool) -> bool:
-        """A key goes down or up; function keys and shortcuts are those of the window, unless a text is edited."""
+        """A key goes down or up; function keys, letters and shortcuts are the window's, unless a text is edited.
+
+        After a letter, as after Escape, all keys are those of the picture.
+        """
         if down:
-            is_shortcut = code in SHORTCUTS or (Modifier.ACCEL in self.session.modifiers and not self.types)
-            taken = self.has_keys and not is_shortcut
-            self.is_left |= taken and code == Key.ESCAPE and not self.types and not self.has_popup
+            is_shortcut = not self.types and (Modifier.ACCEL in self.session.modifiers or code in OF_THE_PICTURE)
+            taken = self.has_keys and code not in FUNCTION_KEYS and not is_shortcut
+            self.is_left |= not self.types and not self.has_popup and code in (*OF_THE_PICTURE, Key.ESCAPE)
         else:
             taken = code in self._held
         if taken:
