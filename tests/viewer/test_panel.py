@@ -214,7 +214,8 @@ def test_every_word_file_and_flag_is_chosen(kind: type[Element], by_keys: bool, 
     user = user_of(kind, path, attributes=kind.code in WITH_ATTRIBUTES)
     for value in other_values(user.element):
         before = user.element
-        name = value.name if isinstance(value.leaf, Choice | Flag) else f"{value.name} file"
+        name = f"{value.name} on" if isinstance(value.leaf, Flag) else value.name
+        name += " file" if isinstance(value.leaf, Picture | MeshField | Paint) else ""
         if by_keys:
             user.go_to(name)
             for key in [Key.RETURN] if isinstance(value.leaf, Flag) else [Key.RETURN, Key.DOWN, Key.RETURN]:
@@ -440,9 +441,9 @@ def test_a_row_that_drops_a_change_is_found(path: Path, monkeypatch: pytest.Monk
             change(rows, value, *rest)
 
     monkeypatch.setattr(Rows, "change", dropping)
-    with pytest.raises(AssertionError, match="blue|centre: z"):
+    with pytest.raises(AssertionError, match="blue"):
         test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(ELEMENTS["sp"], path)
-    with pytest.raises(AssertionError, match="blue|centre: z"):
+    with pytest.raises(AssertionError, match="centre: z"):
         test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(ELEMENTS["sp"], path)
 
 

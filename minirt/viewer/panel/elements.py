@@ -34,9 +34,9 @@ class Elements:
         self.rows = rows
         self._wanted = ""  # what is searched for
         self._followed = -1  # the selected element that the list was scrolled to
-        self._named: Scene | None = None  # the scene of the next two
+        self._named: tuple[Scene | None, str] = None, ""  # scene and search of the next two
         self._names: list[str] = []
-        self._found: dict[str, list[int]] = {}  # indices by what was searched for
+        self._found: Sequence[int] = ()  # indices
         self._asked: tuple[Scene | None, int] = None, -1  # scene and index of the element whose reasons are known
         self._reasons: dict[str, str] = {}  # why attributes cannot be had, by their names
 
@@ -57,9 +57,10 @@ class Elements:
     def list(self, height: float) -> None:
         """Show the rows of the elements that are found, as far as they are in sight."""
         state = self.session.state
-        if self._named is not state.scene:
-            self._named, self._names, self._found = state.scene, names(state.scene), {}
-        indices = self.found(state.scene)
+        if self._named != (state.scene, self._wanted):
+            self._named, self._names = (state.scene, self._wanted), names(state.scene)
+            self._found = found(self._wanted.lower(), state.scene, self._names)
+        indices = self._found
         if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
             if state.selected != self._followed and state.selected in indices:
                 self._followed = state.selected
@@ -96,17 +97,6 @@ class Elements:
             self.rows.gui.show(apply(session.state, "look at", 1.0, session.now))
         imgui.pop_item_flag()
         imgui.pop_id()
-
-    def found(self, scene: Scene) -> Sequence[int]:
-        """Indices of the elements whose kind, name or code has what is searched for."""
-        if not self._wanted:
-            return range(len(scene.elements))
-        word = self._wanted.lower()
-        if word not in self._found:
-            named = enumerate(zip(scene.elements, self._names, strict=True))
-            titles = ((index, f"{each.title} {each.code} {name}") for index, (each, name) in named)
-            self._found[word] = [index for index, title in titles if word in title.lower()]
-        return self._found[word]
 
     # --- attributes ---
 
@@ -164,6 +154,13 @@ def names(scene: Scene) -> list[str]:
     pairs = pairwise(("", *scene.items))
     lines = [before if isinstance(before, str) else "" for before, item in pairs if isinstance(item, Element)]
     return [line.lstrip("# ").strip() if line.lstrip().startswith("#") else "" for line in lines]
+
+
+def found(word: str, scene: Scene, names: Sequence[str]) -> Sequence[int]:
+    """Indices of the elements whose kind, code or name has what is searched for."""
+    titles = zip(scene.elements, names, strict=True) if word else ()
+    titled = enumerate(f"{each.title} {each.code} {name}".lower() for each, name in titles)
+    return [index for index, title in titled if word in title] if word else range(len(scene.elements))
 
 
 def colour_of(element: Element) -> Rgba:

@@ -5,7 +5,7 @@ Only this package imports `slimgui`, and it is imported when the panel first ope
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any
 
 from PIL import ImageFont
@@ -21,12 +21,7 @@ NAMED = {each: f"KEY_{each.name}" for each in Key if f"KEY_{each.name}" in imgui
 KEYS: dict[int, Any] = {key: imgui.Key[name] for key, name in (NAMED | ARROWS | ENTER).items()}
 FUNCTION_KEYS = range(Key.F1, Key.F12 + 1)  # of the window even while the panel has the keys
 OF_THE_PICTURE = (*range(Key.A, Key.Z + 1), Key.DELETE)  # unless a text is edited
-MODIFIERS = {
-    Modifier.CTRL: imgui.Key.MOD_CTRL,
-    Modifier.SHIFT: imgui.Key.MOD_SHIFT,
-    Modifier.ALT: imgui.Key.MOD_ALT,
-    Modifier.COMMAND: imgui.Key.MOD_SUPER,
-}
+MODIFIERS = {Modifier.ACCEL: imgui.Key.MOD_CTRL, Modifier.SHIFT: imgui.Key.MOD_SHIFT, Modifier.ALT: imgui.Key.MOD_ALT}
 BUTTONS = {Button.LEFT: 0, Button.MIDDLE: 2, Button.RIGHT: 1}
 WHEEL = {Button.WHEEL_UP: 1.0, Button.WHEEL_DOWN: -1.0}
 NOWHERE = -3.4028234663852886e38  # where the pointer is when it has left the window
@@ -36,11 +31,12 @@ Rgba = tuple[float, float, float, float]
 GOLD: Rgba = (1.0, 0.84, 0.37, 1.0)  # on blue and grey, which people with any kind of colour blindness tell apart
 
 
-class Gui(ABC):
+class Gui:
     """A context of Dear ImGui for the window of a session."""
 
-    def __init__(self, session: Session) -> None:
-        self.session = session
+    def __init__(self, session: Session, build: Callable[[], None]) -> None:
+        """`build` declares the widgets of a frame."""
+        self.session, self._build = session, build
         self.is_open = False
         self.io = imgui.create_context().io
         self.size = 0  # of text, in pixels
@@ -65,10 +61,6 @@ class Gui(ABC):
         accented.merge_mode = True
         self.io.fonts.add_font_default(accented)
         imgui.get_style().colors[imgui.Col.NAV_CURSOR] = GOLD
-
-    @abstractmethod
-    def build(self) -> None:
-        """Declare the widgets of a frame."""
 
     @property
     def is_busy(self) -> bool:
@@ -171,7 +163,7 @@ class Gui(ABC):
         self.io.display_size = window.width, window.height
         imgui.new_frame()
         imgui.push_font(None, float(self.size))
-        self.build()
+        self._build()
         imgui.pop_font()
         imgui.render()
         self.typed = ""
@@ -188,7 +180,6 @@ class Gui(ABC):
             style.window_padding = style.item_spacing = 0.4 * size, 0.25 * size
             style.frame_padding = style.item_inner_spacing = 0.22 * size, 0.15 * size
             style.indent_spacing, style.scrollbar_size, style.grab_min_size = 0.5 * size, 0.7 * size, 0.7 * size
-            style.frame_rounding = style.tab_rounding = 0.15 * size
 
     def paint(self, painter: Any) -> None:
         """Draw the last frame over the canvas: see `Mlx.mlx_overlay_hook`."""

@@ -27,7 +27,7 @@ class Panel(Gui):
     """The panel of a session. It is closed at first."""
 
     def __init__(self, session: Session, close: Callable[[], None]) -> None:
-        super().__init__(session)
+        super().__init__(session, self.build)
         self.rows = Rows(session, self)
         self._close = close
         self._wants_focus = False
@@ -47,15 +47,16 @@ class Panel(Gui):
         self._wants_focus, self.is_left = is_open and has_keys, not has_keys
         paint = (lambda painter, _: self.paint(painter)) if is_open else None
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
+        self.session.screen.covered = 0
         if is_open:
             self.settle()
-        self.session.screen.covered = self.session.window.width - int(self.left) if is_open else 0
         self.session.refresh()
 
     def follow(self) -> None:
         """Make a frame if the session shows something else than the last one."""
         if self.is_open and self._shown != self.inputs:
             self.frame()
+            self.session.refresh()
 
     @property
     def inputs(self) -> tuple[object, ...]:
@@ -64,10 +65,12 @@ class Panel(Gui):
         return session.state, window.width, window.height, session.screen.scale, self._pages.film
 
     def build(self) -> None:
+        """Declare the widgets of a frame."""
         window = self.session.window
         self._shown = self.inputs
         self.resize_text(max(READABLE, min(self.session.screen.text_size, window.width // LETTERS)))
         self.left = window.width - min(WIDTH * self.size, SHARE * window.width)
+        self.session.screen.covered = window.width - int(self.left)
         self.rows.begin_frame()
         imgui.set_next_window_pos((self.left, 0.0))
         imgui.set_next_window_size((window.width - self.left, float(window.height)))

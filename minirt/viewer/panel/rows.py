@@ -85,6 +85,10 @@ class Rows:
     def show_value(self, value: Value) -> None:
         """Show the name of a value and its widgets."""
         leaf, old = value.leaf, value.get(self.element)
+        if isinstance(leaf, Flag):
+            if self.box(value.name, old, leaf.doc):
+                self.set(value, not old)
+            return
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
         imgui.push_id(value.name)
         imgui.align_text_to_frame_padding()
@@ -98,12 +102,7 @@ class Rows:
         if isinstance(leaf, Paint) and not isinstance(old, str):
             imgui.same_line()
             room *= 0.66
-        if isinstance(leaf, Flag):
-            changed, new = imgui.checkbox("###flag", old)
-            self.note(value.name)
-            if changed:
-                self.set(value, new)
-        elif isinstance(leaf, Choice):
+        if isinstance(leaf, Choice):
             if word := self.option(value.name, leaf.words, old, room):
                 self.set(value, word)
         elif isinstance(leaf, Three) and not isinstance(old, str):
@@ -175,10 +174,10 @@ class Rows:
 
     def choose_file(self, value: Value, room: float) -> None:
         """Show the list of the pictures, or meshes, beside the scene; in place of a picture there may be a colour."""
-        leaf = value.leaf
+        leaf, name = value.leaf, f"{value.name} file"
         files: Iterable[Any] = usable_files(self.session.state.scene, isinstance(leaf, MeshField))
         files = chain([leaf.initial], files) if isinstance(leaf, Paint) else files
-        file = self.option(f"{value.name} file", files, value.get(self.element), room)
+        file = self.option(name, files, value.get(self.element), room)
         if file is not None:
             self.set(value, file)
 
