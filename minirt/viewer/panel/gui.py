@@ -130,9 +130,11 @@ class Gui:
         After a letter, as after Escape, all keys are those of the picture.
         """
         if down:
-            is_shortcut = not self.types and (Modifier.ACCEL in self.session.modifiers or code in OF_THE_PICTURE)
-            taken = self.has_keys and code not in FUNCTION_KEYS and not is_shortcut
-            self.is_left |= not self.types and not self.has_popup and code in (*OF_THE_PICTURE, Key.ESCAPE)
+            is_shortcut = Modifier.ACCEL in self.session.modifiers
+            passes = not self.types and (is_shortcut or code in OF_THE_PICTURE)
+            taken = self.has_keys and code not in FUNCTION_KEYS and not passes
+            ends = code in (*OF_THE_PICTURE, Key.ESCAPE) and not is_shortcut
+            self.is_left |= ends and not self.types and not self.has_popup
         else:
             taken = code in self._held
         if taken:

@@ -39,6 +39,13 @@ def until_the_panel(viewer: Viewer, is_open: bool) -> None:
     until(lambda: is_dark() == is_open, f"the {'open' if is_open else 'closed'} panel")
 
 
+def seen(viewer: Viewer, line: str) -> None:
+    """Do what a line says, and wait until the window shows it: a window manager may lose what follows a click."""
+    before = viewer.desktop.screenshot(viewer.window)
+    do(viewer.desktop, viewer.window, line)
+    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), before), line)
+
+
 def test_numbers_are_dragged_and_typed_undone_and_saved_and_the_panel_is_remembered(desktop: Desktop, tmp_path: Path):
     path, state = tmp_path / "scene.rt", f"XDG_STATE_HOME={tmp_path / 'state'}"
     opened = {"size": SIZE, "environment": (state,), "options": ("--no-watch",)}
@@ -51,14 +58,19 @@ def test_numbers_are_dragged_and_typed_undone_and_saved_and_the_panel_is_remembe
 
         user = User(load(path).scene, SIZE)
         user.click(f"element {SPHERE}")
-        (x, y), number = user.place(f"element {SPHERE}"), user.place("diameter")
-        do(desktop, viewer.window, f"click {x},{y}", f"drag {number[0]},{number[1]} {number[0] + 60},{number[1]}")
+        number = user.place("diameter")
+        seen(viewer, "move {},{}".format(*user.place(f"element {SPHERE}")))
+        seen(viewer, "click {},{}".format(*user.place(f"element {SPHERE}")))
+        seen(viewer, "move {},{}".format(*number))
+        desktop.run("xdotool", "mousedown", "1")
+        seen(viewer, f"move {number[0] + 60},{number[1]}")
+        desktop.run("xdotool", "mouseup", "1")
         viewer.key("ctrl+s")
         until(lambda: path.read_text() != SPHERE_ON_PLANE, "the saved drag")
         assert load(path).scene.spheres[0].diameter > 2
         viewer.key("ctrl+z", "ctrl+s")
         until(lambda: path.read_text() == SPHERE_ON_PLANE, "the undone drag")
-        do(desktop, viewer.window, f"click {number[0]},{number[1]}")
+        seen(viewer, f"click {number[0]},{number[1]}")
         desktop.run("xdotool", "type", "--delay", "0", "2*3+1")
         viewer.key("Return", "ctrl+s")
         until(lambda: path.read_text() == SPHERE_ON_PLANE.replace("sp 0,0,0 2 ", "sp 0,0,0 7 "), "the typed line")
@@ -75,9 +87,7 @@ def test_numbers_are_dragged_and_typed_undone_and_saved_and_the_panel_is_remembe
     with viewing(desktop, path, text=None, **opened) as viewer:
         until_at_rest(viewer.process.pid)
         assert not has_slimgui(viewer)
-        without = desktop.screenshot(viewer.window)
-        do(desktop, viewer.window, "move {},{}".format(*EDGE))
-        until(lambda: not np.array_equal(desktop.screenshot(viewer.window), without), "the tab at the edge")
+        seen(viewer, "move {},{}".format(*EDGE))
         do(desktop, viewer.window, "click {},{}".format(*EDGE))
         until_the_panel(viewer, True)
         viewer.key("Escape", "Escape")
