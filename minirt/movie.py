@@ -22,6 +22,8 @@ from minirt.helpers import file_io
 from minirt.helpers.progress import State, in_notebooks
 from minirt.rendering.image import Image
 
+# Formats of films by their suffixes; .png stands for numbered pictures.
+FILMS = {each.suffixes[0]: each for each in FORMATS.values() if each.is_film} | {".png": FORMATS["PNG"]}
 FPS = 25.0  # frames per second
 INLINE = 32 * 2**20  # bytes of the largest film that a notebook shows: it becomes a part of the notebook
 MEDIA = {".gif": "image/gif", ".webp": "image/webp", ".apng": "image/png", ".mp4": "video/mp4", ".webm": "video/webm"}

@@ -10,8 +10,7 @@ from slimgui import imgui
 
 from minirt.element import Element, fields_of
 from minirt.errors import MiniRTError
-from minirt.formats.table import FORMATS
-from minirt.movie import FPS, QUALITY, numbered, save_movie
+from minirt.movie import FILMS, FPS, QUALITY, numbered, save_movie
 from minirt.rendering.image import Image
 from minirt.rendering.settings import render
 from minirt.scene import Lamp, Scene
@@ -30,8 +29,6 @@ from minirt.viewer.panel.rows import Rows
 SAMPLES = ("1", "4", "16", "64", "256")  # rays per pixel
 BUTTONS = [each for each in BINDINGS if each.action in ("screenshot", "save", "save copy")]
 ONCE = [kind for kind in ELEMENTS.values() if kind.once and not issubclass(kind, Lamp)]  # settings of a scene
-# Formats of films by their suffixes; .png stands for numbered pictures.
-FILMS = {each.suffixes[0]: each for each in FORMATS.values() if each.is_film} | {".png": FORMATS["PNG"]}
 MOST_PICTURES, BEST_QUALITY = 3600, 100  # as on the command line
 
 
