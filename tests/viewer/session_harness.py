@@ -68,7 +68,7 @@ class SessionHarness:
             painter=ManualPainter,
             samples=samples,
         )
-        EventDispatcher(self.session).connect()
+        EventDispatcher(self.session)
         self.painter = self.session.refinement.painter
         self.memory.play()
 

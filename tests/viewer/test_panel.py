@@ -69,7 +69,6 @@ class User:
         if select is not None:
             self.session.state = self.session.state.select(select)
         self.dispatcher = EventDispatcher(self.session)
-        self.dispatcher.connect()
         self.press(Key.F1)
         self.panel = self.dispatcher.panel
         self.rows = self.panel.rows

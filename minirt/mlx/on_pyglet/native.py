@@ -127,7 +127,7 @@ class NativeWindow(Window):
         self._texture.draw(self.shown, *size)
         if "overlay" in self.hooks:
             self._triangles = self._triangles or Triangles()
-            self._triangles.resize((self.width, self.height), size)
+            self._triangles.size, self._triangles.pixels = (self.width, self.height), size
             self.display.call(self.hooks, "overlay", self._triangles)
 
     def on_key_press(self, symbol: int, modifiers: int) -> bool:

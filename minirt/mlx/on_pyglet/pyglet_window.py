@@ -146,11 +146,7 @@ class Triangles:
         gl.glGenVertexArrays(1, ctypes.byref(self._array))
         gl.glGenBuffers(1, ctypes.byref(self._vertices))
         gl.glGenBuffers(1, ctypes.byref(self._indices))
-        self._size = self._pixels = (1, 1)
-
-    def resize(self, size: tuple[int, int], pixels: tuple[int, int]) -> None:
-        """Set the size of the window in the coordinates of the overlay, and that of its frame buffer."""
-        self._size, self._pixels = size, pixels
+        self.size = self.pixels = (1, 1)  # of the window in the coordinates of the overlay, and of its frame buffer
 
     def upload(self, texture: int, width: int, height: int, pixels: int) -> int:
         """Copy RGBA pixels from an address into a texture, 0 for a new one; return its number."""
@@ -172,14 +168,14 @@ class Triangles:
     def draw(self, vertices: int, vertex_count: int, indices: int, index_count: int, runs: Sequence[Run]) -> None:
         """Blend triangles into the picture, in this order, from the addresses of their vertices and indices."""
         self._program.use()
-        self._program["size"] = self._size
+        self._program["size"] = self.size
         gl.glBindVertexArray(self._array)
         fill(gl.GL_ARRAY_BUFFER, self._vertices, vertices, vertex_count * VERTEX)
         fill(gl.GL_ELEMENT_ARRAY_BUFFER, self._indices, indices, index_count * INDEX)
         for place, (count, kind, normalised, offset) in enumerate(ATTRIBUTES):
             gl.glEnableVertexAttribArray(place)
             gl.glVertexAttribPointer(place, count, kind, normalised, VERTEX, offset)
-        gl.glViewport(0, 0, *self._pixels)
+        gl.glViewport(0, 0, *self.pixels)
         gl.glEnable(gl.GL_BLEND)
         gl.glBlendFunc(gl.GL_SRC_ALPHA, gl.GL_ONE_MINUS_SRC_ALPHA)
         gl.glEnable(gl.GL_SCISSOR_TEST)
@@ -194,8 +190,8 @@ class Triangles:
 
     def _clip(self, left: float, top: float, right: float, bottom: float) -> None:
         """Draw nothing outside of a rectangle, which OpenGL counts from the bottom, in pixels of the frame buffer."""
-        across, down = (pixels / size for pixels, size in zip(self._pixels, self._size, strict=True))
-        x, y = round(left * across), self._pixels[1] - round(bottom * down)
+        across, down = (pixels / size for pixels, size in zip(self.pixels, self.size, strict=True))
+        x, y = round(left * across), self.pixels[1] - round(bottom * down)
         gl.glScissor(x, y, max(round(right * across) - x, 0), max(round((bottom - top) * down), 0))
 
 

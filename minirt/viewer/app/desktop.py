@@ -103,7 +103,7 @@ def open_session(
             wanted = size or size_of(scene)
             fitting = min(wanted[0], screen[0]), min(wanted[1], screen[1])
             session = Session(mlx, display, scene, path, fitting, renderer, BackgroundPainter, **options)
-            EventDispatcher(session).connect()
+            EventDispatcher(session)
             session.screen.tips = session.screen.handles = True
             mlx.mlx_set_window_icon(session.window, application_icons())
             return session

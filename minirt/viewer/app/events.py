@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from minirt.mlx.events import MODIFIER_KEYS, Button, Event
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
-from minirt.viewer.app.panels import ADDING, HELP, LISTS, TYPE, Choosing, Help, Typing
+from minirt.viewer.app.panels import ADDING, HELP, LISTS, TYPE, Choosing, Typing, help_takes
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
@@ -27,21 +27,16 @@ REPEATED = ("grow", "shrink")  # actions of characters that go on while their ke
 
 
 class EventDispatcher:
-    """Handlers for the events of a session's window."""
+    """Handlers for the events of a session's window, which are its hooks from the start."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
         self.mouse = Mouse(session, self.perform)
         self.typing = Typing(session)
         self.choosing = Choosing(session)
-        self.help = Help(session)
         self.panel: Panel | None = None  # once it was opened
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
         self._tick_hook = self.as_hook(self.on_tick)
-
-    def connect(self) -> None:
-        """Install the handlers as hooks of the window."""
-        session = self.session
         mlx, window = session.mlx, session.window
         handlers: dict[Event, Callable[..., None]] = {
             Event.EXPOSE: session.update,
@@ -67,21 +62,19 @@ class EventDispatcher:
         """Offer an event to the panel, and handle it if the panel does not take it."""
         if self.panel and self.panel.takes(event, *arguments):
             return
+        session, screen = self.session, self.session.screen
         match event, arguments:
-            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if self.session.screen.has_tab and self.is_on_tab(x, y):
+            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if screen.has_tab and screen.is_on_tab(x, y):
                 self.toggle_panel()
             case Event.MOTION_NOTIFY, (x, y):
                 handler(x, y)
-                near = not self.session.pressed and self.is_on_tab(x, y, NEAR)
-                if near != self.session.screen.has_tab:
-                    self.session.screen.has_tab = near
-                    self.session.refresh()
+                is_busy = session.pressed or (self.panel and self.panel.is_open)
+                near = not is_busy and screen.is_on_tab(x, y, NEAR)
+                if near != screen.has_tab:
+                    screen.has_tab = near
+                    session.refresh()
             case _:
                 handler(*arguments)
-
-    def is_on_tab(self, x: int, y: int, reach: float = 1.0) -> bool:
-        """Whether the pointer is on, or near, the tab that opens the panel while that is closed."""
-        return not (self.panel and self.panel.is_open) and self.session.screen.is_on_tab(x, y, reach)
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -92,7 +85,7 @@ class EventDispatcher:
             return
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
-        if any(panel.is_open and panel.takes(code, pressed) for panel in (self.help, self.typing, self.choosing)):
+        if help_takes(session, code, pressed) or self.typing.takes(code) or self.choosing.takes(code, pressed):
             return
         if pressed:  # any other key that does something closes them
             self.typing.end()
@@ -104,8 +97,8 @@ class EventDispatcher:
 
     def on_button(self, button: int, x: int, y: int) -> None:
         """A mouse button goes down, or the wheel turns."""
-        if self.help.is_open:
-            self.help.takes(button, None)
+        if self.session.screen.help:
+            help_takes(self.session, button, None)
             return
         self.typing.end()
         self.choosing.end()
@@ -114,11 +107,11 @@ class EventDispatcher:
     def on_character(self, character: str) -> None:
         """A character was typed: of a value, or one that a binding names."""
         session = self.session
-        if self.typing.is_open:
+        if self.typing.text:
             self.typing.on_text(character)
             return
         binding, key = session.keymap.find(character), self._unbound
-        if self.help.is_open and (not binding or binding.action != HELP):
+        if session.screen.help and (not binding or binding.action != HELP):
             return
         if character.isascii() and character.isdigit():
             self.choosing.end()

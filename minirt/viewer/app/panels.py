@@ -37,10 +37,6 @@ class Typing:
         self.session = session
         self.text = ""
 
-    @property
-    def is_open(self) -> bool:
-        return bool(self.text)
-
     def begin(self, character: str) -> None:
         """Begin with a digit or =."""
         self.session.release_button()
@@ -61,9 +57,9 @@ class Typing:
             text += character
         self.show(text[:MAX_LENGTH])
 
-    def takes(self, key: int, _pressed: Binding | None) -> bool:
+    def takes(self, key: int) -> bool:
         """Take a key press; False if the key is not one of those that end or correct what is typed."""
-        if key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
+        if not self.text or key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
             return False
         text = self.text
         self.show(text[:-1] if key == Key.BACKSPACE else "")
@@ -82,34 +78,29 @@ class Typing:
         session.refresh()
 
 
-class Help:
-    """The open help: letters search it, arrows and the wheel turn its pages; H, Escape and a click close it."""
+def help_takes(session: Session, key: int, pressed: Binding | None) -> bool:
+    """Take a key press or button while the help is open; False if it is closed or the key means nothing to it.
 
-    def __init__(self, session: Session) -> None:
-        self.session = session
-
-    @property
-    def is_open(self) -> bool:
-        return self.session.screen.help > 0
-
-    def takes(self, key: int, pressed: Binding | None) -> bool:
-        """Take a key press or button; False if the key means nothing to the help."""
-        screen = self.session.screen
-        closes = pressed is not None and pressed.action == HELP and not screen.search
-        if closes or key in (Key.ESCAPE, Button.LEFT, Button.MIDDLE, Button.RIGHT):
-            screen.turn_help(0)
-        elif key in TURNS:
-            screen.turn_help(TURNS[key])
-        elif self.session.modifiers & SIGNIFICANT:
-            return False
-        elif Key.A <= key <= Key.Z or key == Key.SPACE:
-            screen.help, screen.search = 1, screen.search + chr(key)
-        elif key == Key.BACKSPACE:
-            screen.help, screen.search = 1, screen.search[:-1]
-        else:
-            return False
-        self.session.refresh()
-        return True
+    Letters search the help, arrows and the wheel turn its pages; H, Escape and a click close it.
+    """
+    screen = session.screen
+    closes = pressed is not None and pressed.action == HELP and not screen.search
+    if not screen.help:
+        return False
+    if closes or key in (Key.ESCAPE, Button.LEFT, Button.MIDDLE, Button.RIGHT):
+        screen.turn_help(0)
+    elif key in TURNS:
+        screen.turn_help(TURNS[key])
+    elif session.modifiers & SIGNIFICANT:
+        return False
+    elif Key.A <= key <= Key.Z or key == Key.SPACE:
+        screen.help, screen.search = 1, screen.search + chr(key)
+    elif key == Key.BACKSPACE:
+        screen.help, screen.search = 1, screen.search[:-1]
+    else:
+        return False
+    session.refresh()
+    return True
 
 
 class Choosing:
@@ -144,7 +135,9 @@ class Choosing:
             self.show()
 
     def takes(self, key: int, pressed: Binding | None) -> bool:
-        """Take a key press; False if the key means nothing to the list."""
+        """Take a key press; False if the list is closed or the key means nothing to it."""
+        if not self.is_open:
+            return False
         rows, action = self.rows(), pressed.action if pressed and not self._letters else ""
         if LISTS.get(action) == self._group:  # again: the next choice
             self.choose(rows[(self.chosen(rows) + ADDING.get(action, 1)) % len(rows)])

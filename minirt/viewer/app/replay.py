@@ -62,7 +62,7 @@ def play(
     mlx = Mlx(memory)
     display = mlx.mlx_init()
     session = Session(mlx, display, scene, Path(path), size, renderer, keys=keys, **options)
-    EventDispatcher(session).connect()
+    EventDispatcher(session)
     session.screen.handles = True
     memory.after_tick = lambda: watch(session)
     try:

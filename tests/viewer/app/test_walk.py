@@ -84,7 +84,7 @@ class Twin:
         self.session = Session(
             mlx, mlx.mlx_init(), self.start, path=self.path, size=SIZE, renderer=self.renderer, keys="qwerty",
         )  # fmt: skip
-        EventDispatcher(self.session).connect()
+        EventDispatcher(self.session)
 
     @property
     def start(self) -> Scene:
