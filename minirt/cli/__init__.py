@@ -90,7 +90,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
         return f"miniRT {__version__}"
     if options.list_keys:
-        from minirt.viewer import keys_text
+        from minirt.viewer.bindings import keys_text
 
         return keys_text()
     if options.completion:

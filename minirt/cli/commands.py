@@ -72,11 +72,11 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
 
     `saved` is the scene of the file, where options have changed it.
     """
-    from minirt import viewer
     from minirt.rendering.renderer import renderer
+    from minirt.viewer.app import desktop
 
     try:
-        return viewer.run(
+        return desktop.run(
             scene,
             path=options.scene[0],
             size=options.size,

@@ -155,13 +155,13 @@ def test_a_notice_names_shapes_that_single_precision_cannot_show(run: Run, folde
 def test_without_a_display_the_fallback_file_is_rendered(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from minirt import viewer
     from minirt.errors import MlxError
+    from minirt.viewer.app import desktop
 
     def no_window(*arguments: object, **more: object) -> int:
         raise MlxError("no display")
 
-    monkeypatch.setattr(viewer, "run", no_window)
+    monkeypatch.setattr(desktop, "run", no_window)
     assert run("ball.rt") == (1, b"", "Error\nno display\n")
     ended = run("ball.rt", "--fallback", "x.png", "--size", "8x6")
     assert (ended.status, ended.err) == (0, "")
@@ -178,10 +178,10 @@ def test_the_last_frame_of_a_replay_is_the_rendered_picture(run: Run, folder: Pa
 
 
 def test_the_default_samples_of_the_window_are_more_than_of_a_file(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    from minirt import viewer
+    from minirt.viewer.app import desktop
 
     passed: list[object] = []
-    monkeypatch.setattr(viewer, "run", lambda *_, samples, **more: passed.append(samples) or 0)
+    monkeypatch.setattr(desktop, "run", lambda *_, samples, **more: passed.append(samples) or 0)
     run("ball.rt")
     run("ball.rt", "--samples", "1")
     run("ball.rt", "--samples", "64")

@@ -20,7 +20,7 @@ from minirt.rendering.tone_mapping import (
 )
 from minirt.scene import Background, Scene, parse
 from minirt.scene.elements import TONES
-from minirt.viewer import replay
+from minirt.viewer.app.replay import replay
 from tests.compare import assert_alike, off
 from tests.kernel.pictures import ALL, TWO, linear
 from tests.paths import ROOT, SCENES

@@ -11,8 +11,8 @@ import pytest
 from minirt.errors import RenderError, ReplayError
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
-from minirt.viewer import run
 from minirt.viewer.app import desktop
+from minirt.viewer.app.desktop import run
 from minirt.viewer.app.replay import replay
 from minirt.viewer.editing.editor import RATE
 from tests import processes
@@ -25,7 +25,7 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Event
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
-from minirt.viewer import run
+from minirt.viewer.app.desktop import run
 from tests.viewer.fake import FakeRenderer, scene
 from tests.waiting import HANG_LIMIT
 
@@ -105,7 +105,8 @@ def test_escape_ends_the_program_inside_the_compiler():
 
 
 def test_importing_the_viewer_loads_neither_window_library_nor_compiler():
-    code = "import sys, minirt.viewer; print(*{'numba', 'pyglet', 'PIL'} & {*sys.modules})"
+    imports = "import sys; from minirt.viewer.app import desktop, replay"
+    code = f"{imports}; print(*{{'numba', 'pyglet', 'PIL'}} & {{*sys.modules}})"
     done = processes.run([sys.executable, "-c", code], cwd=ROOT, text=True)
     assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "", "")
 
