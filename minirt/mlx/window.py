@@ -220,9 +220,10 @@ class Window(Handle, ABC):
             self.resized = True
 
     def on_expose(self) -> None:
-        """Report that the window has to be drawn again."""
+        """Report that the window has to be drawn again; the first time comes with MAP_NOTIFY."""
         self.stale = True
-        self.deliver(Event.EXPOSE)
+        if self.announced:
+            self.deliver(Event.EXPOSE)
 
     def on_visibility(self, visible: bool) -> None:
         """Report that the window was hidden or shown. A hidden window is not drawn; everything else goes on."""

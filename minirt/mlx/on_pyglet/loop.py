@@ -8,7 +8,6 @@ import pyglet.display
 from pyglet.app.base import EventLoop
 
 from minirt.helpers.system import interruptible
-from minirt.mlx.arguments import Options
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.on_pyglet.native import NativeWindow
 from minirt.mlx.on_pyglet.x11 import end_program_when_connection_is_lost
@@ -23,10 +22,6 @@ class PygletDisplay(Display):
         super().__init__()
         self._requested = False  # a turn is scheduled
         self._ticking = False
-
-    def open(self, options: Options) -> None:
-        super().open(options)
-        self._screen = pyglet.display.get_display().get_default_screen()
 
     def run(self) -> None:
         self.request_turn()
@@ -50,7 +45,8 @@ class PygletDisplay(Display):
             pyglet.clock.schedule_once(self._turn, 0)
 
     def screen_size(self) -> tuple[int, int]:
-        return int(self._screen.width), int(self._screen.height)
+        screen = pyglet.display.get_display().get_default_screen()
+        return int(screen.width), int(screen.height)
 
     def _turn(self, _seconds: float) -> None:
         self._requested = False

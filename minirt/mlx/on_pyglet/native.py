@@ -161,10 +161,6 @@ class NativeWindow(Window):
         self._forget_keys()
         self.on_focus(False)
 
-    def on_expose(self) -> None:
-        if self.announced:
-            super().on_expose()
-
     def on_resize(self, _width: float, _height: float) -> None:
         ratio = self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0]  # pixels per unit of the platform
         self.scale = max(1.0, float(ratio), float(self.pyglet.scale))
