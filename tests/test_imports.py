@@ -24,7 +24,7 @@ MAY: dict[str, set[str]] = {
     "fields": {"errors", "records"},
     "element": {"errors", "records", "fields"},
     "materials": {"errors", "records", "fields", "element", "helpers", "formats"},
-    "meshes": {"errors", "records", "fields", "element", "helpers", "materials"},
+    "meshes": {"errors", "lanes", "records", "fields", "element", "helpers", "materials"},
     "shapes": {"lanes", "records", "fields", "element", "materials", "meshes"},
     "formats": {"errors", "helpers"},
     "scene": LOW - {"lanes"} | {"meshes", "helpers", "formats"},

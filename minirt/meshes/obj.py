@@ -19,7 +19,7 @@ import numpy as np
 from minirt.meshes import obj_lines
 from minirt.meshes.obj_lines import Block, ObjError
 from minirt.meshes.polygons import triangulate
-from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
+from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit, used_points
 
 BLOCK_BYTES = 2**20  # of lines that are parsed at once; their words take up to a hundred times as much
 LONGEST_LINE = 2**24  # bytes, with the lines that continue it
@@ -71,22 +71,22 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
     cut = cut[non_degenerate(whole.points[whole.corners[cut, 0]])]
     if not len(cut):
         raise ObjError("has no triangle that is more than a line")
-    fans = whole.corners[cut]
-    corners = np.ascontiguousarray(fans[..., 0])
+    corners, of_uvs, of_normals = (part[cut] for part in whole.corners.T.copy())
     uvs = normals = None
-    if (fans[..., 1] >= 0).any():
-        uvs = np.where(fans[..., 1, None] >= 0, np.concatenate([whole.uvs, np.zeros((1, 2))])[fans[..., 1]], 0.0)
-    if (fans[..., 2] >= 0).any():
+    if (of_uvs >= 0).any():
+        uvs = np.where(of_uvs[..., None] >= 0, np.concatenate([whole.uvs, np.zeros((1, 2))])[of_uvs], 0.0)
+    if (of_normals >= 0).any():
         flat = Triangles(whole.points, corners).flat_normals
-        normals = corner_normals(whole.normals, fans[..., 2], flat)
+        normals = corner_normals(whole.normals, of_normals, flat)
     colours = None
     if len(whole.colours) == len(whole.points):
         colours = np.rint(255 * np.clip(whole.colours, 0, 1)[corners].mean(axis=1)).astype(np.uint8)
         notices.append("has colours of points: each triangle has the mean of those of its corners")
+    points, corners = used_points(whole.points, corners)
     if not folder or not len(whole.libraries):
-        return Triangles(whole.points, corners, normals, uvs, colours, notices=tuple(notices))
+        return Triangles(points, corners, normals, uvs, colours, notices=tuple(notices))
     numbers, materials, libraries = materials_of(whole, cut[:, 0], folder, notices)
-    return Triangles(whole.points, corners, normals, uvs, colours, numbers, materials, tuple(notices), libraries)
+    return Triangles(points, corners, normals, uvs, colours, numbers, materials, tuple(notices), libraries)
 
 
 def materials_of(

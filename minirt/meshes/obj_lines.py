@@ -109,7 +109,7 @@ def number_table(rows: list[list[bytes]], least: int, most: int, width: int) -> 
     """Return the first `width` numbers of each line; ValueError for a wrong number, or fewer or more than may be."""
     sizes = np.array(list(map(len, rows)), np.int64)
     words = list(chain.from_iterable(rows))
-    numbers = np.array(list(map(float, words)))
+    numbers = np.fromiter(map(float, words), np.float64, len(words))
     are_in_range = ((least <= sizes) & (sizes <= most)).all() and (np.abs(numbers) <= FARTHEST).all()
     if not are_in_range or is_foreign(words, b" ".join(words)):
         raise ValueError
@@ -119,9 +119,10 @@ def number_table(rows: list[list[bytes]], least: int, most: int, width: int) -> 
 def corner_table(words: list[bytes]) -> np.ndarray:
     """Return the numbers of corners `v`, `v/vt`, `v//vn` or `v/vt/vn`, (c, 3), 0 for a missing one; ValueError."""
     text = b" ".join([*words, b""])
-    parts = text.replace(b"//", b"/0/").replace(b"/ ", b"/0 ").replace(b"/", b" ").split()
-    numbers = np.array(list(map(int, parts)), np.int64)
-    sizes = np.array([word.count(b"/") for word in words], np.int64) + 1
+    characters = np.frombuffer(text, np.uint8)
+    sizes = np.diff(np.cumsum(characters == ord("/"))[characters == ord(" ")], prepend=0) + 1
+    parts = text.replace(b"//", b"/0/").replace(b"/ ", b"/0 ").replace(b"/", b" ").split() if b"/" in text else words
+    numbers = np.fromiter(map(int, parts), np.int64, len(parts))
     if len(numbers) != sizes.sum() or (sizes > 3).any() or is_foreign(parts, text):
         raise ValueError
     return padded(numbers, sizes, 3)

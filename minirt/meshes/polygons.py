@@ -14,9 +14,11 @@ from math import inf
 
 import numpy as np
 
+from minirt.lanes import Vec, cross
 from minirt.meshes.obj_lines import ObjError
 
 ROUNDING = 2.0**-50  # error of a cross product of differences, as a share of the sum of its products
+BLOCK = 2**13  # faces that are looked at together, so that they stay in the cache of a core
 MOST_LOOKS = 2**25  # at corners, for the faces of a file: half a minute at worst
 
 Point = tuple[float, float]
@@ -32,24 +34,23 @@ def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray, line
     with the face's entry of `lines`, for one that takes too long.
     """
     triangles, looks = fan_triangulation(sizes), MOST_LOOKS
-    many = np.flatnonzero(sizes > 3)
-    if not len(many):
-        return triangles
-    first = np.cumsum(sizes) - sizes
-    *plane, are_fans = planes_of(points, corners, first[many], sizes[many])
-    for face, axis, is_turned in np.stack([many, *plane], axis=1)[~are_fans].tolist():
-        u, v = ((axis + 2) % 3, (axis + 1) % 3) if is_turned else ((axis + 1) % 3, (axis + 2) % 3)
-        flat = [(point[u], point[v]) for point in points[corners[first[face] :][: sizes[face]]].tolist()]
-        if is_covered_by_fan(flat):
-            continue
-        polygon = Polygon(flat, looks)
-        ears, looks = polygon.cut(), polygon.looks
-        if looks < 0:
-            message = f"a face of {sizes[face]:,} corners takes too long to cut into triangles"
-            raise ObjError(message, int(lines[face]))
-        if ears:
-            start = first[face] - 2 * face
-            triangles[start : start + len(ears)] = first[face] + np.array(ears)
+    many, first = np.flatnonzero(sizes > 3), np.cumsum(sizes) - sizes
+    for start in range(0, len(many), BLOCK):
+        some = many[start : start + BLOCK]
+        *plane, are_fans = planes_of(points, corners, first[some], sizes[some])
+        for face, axis, is_turned in np.stack([some, *plane], axis=1)[~are_fans].tolist():
+            u, v = ((axis + 2) % 3, (axis + 1) % 3) if is_turned else ((axis + 1) % 3, (axis + 2) % 3)
+            flat = [(point[u], point[v]) for point in points[corners[first[face] :][: sizes[face]]].tolist()]
+            if is_covered_by_fan(flat):
+                continue
+            polygon = Polygon(flat, looks)
+            ears, looks = polygon.cut(), polygon.looks
+            if looks < 0:
+                message = f"a face of {sizes[face]:,} corners takes too long to cut into triangles"
+                raise ObjError(message, int(lines[face]))
+            if ears:
+                place = first[face] - 2 * face
+                triangles[place : place + len(ears)] = first[face] + np.array(ears)
     return triangles
 
 
@@ -70,26 +71,26 @@ def planes_of(
     corner before. Polygons without an area count as covered, too.
     """
     starts = np.cumsum(sizes) - sizes
-    spokes = points[corners[np.repeat(first - starts, sizes) + np.arange(sizes.sum())]]
-    spokes = spokes - np.repeat(spokes[starts], sizes, axis=0)
-    following = np.roll(spokes, -1, axis=0)
-    following[starts + sizes - 1] = 0.0
-    normals = np.add.reduceat(np.cross(spokes, following), starts)
-    axes = np.abs(normals).argmax(axis=1)
-    turned = normals[np.arange(len(normals)), axes] < 0
+    spokes = points[corners[np.repeat(first - starts, sizes) + np.arange(sizes.sum())]].T.copy()
+    spokes -= np.repeat(spokes[:, starts], sizes, axis=1)
+    following = np.roll(spokes, -1, axis=1)
+    following[:, starts + sizes - 1] = 0.0
+    across = cross(Vec(*spokes), Vec(*following))
+    normals = np.stack([np.add.reduceat(part, starts) for part in (across.x, across.y, across.z)])
+    axes = np.abs(normals).argmax(axis=0)
+    turned = normals[axes, np.arange(len(axes))] < 0
     x, y = seen(spokes, np.repeat(axes, sizes), np.repeat(turned, sizes))
     u, v = seen(following, np.repeat(axes, sizes), np.repeat(turned, sizes))
     first_x, first_y = np.repeat(x[starts + 1], sizes), np.repeat(y[starts + 1], sizes)
     left = is_left(x, y, u, v)
     x[starts + 1] = y[starts + 1] = 0.0  # the first edge, of which no sum of products is certain to be 0
     left &= is_left(first_x, first_y, x, y)
-    return axes, turned, np.logical_and.reduceat(left, starts) | ~normals.any(axis=1)
+    return axes, turned, np.logical_and.reduceat(left, starts) | ~normals.any(axis=0)
 
 
 def seen(points: np.ndarray, axes: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the two other coordinates of points, in the order in which a polygon goes round counter-clockwise."""
-    rows = np.arange(len(points))
-    x, y = points[rows, (axes + 1) % 3], points[rows, (axes + 2) % 3]
+    """Return the coordinates of points (3, n) beside those on `axes`, in the order of a counter-clockwise polygon."""
+    x, y = np.choose((axes + 1) % 3, points), np.choose((axes + 2) % 3, points)
     return np.where(turned, y, x), np.where(turned, x, y)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import PictureFile
+from minirt.lanes import Vec, cross
 
 FLATNESS = 16 * 2.0**-53  # a triangle lower than this share of its largest coordinate is degenerate
 
@@ -38,10 +39,11 @@ class Triangles:
         return Triangles, tuple(getattr(self, each.name) for each in fields(self))
 
     def some(self, indices: np.ndarray) -> Triangles:
-        """Return the triangles with those indices."""
+        """Return the triangles with those indices, and their points."""
         names = "normals", "uvs", "colours", "material_of"
         of_each = {name: array[indices] for name in names if (array := getattr(self, name)) is not None}
-        return replace(self, corners=self.corners[indices], **of_each)
+        points, corners = used_points(self.points, self.corners[indices])
+        return replace(self, points=points, corners=corners, **of_each)
 
     def pictures(self) -> Iterator[PictureFile]:
         """The pictures of its materials."""
@@ -51,19 +53,9 @@ class Triangles:
                     yield from field.pictures(value)
 
     @cached_property
-    def used(self) -> np.ndarray:
-        """Indices of the points that are corners, sorted."""
-        return np.unique(self.corners)
-
-    @property
-    def used_points(self) -> np.ndarray:
-        """The points that are corners, (k, 3): mostly all, which then are not copied."""
-        return self.points if len(self.used) == len(self.points) else self.points[self.used]
-
-    @cached_property
     def box(self) -> np.ndarray:
         """Bounding box: least and greatest corner, (2, 3)."""
-        return np.stack([self.used_points.min(axis=0), self.used_points.max(axis=0)])
+        return np.stack([self.points.min(axis=0), self.points.max(axis=0)])
 
     @cached_property
     def edges(self) -> np.ndarray:
@@ -92,10 +84,18 @@ class Triangles:
         return unit(across)
 
 
+def used_points(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points that are corners of triangles, mostly all, and the corners among these."""
+    is_used = np.zeros(len(points), bool)
+    is_used[corners] = True
+    return (points, corners) if is_used.all() else (points[is_used], (np.cumsum(is_used) - 1)[corners])
+
+
 def edges_of(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the edges of triangles (m, 3, 3) from each corner to the next, and the cross products of the first two."""
-    edges = np.roll(corners, -1, axis=1) - corners
-    return edges, np.cross(edges[:, 0], edges[:, 1])
+    edges = corners[:, [1, 2, 0]] - corners
+    across = cross(Vec(*edges[:, 0].T), Vec(*edges[:, 1].T))
+    return edges, np.stack([across.x, across.y, across.z], axis=1)
 
 
 def non_degenerate(corners: np.ndarray) -> np.ndarray:

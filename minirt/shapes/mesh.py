@@ -121,7 +121,7 @@ class Mesh(Turnable):
         """Bounding box in the scene: least and greatest corner, (2, 3)."""
         if not self.is_turned:
             return self.placed(self.triangles.box)
-        columns = self.placed(self.triangles.used_points).T.copy()
+        columns = self.placed(self.triangles.points).T.copy()
         return np.stack([columns.min(axis=1), columns.max(axis=1)])
 
     def row_blocks(self) -> Iterator[np.ndarray]:

@@ -153,7 +153,7 @@ def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.nd
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     eye, corner, across, down = numbers.reshape(4, 3)
     x, y, depth = np.linalg.inv(np.stack([across, down, corner], axis=1)) @ (mesh.placed(triangles.points) - eye).T
-    if depth[triangles.used].min() <= 0:
+    if depth.min() <= 0:
         return None
     with np.errstate(all="ignore"):  # points that no triangle has may be anywhere
         x, y = x / depth, y / depth
