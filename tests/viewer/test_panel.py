@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import sys
+from math import dist, hypot
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from minirt.cli import main
 from minirt.element import Element, fields_of
 from minirt.fields import Choice, Direction, Flag, MeshField, Paint, Picture
 from minirt.mlx import Key, Mlx
@@ -26,6 +29,7 @@ from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
 from minirt.viewer.editing.values import Value, values
+from tests.paths import ROOT
 from tests.processes import run
 from tests.viewer.editing.test_every_kind import BARE, path  # noqa: F401  (a fixture)
 from tests.viewer.fake import TEXT, FakeRenderer
@@ -491,6 +495,27 @@ def undone(state: State) -> State:
     while state.undo_stack:
         state = apply(state, "undo")
     return state
+
+
+def test_a_snowman_is_built_with_the_pointer_and_the_panel_in_25_actions(tmp_path: Path) -> None:
+    recording, built_file = ROOT / "assets/snowman-panel.txt", tmp_path / "snowman.rt"
+    assert max(map(int, re.findall(r"# (\d+)", recording.read_text()))) == 25
+    built_file.touch()
+    picture = str(tmp_path / "snowman.png")
+    assert main([str(built_file), "--replay", str(recording), "--size", "960x540", "-o", picture]) == 0
+    built = load(built_file).scene
+    body, belly, head, *eyes = built.spheres
+    for lower, upper in ((body, belly), (belly, head)):
+        assert dist(lower.centre, upper.centre) == pytest.approx((lower.diameter + upper.diameter) / 2, abs=0.01)
+    assert body.centre[1] == body.diameter / 2
+    assert [(each.diameter, each.colour) for each in eyes] == [(0.2, (0, 0, 0))] * 2
+    assert all(dist(each.centre, head.centre) == pytest.approx(0.6, abs=0.03) for each in eyes)
+    (nose,), (hat,) = built.cones, built.cylinders
+    outward = [a - b for a, b in zip(nose.apex, head.centre, strict=True)]
+    assert nose.axis == pytest.approx([-part / hypot(*outward) for part in outward], abs=0.05)
+    assert (nose.colour, hat.colour) == ((255, 128, 0), (200, 40, 40))
+    assert hat.centre[1] > head.centre[1] + head.diameter / 2
+    assert len(built.planes) == len(built.lights) == 1
 
 
 def test_slimgui_is_imported_when_the_panel_opens_and_without_it_f1_names_the_extra() -> None:
