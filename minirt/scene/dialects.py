@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, positional_fields
 from minirt.errors import FieldError, FileError, Problem, printable, quoted
-from minirt.fields import Colour, Direction, Field, Length, PictureFile, Real, Three, clamp, unit
+from minirt.fields import Colour, Direction, Field, Length, Real, Three, clamp, unit
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
+from minirt.materials import pictures
 from minirt.scene import dialect_tables as tables
 from minirt.scene.dialect_tables import NUMBER
 from minirt.scene.element_reader import HEX_COLOUR, SLASHES, split_key
@@ -157,7 +158,8 @@ def fields_of_words(
         if spelled is None and isinstance(field, Colour) and field.required and is_absent:
             spelled = Spelling("255,255,255", 0, tables.WHITE)
         if spelled is None and field.required:
-            if words and not is_other(field, words[0]):
+            other = NUMBER if isinstance(field, Three) else TRIPLE.pattern  # and attributes
+            if words and not re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", words[0]):
                 raise FieldError(f"cannot be {quoted(words[0])}")
             return None
         if spelled is None:
@@ -167,12 +169,6 @@ def fields_of_words(
         fields.append(spelled.text)
         words = words[spelled.words :]
     return fields, words
-
-
-def is_other(field: Field, word: str) -> bool:
-    """Whether a word stands for something else: a number for three of them, three for one, or an attribute."""
-    other = NUMBER if isinstance(field, Three) else TRIPLE.pattern
-    return re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", word) is not None
 
 
 def colour_first(words: list[str], colours: Mapping[str, str]) -> list[str]:
@@ -251,14 +247,17 @@ def meanings(kind: type[Element], words: list[str], folder: Path | None, changes
     def hindrance(attribute: str) -> str:
         """Return why a word is no further attribute of the element, as a sort of change; '' where it is one."""
         key, start = split_key(attribute)
-        field = None if key in found else keyed.get(key)
-        with suppress(FieldError):
-            value = field and field.check(field.parse(attribute[start:] if start else field.bare))
-            if field and (folder is None or are_readable(field.pictures(value), folder)):
-                found[key] = attribute
-                return ""
-            return tables.ABSENT if field else tables.LEFT_OUT
-        return tables.LEFT_OUT
+        try:
+            if (field := keyed.get(key)) is None or key in found:
+                return tables.LEFT_OUT
+            value = field.check(field.parse(attribute[start:] if start else field.bare))
+            for file in field.pictures(value):
+                if folder:
+                    pictures.reader(file)(file_io.located(folder, file.name))
+        except (FieldError, FileError) as error:
+            return tables.ABSENT if isinstance(error, FileError) else tables.LEFT_OUT
+        found[key] = attribute
+        return ""
 
     while words:
         used, attributes, sort = 1, "", ""
@@ -284,18 +283,6 @@ def meaning(words: list[str], are_guessed: bool) -> tuple[int, str, str]:
                 attributes = row.means(*match.groups())
                 return used, attributes, row.sort if attributes else tables.LEFT_OUT
     return 1, "", tables.LEFT_OUT
-
-
-def are_readable(files: Iterable[PictureFile], folder: Path) -> bool:
-    """Whether all pictures that a value names can be read."""
-    from minirt.materials import pictures
-
-    try:
-        for file in files:
-            pictures.reader(file)(file_io.located(folder, file.name))
-    except FileError:
-        return False
-    return True
 
 
 def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
