@@ -161,7 +161,7 @@ def run_monkey(
     Image.new("RGB", (8, 8), (200, 120, 40)).save(folder / "picture.png")
     (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
     command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{SIZE[0]}x{SIZE[1]}"]
-    with desktop.program(*command) as process:
+    with desktop.program("env", f"XDG_STATE_HOME={folder}", *command) as process:
         monkey = Monkey(desktop, process, path, seed)
         record = Record(parts, monkey.idle_usage, show)
         while (progress := share(monkey.done)) < 1:

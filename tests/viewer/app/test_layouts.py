@@ -78,7 +78,8 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout:
     log = tmp_path / "log"
     log.write_text("")
     command = [sys.executable, "-W", "error", "-m", "tests.viewer.app.test_layouts", keys, str(log), *map(str, scenes)]
-    with keyboard(desktop, layout), desktop.program(*command) as process:
+    state = f"XDG_STATE_HOME={tmp_path}"  # no other program finds an open panel there
+    with keyboard(desktop, layout), desktop.program("env", state, *command) as process:
 
         def press(scene: Path, size: tuple[int, int], *keys: str) -> None:
             """Press keys in a window until each of them has led to an action, or the program has ended."""
