@@ -73,6 +73,7 @@ class Session:
         self.watches_file = watch
         self.recovery: Recovery | None = None  # of unsaved changes
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
+        self.slides = False  # whether a number of the panel is dragged
         self.wants_panel = False  # whether the panel opens with the first picture, as it was open in the last window
         self.keymap = Keymap(keys)
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
@@ -105,7 +106,7 @@ class Session:
         """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
         if self.recovery:
             self.recovery.keep(Version(self.state.scene, self.saved, self.path))
-        self.refinement.request_missing(self.shown_scene, moving=bool(self.held_keys))
+        self.refinement.request_missing(self.shown_scene, moving=bool(self.held_keys) or self.slides)
 
     def refresh(self) -> None:
         """Draw the window, unless words wait for their picture and it has not come."""

@@ -47,7 +47,7 @@ class Panel(Gui):
         self._wants_focus, self.is_left = is_open and has_keys, not has_keys
         paint = (lambda painter, _: self.paint(painter)) if is_open else None
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
-        self.session.screen.covered = 0
+        self.session.screen.covered, self.session.slides = 0, False
         if is_open:
             self.settle()
         self.session.refresh()

@@ -62,6 +62,7 @@ class Rows:
         if self._typing and not self._first and self._typing.name not in self.places:
             self._typing = None
         self.places.clear()
+        self.session.slides = bool(self.pressed) and imgui.is_mouse_down(imgui.MouseButton.LEFT)
 
     def note(self, name: str) -> None:
         """Note where the last widget is."""
@@ -202,7 +203,7 @@ class Rows:
             self.on_character(value, self.gui.typed)
         if self.pressed == value.name and not imgui.is_item_active():
             self.pressed = ""
-            self.session.state = self.session.state.end_merging()
+            self.gui.show(self.session.state.end_merging())
 
     def drag(self, value: Value) -> None:
         """Slide the number under the button that is down, to the right or upwards to increase it."""
