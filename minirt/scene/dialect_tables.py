@@ -18,6 +18,7 @@ from minirt.shapes import Cone
 LEFT_OUT = "words without a meaning here are left out"
 SETTINGS = "settings of other programs are left out"
 MISSING = "shapes are missing"
+INCOMPLETE = "shapes without all of their fields are missing"
 LIGHTS = "lights that cannot be read are left out"
 NEAREST = "numbers become the nearest ones that can be there"
 DECIMALS = "decimal commas become points"
@@ -33,6 +34,7 @@ ORDER = "fields in another order become those of this format, without turns and 
 APEX = "cones begin at their apex and have a diameter; --cone base or --cone angle reads them in another way"
 CONVENTION = "cones are read as --cone says"
 RENAMED = "elements of other names become those of this format"
+SECOND = "cameras after the first become further ones"
 EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
 REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
 CHECKERS = "checkers become checker:"
@@ -40,6 +42,12 @@ PICTURES = "pictures behind the colour become texture:, bump: or normal:"
 ABSENT = "pictures that cannot be read are left out"
 GLASS = "shares of transparency with an index become glass:"
 HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
+
+# Sorts that tell another way to write. What the others mend is a mistake, such as a number out of range.
+DIALECT = (
+    *(LEFT_OUT, SETTINGS, MISSING, LIGHTS, DECIMALS, FOURTH, JOINED, NAMED, SLASHES, ORDER, RENAMED),
+    *(EXPONENT, REFLECTIVITY, CHECKERS, PICTURES, ABSENT, GLASS, HIGHLIGHTS),
+)
 
 NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
 

@@ -86,10 +86,10 @@ def translated(
         unread = tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
         unread = tables.SETTINGS if is_setting and code != tables.FACE else unread
         return Translation("", [(unread, code)])
-    if kind.code in (seen or ()):
-        kind = FURTHER.get(kind, kind)
+    is_second = kind.code in (seen or ())
+    kind = FURTHER.get(kind, kind) if is_second else kind
     if kind is not SPELLINGS.get(code):
-        changes.append((tables.RENAMED, code))
+        changes.append((tables.SECOND if is_second and code == Camera.code else tables.RENAMED, code))
     ordered = in_order(kind.code, values)
     if ordered != values:
         changes.append((tables.ORDER, code))
@@ -98,7 +98,7 @@ def translated(
     except FieldError:
         return Translation("", [(tables.SETTINGS, code)]) if kind in (Resolution, FurtherCamera) else None
     if spelled is None:
-        unread = tables.MISSING if kind in SHAPES else tables.LIGHTS if kind in LAMPS else tables.SETTINGS
+        unread = tables.INCOMPLETE if kind in SHAPES else tables.LIGHTS if kind in LAMPS else tables.SETTINGS
         return Translation("", [(unread, code)]) if kind not in (Ambient, Camera) else None
     fields, others = spelled
     attributes = meanings(kind, others, folder, changes)
@@ -289,8 +289,9 @@ def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
     """Do what takes all lines of a file: choose its camera, give it an ambient light, tell cones and missing shapes."""
     promote_camera(items, seen, log)
     read_cones(items, log)
-    if tables.MISSING in log.changes and not any(isinstance(item, SHAPES) for item in items):
-        line, code = log.changes[tables.MISSING][0]
+    unread = [*log.changes.get(tables.MISSING, ()), *log.changes.get(tables.INCOMPLETE, ())]
+    if unread and not any(isinstance(item, SHAPES) for item in items):
+        line, code = unread[0]
         log.error(line, f"none of the shapes can be read, of which {quoted(code)} is the first", 1, len(code))
     if Camera.code in seen and seen.setdefault(Ambient.code, 0) == 0:
         items.insert(0, Ambient(0.0, (255, 255, 255)))

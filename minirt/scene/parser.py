@@ -49,12 +49,19 @@ def load(
 def load_for_window(
     path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False, new: bool = False
 ) -> tuple[Reading, SceneError | None]:
-    """Read a scene file, leniently where a strict reader refuses it; return its error, too. SceneError."""
+    """Read a scene file, leniently where it is in a dialect that a strict reader refuses, whose error is returned, too.
+
+    SceneError for other errors, such as a number out of range or a second camera.
+    """
     try:
         return load(path, lenient, left_handed, new), None
     except SceneError as error:
+        from minirt.scene.dialect_tables import DIALECT
+
         with suppress(SceneError):
-            return load(path, True, left_handed, new), error
+            reading = load(path, True, left_handed, new)
+            if any(notice.message.startswith(DIALECT) for notice in reading.notices):
+                return reading, error
         raise
 
 
@@ -144,7 +151,7 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
         del log.errors[before:]
     for sort, words in translation.changes:
         log.change(line, sort, words)
-    is_missing = tables.MISSING in dict(translation.changes)
+    is_missing = {tables.MISSING, tables.INCOMPLETE}.intersection(dict(translation.changes))
     return item or f"{MISSING if is_missing else '# '}{line.text}"
 
 

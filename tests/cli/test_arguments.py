@@ -93,6 +93,11 @@ BAD_SCENES = {
     "two-cameras.rt": SCENE + "C 0,0,-5 0,0,1 70\n",
     "unknown.rt": SCENE + "spp 0,0,20 12.6 10,0,255\n",
     "range.rt": SCENE + "sp 0,0,20 -3 10,0,255\n",
+    "colour.rt": SCENE + "sp 0,0,20 3 10,0,256\n",
+    "no-colour.rt": SCENE + "sp 0,0,20 3\n",
+    "short.rt": SCENE + "pl 0,0,20\n",
+    "direction.rt": SCENE + "pl 0,0,20 0,2,0 10,0,255\n",
+    "angle.rt": SCENE.replace("0,0,1 70", "0,0,1 181"),
     "nan.rt": SCENE + "sp nan,0,20 3 10,0,255\n",
     "empty.rt": "",
     "blank.rt": " \n\n",
@@ -126,8 +131,8 @@ def test_without_a_scene_nothing_is_done(run: Run, folder: Path, arguments: tupl
 
 
 MODES = ["-o", "x.png"], ["--check"], []
-# A window opens an empty file as a new scene, and what a lenient reader reads.
-OPENED = ("no-ambient.rt", "two-cameras.rt", "unknown.rt")
+# A window opens an empty file as a new scene, and a dialect as a lenient reader reads it.
+OPENED = ("unknown.rt",)
 REFUSED = [(name, mode) for name, text in BAD_SCENES.items() for mode in MODES if mode or text.strip()]
 
 

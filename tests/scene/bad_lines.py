@@ -171,7 +171,7 @@ LIGHTS: list[Case] = [
     ("sl 0,0,0 0,-1,0 181 1", 17, "spot light angle must be in [0, 180], got 181"),
     ("sl 0,0,0 0,-1,0 40 1 rim:2", 26, "spot light rim must be in [0, 1], got 2"),
     ("L 0,0,0 1 rim:0.5", 11, "light has no attribute 'rim': it belongs to spot light"),
-    ("l 0,0,0 1 attenuation:9", 11, "unknown attribute 'attenuation', did you mean 'reach'?"),
+    ("l 0,0,0 1 attenuation:9", 11, "unknown attribute 'attenuation': further light has reach, size"),
     ("dl 0,-1,0 1 soft:1", 13, "unknown attribute 'soft': parallel light has size"),
 ]
 

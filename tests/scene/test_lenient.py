@@ -8,7 +8,7 @@ import pytest
 
 from minirt.errors import SceneError
 from minirt.scene import Ambient, Camera, FurtherCamera, FurtherLight, Light, dump, load, parse
-from minirt.scene.dialect_tables import DARK, RENAMED
+from minirt.scene.dialect_tables import DARK, RENAMED, SECOND
 from minirt.scene.lines import MAX_NOTICES
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
 
@@ -53,7 +53,7 @@ def test_later_cameras_become_further_cameras() -> None:
     with pytest.raises(SceneError, match="a second camera: the first is in line 2, and there may be one"):
         parse("\n".join((AMBIENT, *lines)))
     scene, notices = parse("\n".join((AMBIENT, *lines)), lenient=True)
-    assert [each.message for each in notices] == [f"{RENAMED}: C"]
+    assert [each.message for each in notices] == [f"{SECOND}: C"]
     assert [(type(each), each.roll) for each in scene.cameras] == [(Camera, 0.0), (FurtherCamera, 9.0)]
     assert dump(scene) == "\n".join((AMBIENT, CAMERA, SPHERE, "c 0,0,9 0,0,-1 50 roll:9 # behind"))
 
