@@ -85,30 +85,30 @@ class Binding:
         return (self.azerty, *self.keys[1:]) if layout == "azerty" and self.azerty else self.keys
 
 
-def on_press(group: str, action: str, help: str, *keys: str, **options: Any) -> Binding:
+def once(group: str, action: str, help: str, *keys: str, **options: Any) -> Binding:
     """Binding of an action that happens once for each press."""
     return Binding(action, group, help, keys, **options)
 
 
 # A movement that goes on while its key is held; and a change by one step for each press, or by a tenth with Shift.
-while_held, in_steps = partial(on_press, held=True, fine=True), partial(on_press, fine=True)
+while_held, in_steps = partial(once, held=True, fine=True), partial(once, fine=True)
 
 BINDINGS = (
-    on_press(SELECT, "select next", "select the next element", "Tab"),
-    on_press(SELECT, "select previous", "select the previous element", "Shift+Tab"),
-    on_press(SELECT, "select at pointer", "select the element under the pointer", "left click"),
-    on_press(
+    once(SELECT, "select next", "select the next element", "Tab"),
+    once(SELECT, "select previous", "select the previous element", "Shift+Tab"),
+    once(SELECT, "select at pointer", "select the element under the pointer", "left click"),
+    once(
         SELECT, "select camera", "select the camera; again: look through the next one", "C", "Backspace", "right click"
     ),
-    on_press(SELECT, "select light", "select the next light", "L"),
-    on_press(LOOK, "orbit", "orbit the camera around the selected element", "right drag"),
-    on_press(LOOK, "pan", "slide the camera", "middle drag"),
+    once(SELECT, "select light", "select the next light", "L"),
+    once(LOOK, "orbit", "orbit the camera around the selected element", "right drag"),
+    once(LOOK, "pan", "slide the camera", "middle drag"),
     in_steps(LOOK, "nearer", "camera: nearer; other elements: increase the active value", "wheel up"),
     in_steps(LOOK, "farther", "camera: farther; other elements: decrease the active value", "wheel down"),
-    on_press(LOOK, "look at", "bring the selected element into view", "F"),
-    on_press(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
-    on_press(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
-    on_press(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),
+    once(LOOK, "look at", "bring the selected element into view", "F"),
+    once(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
+    once(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
+    once(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),
     while_held(MOVE, "left", "move left", "A", azerty="Q"),
     while_held(MOVE, "right", "move right", "D"),
     while_held(MOVE, "forward", "move forward", "W", azerty="Z"),
@@ -119,46 +119,42 @@ BINDINGS = (
     while_held(MOVE, "turn right", "turn right", "Right"),
     while_held(MOVE, "turn up", "turn up", "Up"),
     while_held(MOVE, "turn down", "turn down", "Down"),
-    on_press(MOVE, "roll left", "roll counter-clockwise", ","),
-    on_press(MOVE, "roll right", "roll clockwise", "."),
-    on_press(MOVE, "next frame", "move objects in the view, or along X, Y, Z", "X"),
-    on_press(MOVE, "move by hand", "move the element under the pointer; on nothing: look around", "left drag"),
-    on_press(MOVE, "turn by hand", "turn the element under the pointer", "Shift+left drag"),
-    on_press(
-        BUILD, "add", "add an element at the pointer, from a list: type, arrows, Enter; again: the next kind", "N"
-    ),
-    on_press(BUILD, "add previous", "the same; again: the previous kind", "Shift+N"),
-    on_press(BUILD, "duplicate", "duplicate the selected element", "Ctrl+D"),
-    on_press(BUILD, "delete", "delete the selected element", "Delete"),
-    on_press(BUILD, "drop", "drop the element onto what lies beneath, on a grid", "B"),
-    on_press(BUILD, "place by hand", "move it on what lies behind, on a grid", "Ctrl+left drag"),
-    on_press(
-        BUILD, "slide by hand", "slide it along surfaces, turned to them", "Alt+left drag", "Ctrl+Shift+left drag"
-    ),
-    on_press(BUILD, "undo", "undo", "Ctrl+Z"),
-    on_press(BUILD, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
+    once(MOVE, "roll left", "roll counter-clockwise", ","),
+    once(MOVE, "roll right", "roll clockwise", "."),
+    once(MOVE, "next frame", "move objects in the view, or along X, Y, Z", "X"),
+    once(MOVE, "move by hand", "move the element under the pointer; on nothing: look around", "left drag"),
+    once(MOVE, "turn by hand", "turn the element under the pointer", "Shift+left drag"),
+    once(BUILD, "add", "add an element at the pointer, from a list: type, arrows, Enter; again: the next kind", "N"),
+    once(BUILD, "add previous", "the same; again: the previous kind", "Shift+N"),
+    once(BUILD, "duplicate", "duplicate the selected element", "Ctrl+D"),
+    once(BUILD, "delete", "delete the selected element", "Delete"),
+    once(BUILD, "drop", "drop the element onto what lies beneath, on a grid", "B"),
+    once(BUILD, "place by hand", "move it on what lies behind, on a grid", "Ctrl+left drag"),
+    once(BUILD, "slide by hand", "slide it along surfaces, turned to them", "Alt+left drag", "Ctrl+Shift+left drag"),
+    once(BUILD, "undo", "undo", "Ctrl+Z"),
+    once(BUILD, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
     in_steps(CHANGE, "grow", "increase the active value", "+"),
     in_steps(CHANGE, "shrink", "decrease the active value", "-"),
-    on_press(CHANGE, "type value", "type the active value: 3.5 Enter, or = *2 Enter, = +0.5 Enter, = 2*3+1 Enter", "="),
-    on_press(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
-    on_press(CHANGE, "previous value", "previous value", "Shift+V"),
-    on_press(CHANGE, "add attribute", "add an attribute from a list: type, arrows, Enter; again: the next", "M"),
-    on_press(CHANGE, "remove attribute", "remove the attribute of the active value", "Shift+M"),
-    on_press(FILE, "save", "save the scene", "Ctrl+S"),
-    on_press(FILE, "save copy", "save a copy: name-1.rt", "Ctrl+Shift+S"),
-    on_press(FILE, "screenshot", "save the picture: name-1.png", "P", "F12"),
-    on_press(FILE, "reload", "read the file again", "Ctrl+R", "F5"),
-    on_press(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
-    on_press(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
-    on_press(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
-    on_press(WINDOW, "toggle handles", "handles on the selected element, on or off", "K"),
-    on_press(WINDOW, "toggle help", "this help, or the picture", "H", "?"),
-    on_press(WINDOW, "toggle panel", "panel of elements, values, history and pictures, or no panel", "F1"),
-    on_press(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),
-    on_press(WINDOW, "smaller text", "smaller text and icons", "Ctrl+-"),
-    on_press(WINDOW, "usual text", "text of the usual size", "Ctrl+0"),
-    on_press(WINDOW, "toggle full screen", "full screen on or off", "Ctrl+F", "F11"),
-    on_press(WINDOW, "quit", "quit", "Escape", "Ctrl+Q"),
+    once(CHANGE, "type value", "type the active value: 3.5 Enter, or = *2 Enter, = +0.5 Enter, = 2*3+1 Enter", "="),
+    once(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
+    once(CHANGE, "previous value", "previous value", "Shift+V"),
+    once(CHANGE, "add attribute", "add an attribute from a list: type, arrows, Enter; again: the next", "M"),
+    once(CHANGE, "remove attribute", "remove the attribute of the active value", "Shift+M"),
+    once(FILE, "save", "save the scene", "Ctrl+S"),
+    once(FILE, "save copy", "save a copy: name-1.rt", "Ctrl+Shift+S"),
+    once(FILE, "screenshot", "save the picture: name-1.png", "P", "F12"),
+    once(FILE, "reload", "read the file again", "Ctrl+R", "F5"),
+    once(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
+    once(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
+    once(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
+    once(WINDOW, "toggle handles", "handles on the selected element, on or off", "K"),
+    once(WINDOW, "toggle help", "this help, or the picture", "H", "?"),
+    once(WINDOW, "toggle panel", "panel of elements, values, history and pictures, or no panel", "F1"),
+    once(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),
+    once(WINDOW, "smaller text", "smaller text and icons", "Ctrl+-"),
+    once(WINDOW, "usual text", "text of the usual size", "Ctrl+0"),
+    once(WINDOW, "toggle full screen", "full screen on or off", "Ctrl+F", "F11"),
+    once(WINDOW, "quit", "quit", "Escape", "Ctrl+Q"),
 )
 
 

@@ -49,7 +49,7 @@ def draw_marks(
     """
     height, width = pixels.shape[:2]
     view = projection_of(scene.camera, width, height)
-    selected = state.index_in(scene)
+    selected = next(iter(state.indices_in(scene, frozenset([state.selected]))), None)
     if selected is not None:
         element = scene.elements[selected]
         if isinstance(element, Shape):

@@ -22,7 +22,6 @@ from minirt.viewer.editing.placing import drop, keep_standing
 from minirt.viewer.editing.projection import field_names
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import values
-from minirt.viewer.files import next_file
 
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
 TURN_STEP = 5.0  # degrees
@@ -108,7 +107,7 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
     if active is None:
         return state.with_message(f"{state.element.title} has no size")
     try:
-        new = active.stepped(state.element, sign * amount, partial(next_file, state.scene), state.stride)
+        new = active.stepped(state.element, sign * amount, state.scene, state.stride)
     except FieldError as error:
         return state.with_message(f"{active.name} {error}")
     stepped = state.element.replace(**{active.field.name: new})

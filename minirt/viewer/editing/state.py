@@ -74,20 +74,11 @@ class State:
     def snapshot(self) -> Snapshot:
         return Snapshot(self.scene.drop_caches(), self.selected)
 
-    def index_in(self, scene: Scene) -> int | None:
-        """Index of the selected element in an older or newer version of the scene; None if that lacks the element."""
-        if len(scene.elements) == len(self.scene.elements):  # elements were changed, but not added or deleted
-            return self.selected
-        try:
-            return index_of(scene, self.element)
-        except ValueError:
-            return None
-
-    def hidden_in(self, scene: Scene) -> frozenset[int]:
-        """Indices of the hidden elements in an older or newer version of the scene."""
-        if not self.hidden or len(scene.elements) == len(self.scene.elements):
-            return self.hidden
-        identities = {id(self.scene.elements[index]) for index in self.hidden}
+    def indices_in(self, scene: Scene, indices: frozenset[int]) -> frozenset[int]:
+        """Indices of elements in an older or newer version of the scene, without those that it lacks."""
+        if not indices or len(scene.elements) == len(self.scene.elements):  # none was added or deleted
+            return indices
+        identities = {id(self.scene.elements[index]) for index in indices}
         return frozenset(index for index, element in enumerate(scene.elements) if id(element) in identities)
 
     def with_message(self, message: str) -> State:
@@ -114,7 +105,8 @@ class State:
         selected = self.selected if selected is None else selected
         scene = with_edited_cameras(self.scene, scene, kind)
         changes: dict[str, Any] = {"undo_stack": past, "redo_stack": (), "last_change": (kind, now)}
-        return replace(self, scene=scene, selected=selected, hidden=self.hidden_in(scene), **changes)
+        hidden = self.indices_in(scene, self.hidden)
+        return replace(self, scene=scene, selected=selected, hidden=hidden, **changes)
 
     def edit_element(self, element: Element, kind: str, now: float, index: int | None = None) -> State:
         """Replace the selected element, or another one, by `element`, whose changed numbers are rounded."""
@@ -200,7 +192,7 @@ def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: flo
         return state.with_message(f"nothing to {taken}")
     scene, selected = stack[-1]
     stacks = {f"{taken}_stack": stack[:-1], f"{given}_stack": (*other, state.snapshot)}
-    hidden = state.hidden_in(scene)
+    hidden = state.indices_in(scene, state.hidden)
     state = state if selected == state.selected else state.select(selected)
     return replace(state, scene=scene, hidden=hidden, last_change=None, **stacks)
 

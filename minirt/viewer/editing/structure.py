@@ -90,17 +90,22 @@ def with_attribute(before: State, field: Field) -> State:
     return replace(after, value_index=index).with_message(f"{field.doc}: {field_text(field, changed)}")
 
 
-def remove_attribute(state: State, _amount: float, now: float) -> State:
+def remove_attribute(state: State, _amount: float, _now: float) -> State:
     """Remove the attribute of the active value from the selected element."""
     active = state.active
     if active is None or not active.field.keyed:
         name = active.name if active else state.element.title
         return state.with_message(f"{name} is no attribute that can be removed")
-    changed = state.element.replace(**{active.field.name: active.field.default})
-    if changed == state.element:
+    after = without_attribute(state, active.field)
+    if after.element == state.element:
         return state.with_message(f"{active.name} is as it is without the attribute")
-    state = state.change(state.scene.edit(state.selected, changed), "", now)
-    return replace(state, value_index=0).with_message(f"no {active.field.title} any more")
+    return after.with_message(f"no {active.field.title} any more")
+
+
+def without_attribute(before: State, field: Field) -> State:
+    """The state whose selected element has lost an attribute, or has its default again."""
+    changed = before.element.replace(**{field.name: field.default})
+    return replace(before.change(before.scene.edit(before.selected, changed), "", 0.0), value_index=0)
 
 
 # Default values.

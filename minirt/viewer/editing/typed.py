@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ast
 from math import isfinite
-from operator import add, mul, sub, truediv
+from operator import add, mul, neg, pos, sub, truediv
 from typing import Any
 
 from minirt.errors import FieldError
@@ -20,7 +20,7 @@ from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value
 
-OPERATIONS = {ast.Mult: mul, ast.Div: truediv, ast.Add: add, ast.Sub: sub}
+OPERATIONS: dict[Any, Any] = {ast.Mult: mul, ast.Div: truediv, ast.Add: add, ast.Sub: sub, ast.USub: neg, ast.UAdd: pos}
 CHARACTERS = "0123456789.,+-*/=()"  # of which typed values are made
 PRESENT = "x"  # stands for the present value in a sum
 SIGNS = tuple("*/+-")
@@ -99,10 +99,8 @@ def result(node: ast.expr, present: float) -> float:
     match node:
         case ast.BinOp(left, operator, right) if type(operator) in OPERATIONS:
             return float(OPERATIONS[type(operator)](result(left, present), result(right, present)))
-        case ast.UnaryOp(ast.USub(), operand):
-            return -result(operand, present)
-        case ast.UnaryOp(ast.UAdd(), operand):
-            return result(operand, present)
+        case ast.UnaryOp(operator, operand) if type(operator) in OPERATIONS:
+            return float(OPERATIONS[type(operator)](result(operand, present)))
         case ast.Constant(int() | float() as constant) if not isinstance(constant, bool):
             return float(constant)
         case ast.Name(name) if name == PRESENT:

@@ -7,7 +7,7 @@ mesh file, the next value is the next file beside the scene. Edited numbers are 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import asin, atan2, degrees, floor, hypot, log10
 from typing import Any, NamedTuple, TypeVar
 
@@ -15,13 +15,14 @@ from minirt.element import Element, Record, fields_of
 from minirt.fields import Angle, Colour, Direction, Field, Length, Lengths, MeshField, Point, Real, Three, Triple
 from minirt.fields.directions import cos_and_sin, neat
 from minirt.fields.scalars import FARTHEST, Factor, clamp
+from minirt.scene import Scene
 from minirt.shapes.shape import Oriented
+from minirt.viewer.files import next_file
 
 CHANNELS = "red", "green", "blue"
 ANGLES = "heading", "elevation"  # of a direction, in degrees: from z towards x, and above the horizon
 ANGLE_STEP, PART_STEP = 5.0, 0.05  # of an angle of a direction, in degrees, and of a component
 
-NextFile = Callable[[Any, float], Any]  # (file, steps) -> the picture or mesh file that many steps further
 POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of a step of movement
 LENGTH_DIGITS = 5  # significant digits of a length that are kept
 REAL_DECIMALS = 3  # decimals of any other number that are kept, counted likewise from its own step
@@ -58,11 +59,11 @@ class Value(NamedTuple):
             return None
         return self.start + (self.channel or 0)
 
-    def stepped(self, element: Element, steps: float, next_file: NextFile, stride: float) -> Any:
+    def stepped(self, element: Element, steps: float, scene: Scene, stride: float) -> Any:
         """The field's value after a number of steps; `stride`: a step of a movement in scene units."""
         field, old = self.leaf, self.get(element)
         if isinstance(field, MeshField) or any(field.pictures(old)):
-            return self.replaced(element, next_file(old, steps))
+            return self.replaced(element, next_file(scene, old, steps))
         if self.channel is None or isinstance(field, Colour | Lengths):
             new = field.nudge(old, steps)
             return self.replaced(element, new if self.channel is None else new[self.channel])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from itertools import pairwise
 
 from slimgui import imgui
@@ -113,8 +112,8 @@ class Elements:
         if reason:
             imgui.text_disabled(translated(reason))
         if changed:
-            switch = partial(without, field=field) if there else partial(structure.with_attribute, field=field)
-            self.rows.apply(lambda state: switch(state).end_merging(), field.title)
+            switch = structure.without_attribute if there else structure.with_attribute
+            self.rows.apply(lambda state: switch(state, field).end_merging(), field.title)
         elif there:
             imgui.indent()
             self.rows.show_field(field)
@@ -122,10 +121,10 @@ class Elements:
 
     def reasons(self) -> dict[str, str]:
         """Why attributes cannot be had, by their names; as it was at the press while a number is dragged."""
-        scene, index = self.session.state.scene, self.rows.index
-        if (self._asked[0] is not scene or self._asked[1] != index) and not self.rows.pressed:
-            self._asked = scene, index
-            self._reasons = dict(refusals(self.session.state.select(index)))
+        asked = self.session.state.scene, self.rows.index
+        if self._asked != asked and not self.rows.pressed:
+            self._asked = asked
+            self._reasons = dict(refusals(self.session.state.select(self.rows.index)))
         return self._reasons
 
 
@@ -141,12 +140,6 @@ def refusals(state: State) -> Iterator[tuple[str, str]]:
             structure.with_attribute(state, field)
         except (LookupError, ElementError) as error:
             yield field.name, str(error)
-
-
-def without(state: State, field: Field) -> State:
-    """The state whose selected element has lost an attribute."""
-    changed = state.element.replace(**{field.name: None})
-    return replace(state.change(state.scene.edit(state.selected, changed), "", 0.0), value_index=0)
 
 
 def names(scene: Scene) -> list[str]:

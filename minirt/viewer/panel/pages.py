@@ -61,11 +61,7 @@ class Pages:
         if kind.required:
             imgui.separator_text(kind.title)
         elif self.rows.box(kind.title, index is not None):
-            after = (
-                structure.with_element(state, kind)
-                if index is None
-                else structure.delete(state.select(index), 1.0, 0.0)
-            )
+            after = structure.with_element(state, kind) if index is None else apply(state.select(index), "delete")
             self.rows.gui.show(after)
             return
         if index is not None:

@@ -7,7 +7,6 @@ digit begins to type. One drag is one step of undo.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -22,7 +21,7 @@ from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.typed import CHARACTERS, set_typed, with_value
 from minirt.viewer.editing.values import CHANNELS, Value, part_names, seen_fields, values_of_field
-from minirt.viewer.files import next_file, usable_files
+from minirt.viewer.files import usable_files
 from minirt.viewer.language import translated
 from minirt.viewer.panel.gui import GOLD, Gui
 
@@ -246,7 +245,7 @@ class Rows:
     def step(self, value: Value, start: Element, steps: float) -> None:
         """Change a value by a number of steps from what it was in `start`."""
         state = self.session.state
-        self.change(value, start, lambda: value.stepped(start, steps, partial(next_file, state.scene), state.stride))
+        self.change(value, start, lambda: value.stepped(start, steps, state.scene, state.stride))
 
     def change(self, value: Value, start: Element, field: Callable[[], Any]) -> None:
         """Change a field of an element that was `start`; changes that follow each other are undone together."""
