@@ -38,6 +38,7 @@ from tests.waiting import HANG_LIMIT
 pytest.importorskip("slimgui", reason="the panel needs slimgui: make installs it")
 from minirt.viewer.panel.pages import ONCE
 from minirt.viewer.panel.rows import Rows
+from tests.viewer.widgets import WIDGETS
 
 SIZE = (300, 2000)
 WITH_ATTRIBUTES = ("sp", "sl", "C")  # kinds whose attributes are those of all others
@@ -75,7 +76,7 @@ class User:
         self.dispatcher = EventDispatcher(self.session)
         self.press(Key.F1)
         self.panel = self.dispatcher.panel
-        self.rows = self.panel.rows
+        self.rows, self.widgets = self.panel.rows, WIDGETS
         self.session.window.blit = lambda: self.panel.is_open and self.panel.paint(Card())
         self.session.draw()
 
@@ -85,7 +86,7 @@ class User:
 
     def place(self, name: str) -> tuple[int, int]:
         """Where a widget is, after a scroll to it if it is out of sight."""
-        x, y = self.rows.places[name]
+        x, y = self.widgets.places[name]
         return int(x), int(y)
 
     def click(self, name: str) -> None:
@@ -115,7 +116,7 @@ class User:
         """Press Tab until a widget has the focus."""
         for _ in range(150):
             self.press(Key.TAB)
-            if self.rows.focused == name:
+            if self.widgets.focused == name:
                 return
         raise AssertionError(f"Tab does not reach {name}")
 
@@ -195,7 +196,7 @@ def test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(kind: 
 def test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(kind: type[Element], path: Path) -> None:  # noqa: F811
     user = user_of(kind, path, attributes=kind.code in WITH_ATTRIBUTES)
     numbers = {value.name: value for value in number_values(user.element)}
-    for name in [each for each in user.rows.places if each in numbers]:  # in the order of Tab
+    for name in [each for each in user.widgets.places if each in numbers]:  # in the order of Tab
         value = numbers[name]
         user.go_to(value.name)
         before = user.element
@@ -225,7 +226,7 @@ def test_every_word_file_and_flag_is_chosen(kind: type[Element], by_keys: bool, 
                 user.press(key)
         else:
             user.click(name)
-            options = [each for each in user.rows.places if each.startswith(f"{value.name} ") and "." in each]
+            options = [each for each in user.widgets.places if each.startswith(f"{value.name} ") and "." in each]
             options += [f"{value.name} {value.leaf.words[-1]}"] if isinstance(value.leaf, Choice) else []
             if not isinstance(value.leaf, Flag):
                 user.click(options[-1])
@@ -332,7 +333,7 @@ def test_the_scene_the_history_and_pictures_have_pages(tmp_path: Path) -> None:
         user.click("diameter")
         user.type(text)
     user.click("History")
-    assert [name for name in user.rows.places if name.startswith("step")] == [f"step {n}" for n in range(4)]
+    assert [name for name in user.widgets.places if name.startswith("step")] == [f"step {n}" for n in range(4)]
     user.click("step 1")
     assert user.element.diameter == 3
     user.click("step 3")
@@ -413,7 +414,7 @@ def test_the_panel_speaks_french(monkeypatch: pytest.MonkeyPatch) -> None:
     assert user.rows.error == ("diameter", "sphere diameter must be > 0, got -3")
     user.click("Historique")
     user.click("Image")
-    assert "film" in user.rows.places
+    assert "film" in user.widgets.places
 
 
 def test_names_are_the_comments_before_lines_and_the_search_finds_them() -> None:
@@ -422,7 +423,7 @@ def test_names_are_the_comments_before_lines_and_the_search_finds_them() -> None
     for character in "hat":
         user.memory.text(character)
     user.memory.play()
-    assert [name for name in user.rows.places if name.startswith("element")] == ["element 6"]
+    assert [name for name in user.widgets.places if name.startswith("element")] == ["element 6"]
     user.click("element 6")
     assert type(user.element).__name__ == "Cone"
 

@@ -43,7 +43,6 @@ class Elements:
         """Show the list, and below it the rows of the selected element."""
         imgui.set_next_item_width(-1.0)
         self._wanted = imgui.input_text_with_hint("###search", translated("search"), self._wanted)[1]
-        self.rows.note("search")
         height = imgui.get_content_region_avail()[1]
         self.list(LISTED * height)
         if imgui.begin_child("values", (0.0, 0.0), imgui.ChildFlags.NAV_FLATTENED):
@@ -76,7 +75,6 @@ class Elements:
         imgui.push_id(index)
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
-        self.rows.note(f"shown {index}")
         imgui.set_item_tooltip(translated("shown while you edit; the file keeps it"))
         if changed:
             self.rows.gui.show(replace(state, hidden=state.hidden ^ {index}))
@@ -91,7 +89,6 @@ class Elements:
         if imgui.selectable(f"{title}###element", index == state.selected, flags)[0] and index != state.selected:
             self._followed = index
             self.rows.gui.show(state.with_message("").select(index))
-        self.rows.note(f"element {index}")
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
             self.rows.gui.show(apply(session.state, "look at", 1.0, session.now))
         imgui.pop_item_flag()

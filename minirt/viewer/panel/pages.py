@@ -76,11 +76,10 @@ class Pages:
         for number in seen(len(steps)):
             title = step_title(steps[number - 1], steps[number]) if number else translated("as opened")
             undone = translated("(undone)") if number > now else ""
-            if imgui.selectable(f"{number}  {title}  {undone}###{number}", number == now)[0]:
+            if imgui.selectable(f"{number}  {title}  {undone}###step {number}", number == now)[0]:
                 for _ in range(abs(number - now)):
                     state = apply(state, "redo" if number > now else "undo")
                 self.rows.gui.show(state)
-            self.rows.note(f"step {number}")
 
     def picture(self) -> None:
         """Show the buttons that save the picture and the scene, and the settings of a film of a turntable."""
@@ -88,7 +87,6 @@ class Pages:
             if imgui.button(f"{translated(binding.help)}###{binding.action}"):
                 self.session.attempt(COMMANDS[binding.action])
                 self.rows.gui.show(self.session.state)
-            self.rows.note(binding.action)
         imgui.separator_text(translated("turntable"))
         self._format = self.rows.option("format", FILMS, self._format) or self._format
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
@@ -101,7 +99,6 @@ class Pages:
             if not is_running:
                 self._thread = Thread(target=self.make_film, name="minirt-film", daemon=True)
                 self._thread.start()
-        self.rows.note("film")
         if is_running:
             imgui.progress_bar(self._share, overlay=translated(self.film))
         else:

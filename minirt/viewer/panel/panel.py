@@ -81,15 +81,13 @@ class Panel(Gui):
         if imgui.begin_tab_bar("pages", imgui.TabBarFlags.FITTING_POLICY_SHRINK):
             for name, show in self._tabs.items():
                 visible, _ = imgui.begin_tab_item(name)
-                self.rows.note(name)
                 if visible:
                     if imgui.begin_child(name, (0.0, 0.0), imgui.ChildFlags.NAV_FLATTENED):
                         show()
                     imgui.end_child()
                     imgui.end_tab_item()
-            if imgui.tab_item_button(">", imgui.TabItemFlags.TRAILING):
+            if imgui.tab_item_button(">###close", imgui.TabItemFlags.TRAILING):
                 self._close()
-            self.rows.note("close")
             imgui.end_tab_bar()
         self.has_popup = imgui.is_popup_open("", ANY_POPUP)
         imgui.end()

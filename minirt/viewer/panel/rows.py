@@ -41,11 +41,10 @@ class Rows:
     def __init__(self, session: Session, gui: Gui) -> None:
         self.session = session
         self.gui = gui
-        self.places: dict[str, tuple[float, float]] = {}  # centres of the widgets of the last frame, by their names
-        self.focused = ""  # name of the widget that has the focus
         self.error = ("", "")  # name of the value that was refused, and why
         self.index = 0  # of the element whose rows are shown
         self._typing: Value | None = None  # the number that is typed
+        self._shows_typing = False  # whether the last frame shows it
         self._text, self._first = "", ""  # what is typed, and the character that began it
         self.pressed = ""  # name of the number under the button that is down
         self._start: Element | None = None  # the element when the button went down
@@ -57,18 +56,11 @@ class Rows:
         return self.session.state.scene.elements[self.index]
 
     def begin_frame(self) -> None:
-        """Forget what the last frame had; a number that is not shown any more is not typed any more."""
-        if self._typing and not self._first and self._typing.name not in self.places:
+        """Begin a frame: a number that is not shown any more is not typed any more."""
+        if not self._first and not self._shows_typing:
             self._typing = None
-        self.places.clear()
+        self._shows_typing = False
         self.session.slides = bool(self.pressed) and imgui.is_mouse_down(imgui.MouseButton.LEFT)
-
-    def note(self, name: str) -> None:
-        """Note where the last widget is."""
-        (left, top), (right, bottom) = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        self.places[name] = (left + right) / 2, (top + bottom) / 2
-        if imgui.is_item_focused():
-            self.focused = name
 
     def show(self, index: int) -> None:
         """Show the rows of the values that an element always has."""
@@ -134,8 +126,7 @@ class Rows:
     def pick_colour(self, value: Value) -> None:
         """Show a colour as a square, which opens a picker."""
         shown = tuple(part / 255 for part in value.get(self.element))
-        changed, new = imgui.color_edit3(f"###{value.name}", shown, SQUARE)
-        self.note(f"{value.name} picker")
+        changed, new = imgui.color_edit3(f"###{value.name} picker", shown, SQUARE)
         if changed:
             levels = tuple(round(255 * part) for part in new)
             self.change(value, self.element, lambda: value.replaced(self.element, levels))
@@ -150,24 +141,19 @@ class Rows:
             for option in options:
                 if imgui.selectable(option_title(option), option == shown)[0]:
                     chosen = option
-                self.note(f"{name} {option_title(option)}")
             imgui.end_combo()
-        else:
-            self.note(name)
         return chosen
 
     def whole(self, name: str, number: int, high: int) -> int:
         """Show a whole number from 1 to `high`; return what it is now."""
         imgui.set_next_item_width(imgui.get_content_region_avail()[0] / 2)
         number = imgui.input_int(f"{translated(name)}###{name}", number)[1]
-        self.note(name)
         return min(max(number, 1), high)
 
     def box(self, title: str, is_on: bool, doc: str = "", disabled: bool = False) -> bool:
         """Show a box that switches something on and off; return whether it is clicked now."""
         imgui.begin_disabled(disabled)
         clicked, _ = imgui.checkbox(f"{title}###{title} on", is_on)
-        self.note(f"{title} on")
         imgui.end_disabled()
         imgui.set_item_tooltip(doc)
         return bool(clicked)
@@ -189,7 +175,6 @@ class Rows:
         texts = [f"{prefix} {value.current(self.element):.{digits}g}".strip() for digits in (6, 4, 3, 2)]
         text = next((each for each in texts if imgui.calc_text_size(each)[0] < width - self.gui.size / 2), texts[-1])
         entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
-        self.note(value.name)
         imgui.set_item_tooltip(translated("drag it, click to type it, or + and -; Shift: finer"))
         if imgui.is_item_activated():
             self.pressed, self._start, self._slid = value.name, self.element, 0.0
@@ -230,7 +215,7 @@ class Rows:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(width)
         entered, self._text = imgui.input_text(f"###{value.name}", self._text, TYPING)
-        self.note(value.name)
+        self._shows_typing = True
         if self._first and imgui.is_item_active():
             self.gui.io.add_input_characters_utf8(self._first.strip())
             self._first = ""
