@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from itertools import islice
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -22,36 +23,6 @@ MOST_COLOURS = 2**18
 LONGEST = 8  # characters of a pixel
 LONGEST_DEFINITION = 1000  # characters of a colour
 TRANSPARENT = 0
-
-# Colours of X11 that CSS lacks, or that are others in CSS.
-OWN = {
-    "gray": 0xBEBEBE,
-    "green": 0x00FF00,
-    "maroon": 0xB03060,
-    "purple": 0xA020F0,
-    "navyblue": 0x000080,
-    "violetred": 0xD02090,
-    "lightgoldenrod": 0xEEDD82,
-    "lightslateblue": 0x8470FF,
-}
-
-# The first of four shades of a colour: 2, 3 and 4 are as much darker as `SHADES` says, but for a few.
-FIRST_SHADES = """
-antiquewhite FFEFDB aquamarine 7FFFD4 azure F0FFFF bisque FFE4C4 blue 0000FF brown FF4040 burlywood FFD39B cadetblue
-98F5FF chartreuse 7FFF00 chocolate FF7F24 coral FF7256 cornsilk FFF8DC cyan 00FFFF darkgoldenrod FFB90F darkolivegreen
-CAFF70 darkorange FF7F00 darkorchid BF3EFF darkseagreen C1FFC1 darkslategray 97FFFF deeppink FF1493 deepskyblue 00BFFF
-dodgerblue 1E90FF firebrick FF3030 gold FFD700 goldenrod FFC125 green 00FF00 honeydew F0FFF0 hotpink FF6EB4 indianred
-FF6A6A ivory FFFFF0 khaki FFF68F lavenderblush FFF0F5 lemonchiffon FFFACD lightblue BFEFFF lightcyan E0FFFF
-lightgoldenrod FFEC8B lightpink FFAEB9 lightsalmon FFA07A lightskyblue B0E2FF lightsteelblue CAE1FF lightyellow FFFFE0
-magenta FF00FF maroon FF34B3 mediumorchid E066FF mediumpurple AB82FF mistyrose FFE4E1 navajowhite FFDEAD olivedrab
-C0FF3E orange FFA500 orangered FF4500 orchid FF83FA palegreen 9AFF9A paleturquoise BBFFFF palevioletred FF82AB
-peachpuff FFDAB9 pink FFB5C5 plum FFBBFF purple 9B30FF red FF0000 rosybrown FFC1C1 royalblue 4876FF salmon FF8C69
-seagreen 54FF9F seashell FFF5EE sienna FF8247 skyblue 87CEFF slateblue 836FFF slategray C6E2FF snow FFFAFA springgreen
-00FF7F steelblue 63B8FF tan FFA54F thistle FFE1FF tomato FF6347 turquoise 00F5FF violetred FF3E96 wheat FFE7BA yellow
-FFFF00
-"""
-SHADES = (1.0, 0.9355, 0.8065, 0.5485)
-OTHER_SHADES = {"hotpink2": 0xEE6AA7, "hotpink3": 0xCD6090, "hotpink4": 0x8B3A62}
 
 
 class XpmError(ValueError):
@@ -140,14 +111,6 @@ def colour(definition: bytes, number: int) -> int:
 
 @cache
 def names() -> dict[str, int]:
-    """All names of colours, in lower case without spaces, and their colours 0xRRGGBB."""
-    from PIL.ImageColor import colormap, getrgb
-
-    colours = {name: int.from_bytes(bytes(getrgb(name)[:3]), "big") for name in colormap} | OWN
-    words = FIRST_SHADES.split()
-    for name, first in zip(words[::2], map(bytes.fromhex, words[1::2]), strict=True):
-        for number, share in enumerate(SHADES, 1):
-            colours[f"{name}{number}"] = int.from_bytes(bytes(int(level * share) for level in first), "big")
-    for percent in range(101):
-        colours[f"gray{percent}"] = int(2.55 * percent + 0.5) * 0x010101
-    return colours | OTHER_SHADES
+    """The colours 0xRRGGBB of X11 and CSS by their names, in lower case without spaces; X11's where both have one."""
+    lines = Path(__file__).with_name("x11_colours.txt").read_text("ascii").splitlines()
+    return {name: int(colour, 16) for colour, name in map(str.split, lines)}
