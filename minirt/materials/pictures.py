@@ -95,12 +95,6 @@ def reader(file: PictureFile) -> Callable[[Path], np.ndarray]:
     return heights if file.heights else sky if file.sky else picture
 
 
-def identity(path: str | os.PathLike[str]) -> tuple[int, int]:
-    """The device and the inode of a picture file, which all links to it share. FileError if it cannot be read."""
-    status = file_io.status(path, file_io.LARGEST_ASSET)
-    return status.st_dev, status.st_ino
-
-
 def check_textures(arrays: list[np.ndarray]) -> None:
     """Check that there is room for the texels of these arrays, which a kernel reads; `TooLargeError` otherwise."""
     need = TEXEL * sum(array.size for array in arrays)

@@ -192,7 +192,7 @@ class Packing:
         keys: list[Hashable] = []
         for light in sources:
             skipped = lights.never_occludes(shapes, eye, light, radius)
-            if not light.place or (light.size and cells > 1):  # by the BVH
+            if not light.position or (light.size and cells > 1):  # by the BVH
                 keys.append(("spread", cells, skipped.tobytes()))
                 binned.append(cached(keys[-1], visibility.seen_by_parallel_light, shapes, cells, skipped))
             else:

@@ -72,7 +72,7 @@ class InvisibleElements:
     def __init__(self, scene: Scene, folder: Path) -> None:
         eye, _, _, forward = camera_numbers(scene.camera, 16, 9).reshape(4, 3)
         forward = forward / np.linalg.norm(forward)
-        lights = [np.subtract(light.position, eye) for light in scene.lights if hasattr(light, "position")]
+        lights = [np.subtract(light.position, eye) for light in scene.lights if light.position]
         behind = max([1.0, *(-2 * float(offset @ forward) for offset in lights)])
         self.place, self.size = eye - behind * forward, SIZE * behind
         self.corners = cycle(np.vstack([np.zeros(3), np.eye(3)]) * self.size + self.place)

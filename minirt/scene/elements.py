@@ -126,15 +126,11 @@ class Lamp(Element):
 
     brightness: float
     colour: Triple
+    position: Triple | None = None  # None: it shines from infinitely far away
     fade: float | None = None
     size: float | None = None
 
     # What the kernel reads of it: see `minirt.kernel.shading.lights`.
-
-    @property
-    def place(self) -> Triple | None:
-        """The place that it shines from; None for a light from infinitely far away."""
-        return getattr(self, "position", None)
 
     def cone(self) -> tuple[float, ...]:
         """Axis, cosine at the edge of the cone, and steepness: 1 / (cosine at full intensity - cosine at the edge)."""
@@ -148,7 +144,7 @@ class Lamp(Element):
         """The features of the kernel that it needs: see `minirt.rendering.packing.features`."""
         needs = {
             "spots": self.cone() != ALL_DIRECTIONS or self.fading() > 0.0,
-            "parallel": not self.place,
+            "parallel": not self.position,
             "soft": bool(self.size),
         }
         return tuple(name for name, needed in needs.items() if needed)

@@ -92,17 +92,17 @@ def positions_and_intensities(lights: list[Lamp], colours: Colours) -> np.ndarra
 
 def light_position(light: Lamp) -> np.ndarray:
     """The position of a light; the origin for parallel light, which has none."""
-    return np.array(light.place or (0.0, 0.0, 0.0), np.float64)
+    return np.array(light.position or (0.0, 0.0, 0.0), np.float64)
 
 
 def radius_of(light: Lamp) -> float:
     """The radius of a light with a place; 0 for a point and for parallel light."""
-    return (light.size or 0.0) / 2 if light.place else 0.0
+    return (light.size or 0.0) / 2 if light.position else 0.0
 
 
 def tangent_of(light: Lamp) -> float:
     """The tangent of half the angular diameter of parallel light; 0 for other light."""
-    return 0.0 if light.place else tan(radians(light.size or 0.0) / 2)
+    return 0.0 if light.position else tan(radians(light.size or 0.0) / 2)
 
 
 def sizes(lights: list[Lamp]) -> np.ndarray:
@@ -113,7 +113,7 @@ def sizes(lights: list[Lamp]) -> np.ndarray:
 
 def spot_parameters(lights: list[Lamp]) -> np.ndarray:
     """A row for each of m lights, (m, 7): cone, fading, and 1 if it is parallel, else 0."""
-    rows = [(*light.cone(), light.fading(), not light.place) for light in lights]
+    rows = [(*light.cone(), light.fading(), not light.position) for light in lights]
     return np.array(rows, np.float64).reshape(len(lights), 7)
 
 
@@ -177,7 +177,7 @@ def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radi
     """
     planes = shape_arrays.planes
     heights = signed_heights(planes, eye, radius)
-    if light.place:
+    if light.position:
         harmless = heights * signed_heights(planes, light_position(light), radius_of(light)) > 0
     else:
         slopes = planes[:, :3] @ -np.array(light.cone()[:3])

@@ -5,6 +5,7 @@ Each material states its own rows: see `minirt.materials.Material.rows`.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Hashable, Iterable, Set
 from pathlib import Path
 from typing import Any
@@ -150,7 +151,7 @@ class Reader:
         self.scene = scene
         self.colours = colours_of(scene.camera)
         self.shares, self.gain = self.colours.shares, self.colours.gain
-        self.numbers: dict[tuple[PictureReader, int, int], int] = {}  # by device and inode
+        self.numbers: dict[tuple[PictureReader, str], int] = {}
         self.images: list[np.ndarray] = []
 
     def texture(self, file: str) -> int:
@@ -166,7 +167,7 @@ class Reader:
     def number(self, file: str, read: PictureReader) -> int:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         path = self.scene.beside(file)
-        key = read, *pictures.identity(path)
+        key = read, os.path.realpath(path)
         if key not in self.numbers:
             self.images.append(read(path))
             check_textures(self.images)

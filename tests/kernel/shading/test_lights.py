@@ -148,7 +148,7 @@ def missing(lamps: list[Lamp], grid: LightGrid, seed: int) -> int:
         lamp = lamps[random.integers(len(lamps) - 1)]
         ways = random.normal(size=3) + random.choice([0.0, 1e-9, 1e-3, 1.0]) * random.normal(size=(4, 3))
         reach = (lamp.fade or 10.0) * random.choice([random.random(), 1 - 1e-6, 2.0])
-        points = np.array(lamp.place)[:, None] + reach * (ways / np.linalg.norm(ways, axis=1)[:, None]).T
+        points = np.array(lamp.position)[:, None] + reach * (ways / np.linalg.norm(ways, axis=1)[:, None]).T
         rounding, hit = 16 * 2.0**-53 * np.abs(points).max(axis=0), random.random(4) < 0.8
         hit[0] = True
         start, end = sources_in_reach(grid, Vec(*points), rounding, hit)
