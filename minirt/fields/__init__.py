@@ -5,17 +5,6 @@ documentation derive from the declaration. File names in them begin at the folde
 from minirt.errors import FieldError
 from minirt.fields.directions import Direction, cos_and_sin, neat, unit, upright
 from minirt.fields.field import Choice, Field, MeshField, MeshFile, Picture, PictureFile, Repair
-from minirt.fields.scalars import (
-    FARTHEST,
-    Angle,
-    Factor,
-    Flag,
-    Length,
-    Real,
-    Whole,
-    clamp,
-    clamp_length,
-    spelled,
-)
+from minirt.fields.scalars import FARTHEST, Angle, Factor, Flag, Length, Real, Whole, clamp, clamp_length, spelled
 from minirt.fields.triples import Colour, Lengths, Paint, Point, Three, Triple
 from minirt.records import declare

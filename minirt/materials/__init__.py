@@ -80,13 +80,9 @@ class Attributes(Element):
     uv: Placement | None = declare(
         Compound, "scale, shift and turn of u and v", record=Placement, default=None, shared=SHARED
     )
-    marble: Marble | None = declare(
-        Compound, "veins of marble", key="pattern:marble", record=Marble, default=None, shared=MAPPED
-    )
+    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, default=None, shared=MARBLE)
     wood: Wood | None = declare(Compound, "rings of wood", record=Wood, default=None, shared=WOOD)
-    clouds: Clouds | None = declare(
-        Compound, "clouds", key="pattern:clouds", record=Clouds, default=None, shared=MAPPED
-    )
+    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, default=None, shared=CLOUDS)
 
     @property
     def is_mapped(self) -> bool:

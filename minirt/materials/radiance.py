@@ -7,6 +7,7 @@ they are, runs of equal pixels (old), and runs of equal components of a scanline
 from __future__ import annotations
 
 import re
+from io import BytesIO
 from math import inf
 from typing import NamedTuple
 
@@ -37,32 +38,26 @@ class Header(NamedTuple):
 
 def read_header(data: bytes) -> Header:
     """Read the header of a file; RadianceError where it is not one."""
-    start, number, exposure = 0, 1, 1.0
-    while True:
-        end = data.find(b"\n", start, LONGEST_HEADER)
-        if end < 0:
-            raise RadianceError(f"line {number}: the header has no end")
-        text = data[start:end].strip()
-        start, number = end + 1, number + 1
-        if not text:
-            break
+    file, number, exposure = BytesIO(data[:LONGEST_HEADER]), 1, 1.0
+    while (text := file.readline()).strip():
         key, _, value = text.partition(b"=")
         if key.strip() == b"FORMAT" and value.strip() != FORMAT:
-            raise RadianceError(f"line {number - 1}: the format must be {FORMAT.decode()}")
+            raise RadianceError(f"line {number}: the format must be {FORMAT.decode()}")
         if key.strip() == b"EXPOSURE":
             try:
                 exposure *= float(value)
             except ValueError:
                 exposure = 0.0
             if not 0 < exposure < inf:
-                message = "the exposure, times those before it, must be a number > 0"
-                raise RadianceError(f"line {number - 1}: {message}")
-    end = data.find(b"\n", start, start + LONGEST_HEADER)
-    match = RESOLUTION.fullmatch(data[start:end].strip()) if end >= 0 else None
+                raise RadianceError(f"line {number}: the exposure, times those before it, must be a number > 0")
+        number += 1
+    if not text:
+        raise RadianceError(f"line {number - 1}: the header has no end")
+    match = RESOLUTION.fullmatch(file.readline().strip())
     if not match or match[1][1:] == match[3][1:]:
-        raise RadianceError(f"line {number}: expected a size such as -Y 512 +X 1024")
+        raise RadianceError(f"line {number + 1}: expected a size such as -Y 512 +X 1024")
     sizes = {match[1][1:]: int(match[2]), match[3][1:]: int(match[4])}
-    return Header(sizes[b"X"], sizes[b"Y"], (match[1], match[3]), exposure, end + 1)
+    return Header(sizes[b"X"], sizes[b"Y"], (match[1], match[3]), exposure, file.tell())
 
 
 def read_pixels(data: bytes, header: Header) -> np.ndarray:

@@ -96,9 +96,9 @@ def materials_of(
     what is not used of them to the notices. The first material is that of the mesh, without a file."""
     from minirt.meshes import mtl
 
-    libraries = mtl.library_paths(map(decoded, whole.libraries), folder)
+    libraries = mtl.library_paths(whole.libraries, folder)
     found, unused = mtl.read_libraries(libraries, folder)
-    names = ["", *map(decoded, whole.materials)]
+    names = ["", *whole.materials]
     index = {name: number for number, name in enumerate(dict.fromkeys(names))}
     if found and index.keys() - {"", *found}:
         unused.add("materials that no file has")
@@ -108,11 +108,6 @@ def materials_of(
     uses = np.searchsorted(whole.material_lines, whole.lines[faces])
     own = mtl.MeshMaterial()
     return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index), libraries
-
-
-def decoded(name: bytes) -> str:
-    """Return the name of a material or file."""
-    return name.decode("utf-8", "replace")
 
 
 def drop_absent(whole: Block) -> Iterator[str]:

@@ -43,9 +43,9 @@ class Block(NamedTuple):
     sizes: np.ndarray  # (f,) number of corners of each face
     lines: np.ndarray  # (f,) line of each face, from 1
     colours: np.ndarray  # (i, 3) of the points that have one, in [0, 1]
-    materials: np.ndarray  # (j,) names of materials, bytes
+    materials: np.ndarray  # (j,) names of materials
     material_lines: np.ndarray  # (j,) lines from which on they are those of faces
-    libraries: np.ndarray  # names of files of materials, bytes
+    libraries: np.ndarray  # names of files of materials
     unknown: np.ndarray  # lines that begin with another word
 
 
@@ -72,15 +72,13 @@ def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) 
         if (sizes < 3).any() or (corners[:, 0] < 0).any():
             raise ValueError
         with_points = [rows[index] for index in places[b"v"]]
-        has_colours = max(map(len, with_points), default=0) >= COLOURED
-        colours = number_table(
-            [row[3:6] for row in with_points if len(row) >= COLOURED] if has_colours else [], 3, 3, 3
-        )
+        colours = number_table([row[3:6] for row in with_points if len(row) >= COLOURED], 3, 3, 3)
     except (ValueError, OverflowError):
         explain(lines, first, before)
         raise
     materials, libraries = (
-        np.array([b" ".join(rows[index]) for index in places[key]], object) for key in (MATERIAL, LIBRARIES)
+        np.array([b" ".join(rows[index]).decode("utf-8", "replace") for index in places[key]], object)
+        for key in (MATERIAL, LIBRARIES)
     )
     unknown = [index for key in places.keys() - SKIPPED.union(READ) for index in places[key]]
     numbers = (first + np.array(each, np.int64) for each in (places[MATERIAL], sorted(unknown)))

@@ -12,7 +12,6 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import PictureFile
-from minirt.lanes import Vec, cross
 
 FLATNESS = 16 * 2.0**-53  # a triangle lower than this share of its largest coordinate is degenerate
 
@@ -94,8 +93,7 @@ def used_points(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np
 def edges_of(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the edges of triangles (m, 3, 3) from each corner to the next, and the cross products of the first two."""
     edges = corners[:, [1, 2, 0]] - corners
-    across = cross(Vec(*edges[:, 0].T), Vec(*edges[:, 1].T))
-    return edges, np.stack([across.x, across.y, across.z], axis=1)
+    return edges, np.cross(edges[:, 0], edges[:, 1])
 
 
 def non_degenerate(corners: np.ndarray) -> np.ndarray:

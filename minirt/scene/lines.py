@@ -8,8 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import replace
-from itertools import compress, count, islice
-from operator import not_
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -68,7 +67,7 @@ def first_unprintable(line: Line) -> int:
     body = line.text[: line.end].replace("\t", " ")
     if "\r" not in line.text and body.isprintable():
         return -1
-    return next(compress(count(), map(not_, map(str.isprintable, body))), line.text.find("\r"))
+    return next((index for index, each in enumerate(body) if not each.isprintable()), line.text.find("\r"))
 
 
 def words_of(body: str) -> list[Word]:
