@@ -15,12 +15,13 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.kernel.shading.lights import LightGrid
+from minirt.lanes import Vec
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
 from minirt.rendering.packing.bvh import build_bvh, pack_trees, without_boxes
 from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
-from minirt.rendering.packing.ray_casting import distance_in_the_middle
+from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.view import Rounding, View, in_single
 from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
@@ -28,7 +29,6 @@ from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
-NO_MEMBERS = np.zeros(0, np.int32)
 FEW = 4  # lights whose bins are used again
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
 
@@ -115,9 +115,9 @@ class Packing:
         used, colours = features(scene) - (set() if self.depth else SECONDARY), lights.colours_of(scene.camera)
         lens = None
         if "lens" in used:
-            key = "middle", numbers.tobytes()
-            focus = scene.camera.focus or cached(key, distance_in_the_middle, shapes, numbers)
-            lens = camera.lens_numbers(scene.camera, focus)
+            key, middle = ("middle", numbers.tobytes()), (Vec(*numbers[:3]), Vec(*numbers[9:12]))
+            focus = scene.camera.focus or cached(key, nearest_hits, shapes, *middle)[0]
+            lens = camera.lens_numbers(scene.camera, float(focus))
         radius, _ = camera.radius_and_focus(lens)
         usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes))
         cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
@@ -234,11 +234,8 @@ def all_but_pose(scene: Scene) -> tuple[Any, ...]:
 
 def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
-    starts, cones, members = (
-        np.zeros((len(shapes.rows), 0, 1), np.int32),
-        np.zeros((0, len(shapes.slots), 5)),
-        NO_MEMBERS,
-    )
+    starts, members = np.zeros((len(shapes.rows), 0, 1), np.int32), np.zeros(0, np.int32)
+    cones = np.zeros((0, len(shapes.slots), 5))
     if len(binned) == 1:  # in the same memory: a million shapes take long to copy
         starts, cones, members = binned[0].starts[:, None], binned[0].cones[None], binned[0].members
     elif binned:

@@ -170,10 +170,3 @@ def upright_frame(normal: Vec, roll: Roll) -> tuple[Vec, Vec]:
 def facing(way: Vec, height: DoubleDouble) -> DoubleDouble:
     """Return a height above a plane, or its opposite: the one that grows along `way`."""
     return height * np.where(dot(height.slope, Vec(way.x.high, way.y.high, way.z.high)) < 0.0, -1.0, 1.0)
-
-
-def triangle_boundary(a: Vec, b: Vec, c: Vec, point: Vec) -> Boundary:
-    """The boundary of the triangle between three corners: its plane and its edges."""
-    normal = unit(cross(b - a, c - a))
-    edges = tuple(dot(unit(cross(end - start, normal)), point - start) for start, end in ((a, b), (b, c), (c, a)))
-    return Boundary((dot(normal, point - a),), edges)

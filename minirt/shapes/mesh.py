@@ -26,7 +26,7 @@ from minirt.lanes import Number, Vec, copysign, cross, dot, maximum, minimum, un
 from minirt.materials import Attributes
 from minirt.records import record
 from minirt.shapes import triangle
-from minirt.shapes.boundary import Boundary, facing, triangle_boundary
+from minirt.shapes.boundary import Boundary, facing
 from minirt.shapes.shape import Ball, Bounds, Position, Turnable
 from minirt.shapes.triangle import plane_normals
 
@@ -237,5 +237,5 @@ def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, 
 
 def boundary(mesh: Any, point: Vec) -> Boundary:
     """As for `tr`, of a triangle with rounded corners; its normal is on the side of the normals of the file."""
-    flat = triangle_boundary(mesh.a, mesh.b, mesh.c, point)
+    flat = triangle.boundary(mesh, point)
     return Boundary((facing(mesh.normal, flat.faces[0]),), flat.limits)

@@ -35,7 +35,8 @@ from minirt.lanes import (
 )
 from minirt.meshes.triangles import unit as unit_rows
 from minirt.records import record
-from minirt.shapes.boundary import Boundary, triangle_boundary
+from minirt.shapes import boundary as exact
+from minirt.shapes.boundary import Boundary
 from minirt.shapes.compensated import Pair, minus, offset, position_error, times, value
 from minirt.shapes.shape import Ball, Position, Shape
 
@@ -208,7 +209,10 @@ def mapping(triangle: PackedTriangle, point: Vec, normal: Vec) -> tuple[Number, 
 
 def boundary(triangle: Any, point: Vec) -> Boundary:
     """Height above the triangle, and distances beyond its edges."""
-    return triangle_boundary(triangle.a, triangle.b, triangle.c, point)
+    a, b, c = triangle.a, triangle.b, triangle.c
+    normal = exact.unit(cross(b - a, c - a))
+    edges = tuple(dot(exact.unit(cross(end - start, normal)), point - start) for start, end in ((a, b), (b, c), (c, a)))
+    return Boundary((dot(normal, point - a),), edges)
 
 
 # Culling for packets of rays with a common point, by the pyramid between that point and the triangle. The side planes

@@ -70,20 +70,18 @@ class Cut(NamedTuple):
 def cut_for(region: tuple[int, int, int, int] | None, width: int, height: int) -> Cut:
     """Return what to render for a region (x, y, width, height) of a picture, or for all of it; RenderError for a region
     that does not lie in the picture."""
-    if region is None:
-        region = Region(0, 0, width, height)
-        return Cut(Crop(width, height), (height, width), (slice(None), slice(None)), region)
     try:
-        x, y, across, down = map(index, region)
+        region = Region._make(map(index, (0, 0, width, height) if region is None else region))
     except (TypeError, ValueError):
         raise RenderError(f"region must be 4 whole numbers, got {region!r}") from None
+    x, y, across, down = region
     if across < 1 or down < 1:
         raise RenderError(f"a region has at least 1x1 pixels, got {across}x{down}")
     if x < 0 or y < 0 or x + across > width or y + down > height:
-        raise RenderError(f"region {Region(*region)} does not lie in the picture of {width}x{height} pixels")
+        raise RenderError(f"region {region} does not lie in the picture of {width}x{height} pixels")
     beside, above = x % TILE, y % TILE
     crop = Crop(width, height, x - beside, y - above)
-    return Cut(crop, (above + down, beside + across), (slice(above, None), slice(beside, None)), Region(*region))
+    return Cut(crop, (above + down, beside + across), (slice(above, None), slice(beside, None)), region)
 
 
 NARROWEST, WIDEST = 1e-6, 179.9999  # degrees; fields of view of 0 and 180 are drawn as these

@@ -79,8 +79,3 @@ def nearest_hits(arrays: ShapeArrays, origin: Vec, direction: Vec) -> tuple[np.n
             nearest = np.where(closer, least, nearest)
             found = np.where(closer, primitives[start + t.argmin(axis=0)], found)
     return nearest, found
-
-
-def distance_in_the_middle(arrays: ShapeArrays, camera: np.ndarray) -> float:
-    """Return the distance of the shape in the middle of the picture, for `camera_numbers`; infinite without one."""
-    return float(hit_distances(arrays, Vec(*camera[:3]), Vec(*camera[9:12])).min(initial=inf))
