@@ -18,7 +18,6 @@ from typing import Any, ClassVar, NamedTuple
 from minirt.errors import FieldError, quoted
 from minirt.records import Immutable, record
 
-SEPARATOR = ","  # of the parts of a value
 FORBIDDEN = '\t\r\n\0#"'  # `#` begins a comment; a name with spaces is written within quotes
 
 
@@ -127,7 +126,7 @@ class Field(Immutable):
     @property
     def prefix(self) -> str:
         """Text before the value of an attribute in a line: `mirror:`, or `pattern:marble,`."""
-        return self.keyword + (SEPARATOR if ":" in self.keyword else ":")
+        return self.keyword + ("," if ":" in self.keyword else ":")
 
     @property
     def notation(self) -> str:

@@ -14,7 +14,6 @@ import numpy as np
 
 NONE, SUB, UP = 0, 1, 2  # filters of a row: its bytes, less those of the pixel before, less those of the row above
 LEVEL = 6  # of compression
-STRATEGY = zlib.Z_FILTERED
 ROWS, BLOCK = 256, 2**18  # rows filtered at once, and their bytes, at most: filtering takes eight times the memory
 LARGEST_SIDE = 2**31 - 1  # pixels
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -32,7 +31,7 @@ def encode(array: np.ndarray, texts: Mapping[str, str] | None = None) -> bytes:
     parts = [SIGNATURE, chunk(b"IHDR", header)]
     for keyword, text in (texts or {}).items():  # compressed, with neither a language nor a translated keyword
         parts.append(chunk(b"iTXt", keyword.encode("ascii") + b"\0\1\0\0\0" + zlib.compress(text.encode(), LEVEL)))
-    compressor = zlib.compressobj(LEVEL, strategy=STRATEGY)
+    compressor = zlib.compressobj(LEVEL, strategy=zlib.Z_FILTERED)
     blocks = filtered(array.reshape(height, -1), 3 * array.dtype.itemsize)
     parts += [chunk(b"IDAT", part) for block in blocks if (part := compressor.compress(block))]
     return b"".join([*parts, chunk(b"IDAT", compressor.flush()), chunk(b"IEND", b"")])

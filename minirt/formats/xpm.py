@@ -22,7 +22,6 @@ KEYS = ("c", "g", "g4", "m", "s")  # colour, grey, four levels of grey, black an
 MOST_COLOURS = 2**18
 LONGEST = 8  # characters of a pixel
 LONGEST_DEFINITION = 1000  # characters of a colour
-TRANSPARENT = 0
 
 
 class XpmError(ValueError):
@@ -103,7 +102,7 @@ def colour(definition: bytes, number: int) -> int:
         return 0xFF000000 | red << 16 | green << 8 | blue
     name = value.lower().replace("grey", "gray")
     if name in ("none", "transparent"):
-        return TRANSPARENT
+        return 0  # transparent
     if name not in names():
         raise XpmError(f"colour {number} must be one such as 'c #FF8000', 'c red' or 'c None'")
     return 0xFF000000 | names()[name]

@@ -24,7 +24,6 @@ from minirt.records import record
 
 MAPS = re.compile(r"map_Kd|(?:map_)?[Bb]ump|norm|map_Kn")
 UNUSED = re.compile(r"Ke|Tf|P[rmsc]|map_(?:Ks|Ns|d|Ke|Pr|Pm)|disp|decal|refl")
-UNREAD_FILE, UNREAD_PICTURE = "a file of materials that cannot be read", "pictures that cannot be read"
 STRENGTH = 0.02  # of a bump map with the multiplier 1
 OPTIONS = re.compile(r"^(?:-\w+ (?:(?:[-+.0-9e]+|on|off|[rgbmlz]) )*)*")  # before the name of a picture
 MULTIPLIER = re.compile(r"-bm ([0-9.]+)")
@@ -52,7 +51,7 @@ def read_libraries(paths: Iterable[Path], folder: Path) -> tuple[dict[str, MeshM
         try:
             lines = file_io.read(path, file_io.LARGEST_ASSET).decode("utf-8", "replace").splitlines()
         except FileError:
-            unused.add(UNREAD_FILE)
+            unused.add("a file of materials that cannot be read")
             continue
         for line in lines:
             key, _, value = " ".join(line.partition("#")[0].split()).partition(" ")
@@ -80,7 +79,7 @@ def material_of(said: dict[str, str], folder: Path, unused: set[str]) -> MeshMat
             try:
                 values |= map_of(key, value, folder)
             except (FileError, FieldError):
-                unused.add(UNREAD_PICTURE)
+                unused.add("pictures that cannot be read")
         elif UNUSED.fullmatch(key) and any(each != (key == "Tf") for each in three(value, 2.0)):
             unused.add(key)
     return MeshMaterial(**values)

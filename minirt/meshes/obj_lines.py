@@ -81,8 +81,7 @@ def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) 
         for key in (MATERIAL, LIBRARIES)
     )
     unknown = [index for key in places.keys() - SKIPPED.union(READ) for index in places[key]]
-    numbers = (first + np.array(each, np.int64) for each in (places[MATERIAL], sorted(unknown)))
-    uses, others = numbers
+    uses, others = (first + np.array(each, np.int64) for each in (places[MATERIAL], sorted(unknown)))
     return Block(points, uvs, normals, corners, sizes, first + faces, colours, materials, uses, libraries, others)
 
 

@@ -19,8 +19,7 @@ MAX_ERRORS = 1000  # in one file; a file with more is not a scene
 MAX_NOTICES = 1000
 MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
-PART = r'(?:"[^"]*+"|[^ \t])++'  # blanks may stand within quotes
-WORD = re.compile(PART)
+WORD = re.compile(r'(?:"[^"]*+"|[^ \t])++')  # blanks may stand within quotes
 
 
 class Line(NamedTuple):
