@@ -49,7 +49,7 @@ def pattern(element: type[Element]) -> str:
 
 @record()
 class Record(Immutable):
-    """Values of declared fields. ValueError if one is out of range."""
+    """Values of declared fields. ElementError if one is out of range."""
 
     title: ClassVar[str]  # its name in messages and documentation
 
@@ -61,7 +61,7 @@ class Record(Immutable):
             try:
                 checked = each.check(value)
             except FieldError as error:
-                raise ValueError(f"{self.title} {each.title} {error}") from None
+                raise ElementError(f"{self.title} {each.title} {error}") from None
             if checked is not value:
                 object.__setattr__(self, each.name, checked)
 

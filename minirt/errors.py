@@ -9,7 +9,7 @@
 
     ValueError
     ├── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
-    └── ElementError   fields of a scene element that do not go together
+    └── ElementError   fields of a scene element that are out of range or do not go together
 
 Only `minirt.cli` prints them.
 """
@@ -135,4 +135,4 @@ class FieldError(ValueError):
 
 
 class ElementError(ValueError):
-    """Fields of a scene element that do not go together."""
+    """Fields of a scene element, or of a record, that are out of range or do not go together."""

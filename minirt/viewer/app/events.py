@@ -60,7 +60,7 @@ class EventDispatcher:
 
     def offer(self, event: Event | str, handler: Callable[..., object], *arguments: Any) -> None:
         """Offer an event to the panel, and handle it if the panel does not take it."""
-        if self.panel and self.panel.takes(event, *arguments):
+        if self.panel and self.panel.is_open and self.panel.takes(event, *arguments):
             return
         session, screen = self.session, self.session.screen
         match event, arguments:

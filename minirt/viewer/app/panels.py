@@ -72,9 +72,8 @@ class Typing:
         """Show what is typed; nothing if it is empty."""
         session = self.session
         self.text = text
-        active = session.state.active
-        name = active.name if active else "no value"
-        session.screen.panel = Panel(f"{name}: {text}_    Enter: set it    Esc: leave it") if text else None
+        hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it"
+        session.screen.panel = Panel(hint) if text else None
         session.refresh()
 
 
@@ -179,8 +178,8 @@ class Choosing:
 
     def title(self, choice: State) -> str:
         """What a choice is called in the list."""
-        of_attribute = self._group == structure.ATTRIBUTE and choice.active
-        return translated(of_attribute.field.title if of_attribute else choice.element.title)
+        is_attribute = self._group == structure.ATTRIBUTE
+        return translated(choice.active.field.title if is_attribute else choice.element.title)
 
     def rows(self) -> list[State]:
         """The choices that contain the letters: first those that begin with them, then those of which a word does."""

@@ -85,7 +85,7 @@ def element_line(state: State) -> str:
     element, active = state.element, state.active
     words = [element.code]
     for field in fields_of(type(element)):
-        if active and field == active.field:
+        if field == active.field:
             words.append(bracketed(field_text(field, element), active.part))
         elif not field.keyed or getattr(element, field.name) != field.default:
             words.append(field_text(field, element))
@@ -136,7 +136,7 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
 def hints(state: State, every: bool) -> str:
     """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
     active, title = state.active, state.element.title
-    groups = [f"{title}: + - {active.name} {value_text(state, active)}" if active else title]
+    groups = [f"{title}: + - {active.name} {value_text(state, active)}"]
     if state.element is state.scene.camera:
         groups.append("wheel: nearer")
     if every or state.frame is not Frame.VIEW:

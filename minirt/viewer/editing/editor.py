@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import fmod
 
-from minirt.errors import ElementError, FieldError
+from minirt.errors import ElementError
 from minirt.fields import MeshFile, Point
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
@@ -104,12 +104,7 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 
 def change_value(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
-    if active is None:
-        return state.with_message(f"{state.element.title} has no size")
-    try:
-        new = active.stepped(state.element, sign * amount, state.scene, state.stride)
-    except FieldError as error:
-        return state.with_message(f"{active.name} {error}")
+    new = active.stepped(state.element, sign * amount, state.scene, state.stride)
     stepped = state.element.replace(**{active.field.name: new})
     changed = state.edit_element(keep_standing(state, stepped), f"value {active.name}", now)
     if changed is state:
@@ -131,10 +126,8 @@ def turn_wheel(sign: float, state: State, amount: float, now: float) -> State:
 
 def next_value(step: int, state: State, _amount: float, _now: float) -> State:
     """Make the next (step 1) or previous (-1) value of the selected element active."""
-    count = len(values(state.element))
-    if not count:
-        return state.with_message(f"{state.element.title} has no value to change")
-    return replace(state, value_index=(state.value_index + step) % count, last_change=None)
+    index = (state.value_index + step) % len(values(state.element))
+    return replace(state, value_index=index, last_change=None)
 
 
 def next_frame(state: State, _amount: float, _now: float) -> State:

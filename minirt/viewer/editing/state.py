@@ -60,10 +60,10 @@ class State:
         return self.scene.elements[self.selected]
 
     @property
-    def active(self) -> Value | None:
-        """The value of the selected element that keys increase and decrease; None if it has none."""
+    def active(self) -> Value:
+        """The value of the selected element that keys increase and decrease."""
         all_values = values(self.element)
-        return all_values[self.value_index % len(all_values)] if all_values else None
+        return all_values[self.value_index % len(all_values)]
 
     @property
     def stride(self) -> float:

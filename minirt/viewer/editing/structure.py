@@ -93,9 +93,8 @@ def with_attribute(before: State, field: Field) -> State:
 def remove_attribute(state: State, _amount: float, _now: float) -> State:
     """Remove the attribute of the active value from the selected element."""
     active = state.active
-    if active is None or not active.field.keyed:
-        name = active.name if active else state.element.title
-        return state.with_message(f"{name} is no attribute that can be removed")
+    if not active.field.keyed:
+        return state.with_message(f"{active.name} is no attribute that can be removed")
     after = without_attribute(state, active.field)
     if after.element == state.element:
         return state.with_message(f"{active.name} is as it is without the attribute")

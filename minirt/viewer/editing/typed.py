@@ -13,7 +13,7 @@ from math import isfinite
 from operator import add, mul, neg, pos, sub, truediv
 from typing import Any
 
-from minirt.errors import FieldError
+from minirt.errors import ElementError, FieldError
 from minirt.fields import Colour, Three, Whole
 from minirt.fields.scalars import found, number
 from minirt.viewer.editing.placing import keep_standing
@@ -26,15 +26,15 @@ PRESENT = "x"  # stands for the present value in a sum
 SIGNS = tuple("*/+-")
 
 
-def set_typed(state: State, value: Value | None, text: str, now: float) -> State:
+def set_typed(state: State, value: Value, text: str, now: float) -> State:
     """The state whose selected element has what was typed as a value, or which says what is wrong with it."""
-    if value is None:
-        return state.with_message(f"{state.element.title} has no value to type")
     try:
         return with_value(state, value, typed(value, value.get(state.element), value.current(state.element), text), now)
-    except (FieldError, ValueError) as error:
-        reason, title = str(error), state.element.title
-        return state.with_message(reason if reason.startswith(title) else f"{title} {value.name} {reason}")
+    except FieldError as error:
+        reason = f"{value.name} {error}"
+    except ElementError as error:  # of the element, or of the record that is the value of its field
+        reason = str(error).removeprefix(f"{state.element.title} ")
+    return state.with_message(f"{state.element.title} {reason}")
 
 
 def with_value(state: State, value: Value, new: Any, now: float) -> State:
@@ -45,7 +45,7 @@ def with_value(state: State, value: Value, new: Any, now: float) -> State:
 
 
 def typed(value: Value, old: Any, current: Any, text: str) -> Any:
-    """The number or triple that `text` asks for. FieldError if it is no number, or out of the field's range.
+    """The number or triple that `text` asks for, in range or not. FieldError if it is no number.
 
     `old`: the whole present value; `current`: the part of it that is active, if one is.
     """
@@ -67,16 +67,7 @@ def typed(value: Value, old: Any, current: Any, text: str) -> Any:
     given: list[Any] = [sum_of(each, present) for each, present in zip(sums, presents, strict=True)]
     if isinstance(value.leaf, Colour | Whole):
         given = [round(part) for part in given]
-    return value.leaf.check(tuple(given)) if len(given) > 1 else checked(value, given[0])
-
-
-def checked(value: Value, given: float) -> float:
-    """A number that is in the range of a value, or of the part of a triple. FieldError."""
-    if value.channel is None:
-        return value.leaf.check(given)  # type: ignore[no-any-return]
-    if isinstance(value.leaf, Three) and value.channel < Three.width:
-        return value.leaf.component.check(given)
-    return given
+    return tuple(given) if len(given) > 1 else given[0]
 
 
 def sum_of(text: str, present: float) -> float:

@@ -75,11 +75,9 @@ class Value(NamedTuple):
         return self.replaced(element, clamp(self.current(element) + steps * step, -end, end))
 
     def replaced(self, element: Element, new: Any) -> Any:
-        """The field's value with another current value. FieldError for a direction that would point nowhere."""
+        """The field's value with another current value, not checked; ElementError for one of a record out of range."""
         if self.channel is not None:
             new = with_part(self.get(element), self.channel, new)
-            if isinstance(self.leaf, Direction):
-                new = self.leaf.check(new)
         return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new
 
     def get(self, element: Element) -> Any:

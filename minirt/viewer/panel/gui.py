@@ -78,14 +78,12 @@ class Gui:
         return bool(self.io.want_text_input)
 
     def takes(self, event: Event | str, *arguments: Any) -> bool:
-        """Show an event to the panel; return whether it takes it, so that it is not one of the picture.
+        """Show an event to the open panel; return whether it takes it, so that it is not one of the picture.
 
         A button that goes down on the picture takes the keys from the panel.
         """
         taken = False
         match event, arguments:
-            case _ if not self.is_open:
-                pass
             case Event.MOTION_NOTIFY, (x, y):
                 if not self.session.pressed and (x >= self.left or self.has_popup or self.io.want_capture_mouse):
                     self.point(x, y)

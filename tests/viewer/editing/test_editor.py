@@ -6,10 +6,8 @@ from math import cos, hypot, radians, sin
 
 import pytest
 
-from minirt.element import Element
 from minirt.fields import FARTHEST, unit
 from minirt.fields.scalars import LEAST_LENGTH
-from minirt.records import record
 from minirt.scene import Camera, FurtherCamera, FurtherLight, Light, Scene, dump
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -17,7 +15,6 @@ from minirt.shapes.sphere import Sphere
 from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
 from minirt.viewer.editing.motion import rodrigues, turn_camera
 from minirt.viewer.editing.state import STEP_SHARE, State, initial_state
-from minirt.viewer.editing.typed import set_typed
 from tests.viewer.fake import scene
 
 RED = (255, 0, 0)
@@ -111,18 +108,6 @@ def test_next_value_cycles_through_the_values_and_previous_value_goes_back():
     assert after(selecting(Cylinder), "next value", "grow").element.height == pytest.approx(4 * 1.05)
     assert after(selecting(Camera), "grow").element.fov == 92
     assert after(selecting(Light), "grow").element.brightness == pytest.approx(0.55)
-
-
-def test_a_message_says_that_an_element_has_no_value():
-    @record()
-    class Mark(Element):
-        code, title, plural = "mk", "mark", "marks"
-
-    opened = scene()
-    state = initial_state(Scene((Mark(), *opened.items))).select(0)
-    assert "no size" in after(state, "grow").message
-    assert "no value" in after(state, "next value").message
-    assert "no value" in set_typed(state, state.active, "3", 0.0).message
 
 
 def test_scaling_down_stops_at_the_least_size():
