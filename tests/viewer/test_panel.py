@@ -398,7 +398,7 @@ def test_a_film_is_that_of_the_command_line_and_can_be_stopped(suffix: str, tmp_
     command = [sys.executable, "-m", "minirt", str(user.session.path), "--turntable", "3", "--size", "640x480"]
     assert run([*command, "-o", str(tmp_path / f"film{suffix}"), "--no-metadata"]).returncode == 0
     assert made.read_bytes() == (tmp_path / made.name.replace("scene-1", "film")).read_bytes()
-    user.click("pictures")
+    user.panel._pages._pictures = 3600  # a film that does not end before the click that stops it
     user.click("film")
     user.click("film")
     assert finished(user) == "the film was stopped"
@@ -498,25 +498,35 @@ def undone(state: State) -> State:
     return state
 
 
+def built_in(actions: int, name: str, folder: Path) -> Scene:
+    """The scene that a recording builds from an empty file, in so many actions."""
+    recording, file = ROOT / f"assets/{name}-panel.txt", folder / f"{name}.rt"
+    assert max(map(int, re.findall(r"# (\d+)", recording.read_text()))) == actions
+    file.touch()
+    assert main([str(file), "--replay", str(recording), "--size", "960x540", "-o", str(file.with_suffix(".png"))]) == 0
+    return load(file).scene
+
+
+def test_a_table_with_a_lamp_and_a_glass_is_built_with_the_pointer_and_the_panel(tmp_path: Path) -> None:
+    leg, top, glass, stem, shade, spot = built_in(41, "table", tmp_path).elements[4:]
+    for lower, upper in ((leg, top), (top, glass), (top, stem)):
+        assert upper.centre[1] - upper.height / 2 == pytest.approx(lower.centre[1] + lower.height / 2)
+        assert dist(upper.centre[::2], top.centre[::2]) + upper.diameter / 2 <= top.diameter / 2
+    assert shade.apex == (stem.centre[0], 3.5, stem.centre[2])  # where it was typed, though it stood elsewhere
+    assert glass.glass and shade.glow and spot.position[1] < shade.apex[1] - shade.height  # noqa: PT018
+
+
 def test_a_snowman_is_built_with_the_pointer_and_the_panel_in_25_actions(tmp_path: Path) -> None:
-    recording, built_file = ROOT / "assets/snowman-panel.txt", tmp_path / "snowman.rt"
-    assert max(map(int, re.findall(r"# (\d+)", recording.read_text()))) == 25
-    built_file.touch()
-    picture = str(tmp_path / "snowman.png")
-    assert main([str(built_file), "--replay", str(recording), "--size", "960x540", "-o", picture]) == 0
-    built = load(built_file).scene
-    body, belly, head, *eyes = built.spheres
+    head, belly, body, _light, *eyes, nose, hat, plane = built_in(25, "snowman", tmp_path).elements[2:]
     for lower, upper in ((body, belly), (belly, head)):
         assert dist(lower.centre, upper.centre) == pytest.approx((lower.diameter + upper.diameter) / 2, abs=0.01)
-    assert body.centre[1] == body.diameter / 2
+    assert (body.centre[1], plane.point[1], plane.normal) == (body.diameter / 2, 0, (0, 1, 0))
     assert [(each.diameter, each.colour) for each in eyes] == [(0.2, (0, 0, 0))] * 2
     assert all(dist(each.centre, head.centre) == pytest.approx(0.6, abs=0.03) for each in eyes)
-    (nose,), (hat,) = built.cones, built.cylinders
     outward = [a - b for a, b in zip(nose.apex, head.centre, strict=True)]
     assert nose.axis == pytest.approx([-part / hypot(*outward) for part in outward], abs=0.05)
-    assert (nose.colour, hat.colour) == ((255, 128, 0), (200, 40, 40))
-    assert hat.centre[1] > head.centre[1] + head.diameter / 2
-    assert len(built.planes) == len(built.lights) == 1
+    assert [each.colour for each in (head, nose, hat)] == [(255, 255, 255), (255, 128, 0), (0, 200, 200)]
+    assert hat.centre == (head.centre[0], head.centre[1] + (head.diameter + hat.height) / 2, head.centre[2])
 
 
 def test_slimgui_is_imported_when_the_panel_opens_and_without_it_f1_names_the_extra() -> None:

@@ -153,16 +153,17 @@ def lift_of(shape: Shape, normal: Triple) -> float:
 
 
 def keep_standing(state: State, changed: Element) -> Element:
-    """The changed version of the selected element; one that still is where it was added stands there again."""
+    """The changed selected element; one that still is where it was added stands there again, unless it is moved."""
     old, aim = state.element, state.aim
     if aim is None or not isinstance(old, Shape) or not isinstance(changed, Shape):
         return changed
     scene, stride = state.scene.edit(state.selected), state.stride
     there = settled(old, aim, scene, stride)
-    same = there.replace(**{name: getattr(old, name) for name in field_names(type(old), Point)}) == old
-    before, after = position_of(old), position_of(there)
-    stands = same and before and after and dist(before, after) < SAME * stride
-    return settled(changed, aim, scene, stride) if stands else changed
+    points = {name: getattr(old, name) for name in field_names(type(old), Point)}
+    near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
+    names = *points, *field_names(type(old), Direction)
+    stays = all(getattr(old, name) == getattr(changed, name) for name in names)
+    return settled(changed, aim, scene, stride) if near and stays and there.replace(**points) == old else changed
 
 
 def lowest_along(shape: Shape, direction: Triple) -> float:
@@ -192,9 +193,8 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
         x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
     there = shifted(shape, (x_to - x, rise, z_to - z))
     gap, support = clearance(there, others)
-    low, high = box[0][1] + rise, box[1][1] + rise
-    if support is None and high > 0:
-        gap = low
+    if support is None and box[1][1] + rise > 0:
+        gap = box[0][1] + rise
     return shifted(there, DOWN, gap) if isfinite(gap) else None
 
 

@@ -81,12 +81,12 @@ class Elements:
         imgui.same_line()
         side = imgui.get_frame_height() * 0.7
         imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
-        imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side))
+        picked = imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side))
         imgui.pop_item_flag()
         imgui.same_line()
-        flags = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK
-        title = f"{element.title} {self._names[index]}"
-        if imgui.selectable(f"{title}###element", index == state.selected, flags)[0] and index != state.selected:
+        title = f"{element.title} {self._names[index]}###element"
+        picked |= imgui.selectable(title, index == state.selected, imgui.SelectableFlags.ALLOW_DOUBLE_CLICK)[0]
+        if picked and index != state.selected:
             self._followed = index
             self.rows.gui.show(state.with_message("").select(index))
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
