@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable
 from itertools import count, islice
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from minirt.helpers.system import TooLargeError
+from minirt.kernel.bvh_build import MARGIN
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code import functions
@@ -18,7 +20,7 @@ from minirt.kernel.shading.lights import LightGrid
 from minirt.lanes import Vec
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
-from minirt.rendering.packing.bvh import build_bvh, pack_trees, without_boxes
+from minirt.rendering.packing.bvh import build_bvh, pack_trees
 from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import nearest_hits
@@ -76,8 +78,7 @@ class Packing:
         """Return the BVH over these shapes, which is kept until other ones are packed."""
         arrays = self.shape_arrays_for(shapes)
         if not self.bvh:
-            tree = build_bvh(arrays, self.kernel)
-            self.bvh = without_boxes(tree) if BOXES in self.without else tree
+            self.bvh = build_bvh(arrays, self.kernel, inf if BOXES in self.without else MARGIN)
         return self.bvh
 
     def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:

@@ -216,7 +216,7 @@ def test_the_traversal_stack_holds_the_deepest_tree() -> None:
     far = 2.0 ** np.arange(-450, 450)[:, None]
     boxes = np.hstack([np.repeat(far, 6, axis=1) * [-1, -1, -1, 1.5, 1.5, 1.5], np.zeros((900, 2))])
     nodes, leaves = wide_nodes(np.repeat(boxes, WIDTH, axis=0), functions)
-    children = nodes.reshape(-1, 7, WIDTH)[:, 6].astype(int) // NODE
+    children = nodes[:, 6].astype(int)
     deepest = np.ones(len(children), int)
     for node in range(len(children) - 1, -1, -1):  # a child comes behind its parent
         deepest[node] += (
