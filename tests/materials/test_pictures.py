@@ -90,9 +90,10 @@ def test_a_file_is_packed_once_under_all_its_names(tmp_path: Path, decodes: bool
     Image.fromarray(COLOURS).save(tmp_path / "a.png")
     Image.fromarray(COLOURS).save(tmp_path / "same_pixels.png")
     (tmp_path / "link.png").symlink_to("a.png")
+    os.link(tmp_path / "a.png", tmp_path / "hard.png")
     scene = parse("A 1 255,255,255\nC 0,0,-5 0,0,1 70\nL 0,9,0 1 255,255,255\n", str(tmp_path / "x.rt")).scene
     pool = Reader(scene)
-    names = "a.png", "link.png", "same_pixels.png", "link.png"
+    names = "a.png", "link.png", "same_pixels.png", "hard.png"
     assert [pool.number(name, Colours(decodes).texture) for name in names] == [1, 1, 2, 1]
     assert pool.arrays()["texels"].size == 2 * COLOURS.size
 

@@ -5,7 +5,6 @@ Each material states its own rows: see `minirt.materials.Material.rows`.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Hashable, Iterable, Set
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import Point, cos_and_sin
+from minirt.helpers import file_io
 from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.shading.patterns import CLOUDS, COLUMNS, MARBLE, WOOD, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
@@ -151,7 +151,7 @@ class Reader:
         self.scene = scene
         self.colours = colours_of(scene.camera)
         self.shares, self.gain = self.colours.shares, self.colours.gain
-        self.numbers: dict[tuple[PictureReader, str], int] = {}
+        self.numbers: dict[tuple[PictureReader, int, int], int] = {}  # by device and inode
         self.images: list[np.ndarray] = []
 
     def texture(self, file: str) -> int:
@@ -167,7 +167,8 @@ class Reader:
     def number(self, file: str, read: PictureReader) -> int:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         path = self.scene.beside(file)
-        key = read, os.path.realpath(path)
+        status = file_io.status(path, file_io.LARGEST_ASSET)
+        key = read, status.st_dev, status.st_ino  # which all links to it share
         if key not in self.numbers:
             self.images.append(read(path))
             check_textures(self.images)
