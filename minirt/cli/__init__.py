@@ -137,10 +137,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         (last and not options.turntable, "--frames needs --turntable"),
         (last > (options.turntable or last), f"--frames: there are {options.turntable} pictures, got {last}"),
         (options.region and (replay or not output), "--region needs -o, and no --replay"),
-        (
-            options.resume and (replay or auto or nameless),
-            f"--resume needs {NAME}, and no --replay or --samples auto",
-        ),
+        (options.resume and (replay or auto or nameless), f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
         (

@@ -41,8 +41,7 @@ def test_other_extensions_are_refused(suffix: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "advice"),
-    [("a.pgm", "it cannot hold colours, try .png"), ("a.jpgg", "try .jpg"), ("a.xyzzy", "try .png")],
+    ("name", "advice"), [("a.pgm", "it cannot hold colours, try .png"), ("a.jpgg", "try .jpg"), ("a.xyzzy", "try .png")]
 )
 def test_a_refusal_says_what_to_do(name: str, advice: str) -> None:
     with pytest.raises(RenderError, match=advice):

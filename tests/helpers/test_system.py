@@ -30,8 +30,7 @@ def default_limit() -> Iterator[None]:
 
 
 @pytest.mark.parametrize(
-    ("text", "size"),
-    [("4G", 4 * 2**30), ("512MiB", 512 * MIB), ("1048576", MIB), ("1tb", 2**40), ("1.5g", 3 * 2**29)],
+    ("text", "size"), [("4G", 4 * 2**30), ("512MiB", 512 * MIB), ("1048576", MIB), ("1tb", 2**40), ("1.5g", 3 * 2**29)]
 )
 def test_sizes_are_parsed(text: str, size: int) -> None:
     assert memory_size(text) == size

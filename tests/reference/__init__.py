@@ -75,13 +75,7 @@ def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
 
 
 def light_along(
-    scene: Scene,
-    origins: Array,
-    directions: Array,
-    weights: Array,
-    depth: int,
-    fade: float = 0.0,
-    pixel: float = 0.0,
+    scene: Scene, origins: Array, directions: Array, weights: Array, depth: int, fade: float = 0.0, pixel: float = 0.0
 ) -> Array:
     """The radiance along n rays times their weights (n, 3), by recursive ray tracing (Whitted 1980).
 

@@ -10,14 +10,7 @@ from minirt.rendering import Renderer
 from minirt.rendering.outcome import ROUNDING, Outcome
 from minirt.rendering.queries.preview import render_interpreted
 from minirt.rendering.sampling.packets import estimated_error
-from minirt.rendering.tone_mapping import (
-    NOISE,
-    blue_noise,
-    clipped_pixels,
-    map_tones,
-    rounding_error,
-    tone_named,
-)
+from minirt.rendering.tone_mapping import NOISE, blue_noise, clipped_pixels, map_tones, rounding_error, tone_named
 from minirt.scene import Background, Scene, parse
 from minirt.scene.elements import TONES
 from minirt.viewer.app.replay import replay
@@ -39,11 +32,7 @@ def narkowicz(light: float) -> float:
     return light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14) if light < 1e9 else 1.0
 
 
-CURVES = {
-    "plain": lambda light: light,
-    "srgb": encode,
-    "filmic": lambda light: encode(min(narkowicz(light), 1.0)),
-}
+CURVES = {"plain": lambda light: light, "srgb": encode, "filmic": lambda light: encode(min(narkowicz(light), 1.0))}
 
 
 def levels(light: np.ndarray, tone: str, dither: bool = False) -> np.ndarray:

@@ -121,12 +121,7 @@ def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("table", "fields"),
-    [
-        ("pictures.csv", Row._fields),
-        ("orders.csv", Order._fields),
-        ("ablation.csv", Part._fields),
-    ],
+    ("table", "fields"), [("pictures.csv", Row._fields), ("orders.csv", Order._fields), ("ablation.csv", Part._fields)]
 )
 def test_the_page_about_reports_explains_every_field(table: str, fields: tuple[str, ...]) -> None:
     own = re.split(r"\n\| `\w+\.csv` \||\n\n", README.split(f"| `{table}` |")[1])[0]

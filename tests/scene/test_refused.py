@@ -7,16 +7,7 @@ import pytest
 from minirt.errors import Problem, excerpt, quoted
 from minirt.scene.registry import nearest_element
 from tests.scene.bad_lines import BACKGROUNDS, BLANKS, COUNTS, IDENTIFIERS, LIGHTS, NUMBERS, RANGES, SHAPES, VECTORS
-from tests.scene.examples import (
-    AMBIENT,
-    CAMERA,
-    CYLINDER,
-    LIGHT,
-    PLANE,
-    SPHERE,
-    problems,
-    scene_with,
-)
+from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
 
 
 @pytest.mark.parametrize(("line", "column", "message"), SHAPES + LIGHTS + BACKGROUNDS)
@@ -39,8 +30,7 @@ TOLERATED = ("//", ", ", " ,", " 0,2 ", " 1,000 ")  # by a lenient reader, or re
 
 
 @pytest.mark.parametrize(
-    ("line", "column", "message"),
-    [case for case in NUMBERS if not any(each in case[0] for each in TOLERATED)],
+    ("line", "column", "message"), [case for case in NUMBERS if not any(each in case[0] for each in TOLERATED)]
 )
 def test_lenient_accepts_no_bad_number(line: str, column: int, message: str) -> None:
     (problem,) = problems(scene_with(line), lenient=True)

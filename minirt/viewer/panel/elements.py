@@ -16,7 +16,7 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State
-from minirt.viewer.language import translated
+from minirt.viewer.language import searchable, translated
 from minirt.viewer.panel.gui import Rgba
 from minirt.viewer.panel.rows import Rows
 
@@ -47,7 +47,7 @@ class Elements:
         self.list(LISTED * height)
         if imgui.begin_child("values", (0.0, 0.0), imgui.ChildFlags.NAV_FLATTENED):
             state = self.session.state
-            imgui.separator_text(state.element.title)
+            imgui.separator_text(translated(state.element.title))
             self.rows.show(state.selected)
             self.attributes()
         imgui.end_child()
@@ -57,7 +57,7 @@ class Elements:
         state = self.session.state
         if self._named != (state.scene, self._wanted):
             self._named, self._names = (state.scene, self._wanted), names(state.scene)
-            self._found = found(self._wanted.lower(), state.scene, self._names)
+            self._found = found(searchable(self._wanted), state.scene, self._names)
         indices = self._found
         if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
             if state.selected != self._followed and state.selected in indices:
@@ -84,7 +84,7 @@ class Elements:
         picked = imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side))
         imgui.pop_item_flag()
         imgui.same_line()
-        title = f"{element.title} {self._names[index]}###element"
+        title = f"{translated(element.title)} {self._names[index]}###element"
         picked |= imgui.selectable(title, index == state.selected, imgui.SelectableFlags.ALLOW_DOUBLE_CLICK)[0]
         if picked and index != state.selected:
             self._followed = index
@@ -149,7 +149,7 @@ def names(scene: Scene) -> list[str]:
 def found(word: str, scene: Scene, names: Sequence[str]) -> Sequence[int]:
     """Indices of the elements whose kind, code or name has what is searched for."""
     titles = zip(scene.elements, names, strict=True) if word else ()
-    titled = enumerate(f"{each.title} {each.code} {name}".lower() for each, name in titles)
+    titled = enumerate(searchable(f"{translated(each.title)} {each.code} {name}") for each, name in titles)
     return [index for index, title in titled if word in title] if word else range(len(scene.elements))
 
 

@@ -59,7 +59,7 @@ class Pages:
         state = self.session.state
         index = next((each for each in state.scene.indices_of(kind) if type(state.scene.elements[each]) is kind), None)
         if kind.required:
-            imgui.separator_text(kind.title)
+            imgui.separator_text(translated(kind.title))
         elif self.rows.box(kind.title, index is not None):
             after = structure.with_element(state, kind) if index is None else apply(state.select(index), "delete")
             self.rows.gui.show(after)

@@ -84,7 +84,7 @@ class Rows:
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
         imgui.push_id(value.name)
         imgui.align_text_to_frame_padding()
-        imgui.text(leaf.title)
+        imgui.text(translated(leaf.title))
         imgui.set_item_tooltip(leaf.doc + (f", in {leaf.range}" if leaf.range else ""))
         imgui.same_line(left + LABEL * width)
         room = (1 - LABEL) * width
@@ -153,7 +153,7 @@ class Rows:
     def box(self, title: str, is_on: bool, doc: str = "", disabled: bool = False) -> bool:
         """Show a box that switches something on and off; return whether it is clicked now."""
         imgui.begin_disabled(disabled)
-        clicked, _ = imgui.checkbox(f"{title}###{title} on", is_on)
+        clicked, _ = imgui.checkbox(f"{translated(title)}###{title} on", is_on)
         imgui.end_disabled()
         imgui.set_item_tooltip(doc)
         return bool(clicked)
