@@ -127,7 +127,7 @@ def test_the_bvh_is_built_anew_for_an_edited_scene_and_kept_for_the_same_one(mon
     minirt.trace(scene(COLUMN), origins, directions)
     built: list[Any] = []
     build = scene_packing.build_bvh
-    monkeypatch.setattr(scene_packing, "build_bvh", lambda arrays, kernel: built.append(1) or build(arrays, kernel))
+    monkeypatch.setattr(scene_packing, "build_bvh", lambda *given: built.append(1) or build(*given))
     for made, distance in ((before, 4), (before, 4), (before.replace(BALL, diameter=4), 3), (before, 4)):
         assert minirt.trace(made, origins, directions).distance.tolist() == [distance]
     assert len(built) == 3
