@@ -20,14 +20,13 @@ if TYPE_CHECKING:
 
 OPENING_PICTURE = "miniRT-opening.png"  # of a program without arguments, where no window can be opened
 STANDARD_INPUT = "standard input"
-READ_ALL_THE_SAME = "The window shows the scene as --lenient reads it"
 PLACE = "{name}"  # in an output, stands for the name of the scene's file without its extension
 
 
 def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, for_window: bool = False) -> Scene:
     """Load the scene; print its notices, one for each tolerated mistake, to `stream`. `new`: an empty file is one.
 
-    For a window what a strict reader refuses is read as --lenient does, after its error.
+    For a window a file in another dialect, which a strict reader refuses, is read as --lenient does, after its error.
     """
     from minirt.scene import Reading, load, parse
     from minirt.scene.parser import example, load_for_window
@@ -39,14 +38,15 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, f
             reading = Reading(example(options.example), ())
         elif path == "-":  # whose pictures and meshes are looked for in the current folder
             reading = parse(standard_input(), STANDARD_INPUT, options.lenient)
-        elif for_window:
-            reading, error = load_for_window(path, options.lenient, new=new)
-            if error:
-                tell(f"Error\n{error}\n{READ_ALL_THE_SAME}")
-                options.lenient = True
         else:
             try:
-                reading = load(path, options.lenient, new=new)
+                if for_window:
+                    reading, refused = load_for_window(path, options.lenient, new=new)
+                    if refused:
+                        tell(f"Error\n{refused}\nThe window shows the scene as --lenient reads it")
+                        options.lenient = True
+                else:
+                    reading = load(path, options.lenient, new=new)
             except SceneError as error:
                 if not options.lenient:
                     note_lenience(path, error)

@@ -1,4 +1,4 @@
-"""What words of other programs mean: tables for `minirt.scene.dialects`, the most frequent first.
+"""Tables of the meaning of words of other programs, for `minirt.scene.dialects`, the most frequent first.
 
 Other first words are those of elements if they have another case, or if the title of one begins so.
 """
