@@ -7,7 +7,6 @@ they stand: importing this module registers all of them, and numba finds the com
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from importlib import import_module
 from operator import attrgetter
@@ -15,9 +14,8 @@ from pkgutil import iter_modules
 from types import FunctionType
 from typing import Any
 
-import numba
-from llvmlite import binding, ir
-from numba import cfunc, config, from_dtype, types
+from llvmlite import ir
+from numba import cfunc, from_dtype, types
 from numba.core import cgutils
 from numba.core.typing import signature
 from numba.extending import intrinsic, overload
@@ -26,7 +24,7 @@ from minirt import kernel, lanes, shapes
 from minirt.kernel import scene_arrays, shading
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import item_of, item_type
-from minirt.kernel.compiler.pipeline import FLAGS, INLINED, InlinedCompiler, inline, inline_functions_of
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, named
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.lanes.compiled.memory import ADDRESS, Reference
@@ -73,25 +71,9 @@ def type_of(signature: Signature) -> Any:
 
 
 def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
-    """Return the object code of a function, "module:name", for arguments of these signatures.
-
-    Where a private interface of numba has changed, numba's own pipeline and llvmlite compile the same functions."""
-    called = named(function)
-    try:
-        compiled = compiled_entry(called, signatures)
-        return ObjectCode(compiled.native_name, compiled._library._get_compiled_object())
-    except (AttributeError, ImportError, TypeError) as error:
-        if InlinedCompiler.lean:
-            print(
-                f"kernels take twice as long to compile, as numba {numba.__version__} differs: {error}", file=sys.stderr
-            )
-        InlinedCompiler.lean = False
-    compiled = compiled_entry(called, signatures)
-    cpu, features = config.CPU_NAME or binding.get_host_cpu_name(), config.CPU_FEATURES
-    features = binding.get_host_cpu_features().flatten() if features is None else features
-    machine = binding.Target.from_default_triple().create_target_machine(cpu, features, opt=3)
-    module = binding.parse_assembly(compiled.inspect_llvm().replace("define linkonce_odr", "define internal"))
-    return ObjectCode(compiled.native_name, machine.emit_object(module))
+    """Return the object code of a function, "module:name", for arguments of these signatures."""
+    compiled = compiled_entry(named(function), signatures)
+    return ObjectCode(compiled.native_name, compiled._library._get_compiled_object())
 
 
 def compiled_entry(called: FunctionType, signatures: list[Signature]) -> Any:

@@ -19,13 +19,8 @@ from minirt.kernel.machine_code import compile_process
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess, environment
 from minirt.kernel.machine_code.fingerprint import NATIVE, V3, V4
-from minirt.kernel.machine_code.functions import frame
-from minirt.kernel.machine_code.library import LIBRARY, load
-from minirt.rendering.frame import frame_arguments
-from minirt.rendering.scene_packing import Packing
-from minirt.scene import Scene
+from minirt.kernel.machine_code.library import load
 from tests.kernel.machine_code.small_kernels import call, count, double, library, square
-from tests.kernel.pictures import AMBIENT, EYE, LAMP, SHAPES
 from tests.paths import PACKAGE, ROOT
 from tests.processes import next_line, started
 from tests.waiting import HANG_LIMIT, until
@@ -58,12 +53,6 @@ from minirt.kernel.machine_code.cache import ObjectCode
 requests = json.loads(sys.stdin.buffer.readline())
 sys.stderr.write('a warning\\n' * 200_000)
 pickle.dump([ObjectCode("f", b"code") for each in requests], sys.stdout.buffer)
-"""
-CHANGED = """
-import numba.core.codegen
-from minirt.kernel.compiler import main
-del numba.core.codegen.JITCodeLibrary
-main()
 """
 KILLED = """
 import os, sys
@@ -126,23 +115,6 @@ def test_any_amount_of_messages_is_read(monkeypatch: pytest.MonkeyPatch) -> None
     """More than a pipe holds."""
     stand_in(monkeypatch, STAND_IN)
     assert CompileProcess().compile(["one", "two"]) == [ObjectCode("f", b"code")] * 2
-
-
-def test_numbas_own_pipeline_draws_the_same_bits_with_a_notice(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    """It takes the place of the lean one where a version of numba lacks a private interface."""
-    scene = Scene((AMBIENT, EYE, LAMP, *SHAPES[:2]))
-    pictures = np.zeros((2, 40, 64, 4), np.uint8)
-    calls = [frame.call(*frame_arguments(Packing().pack(scene, 64, 40), pixels)) for pixels in pictures]
-    LIBRARY.get(calls[0])(*calls[0][1])
-    stand_in(monkeypatch, CHANGED)
-    (kernel,) = CompileProcess().compile([LIBRARY.identity(calls[1])])
-    load(kernel)(*calls[1][1])
-    assert np.array_equal(*pictures)
-    assert np.ptp(pictures[0]) > 100
-    assert "kernels take twice as long to compile" in caplog.text
-    assert "cannot import name 'JITCodeLibrary'" in caplog.text
 
 
 @pytest.mark.parametrize(
