@@ -80,7 +80,7 @@ def estimated_error(
     samples to the power of -1.5. With another tone than plain the error is that of the light of the levels, clamped to
     [0, 1]. None as soon as `is_wanted` says no, which is asked a few times a millisecond.
     """
-    total, light = 0.0, np.minimum(tone_named(tone).light, 1.0)
+    total, rounding, light = 0.0, SQUARED_ROUNDING, np.minimum(tone_named(tone).light, 1.0)
     for top in range(0, len(before), LINES):
         if not is_wanted():
             return None
@@ -90,8 +90,9 @@ def estimated_error(
             total += int(np.square(difference, dtype=np.uint16).sum(dtype=np.int64))
         else:
             total += float(np.square(light.take(a[..., :3]) - light.take(b[..., :3])).sum()) * 255**2
+            error = (255 * rounding_error(b, tone, dither=False)) ** 2
+            rounding += (error - rounding) * len(b) / (top + len(b))
     ratio = (samples / fewer) ** ERROR_EXPONENT
-    rounding = SQUARED_ROUNDING if tone == PLAIN else (255 * rounding_error(after, tone, dither=False)) ** 2
     return sqrt(total / (before.size * 3 / 4) / (1 + ratio) + rounding) / 255
 
 

@@ -29,7 +29,7 @@ from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, e
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
-WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
+WORDS_DELAY = 0.04  # seconds in which words wait for their picture, which drawing them twice would delay
 
 
 def title_of(path: Path, scene: Scene) -> str:
@@ -91,12 +91,14 @@ class Session:
         self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
-        self._drawn_at = -inf
+        self._current_at = -inf  # when the window last got a frame, or last had the words of the current scene
         self._judged: Scene | None = None  # the scene of the file whose first picture was searched for shapes
         self.watch_file(path)
 
     def show(self, state: State) -> None:
         """Make `state` the current one."""
+        if not self.words_wait:
+            self._current_at = self.now
         self.state = state
         self.screen.tips = self.screen.tips and not contents_differ(state.scene, self.opened)
         self.update()
@@ -114,8 +116,8 @@ class Session:
             self.draw()
 
     def draw_late_words(self) -> None:
-        """Draw words that wait for their picture, if the window shows no frame of the last WORDS_DELAY."""
-        if self.words_wait and self.now - self._drawn_at >= WORDS_DELAY:
+        """Draw words that have waited for their picture for WORDS_DELAY since the last frame."""
+        if self.words_wait and self.now - self._current_at >= WORDS_DELAY:
             self.draw()
 
     def draw(self) -> None:
@@ -124,8 +126,8 @@ class Session:
         self._described, self._drawn = self.state.scene, self.refinement.latest
         if self.screen.draw(self.state, self._drawn, self.refinement.resolution.rate, keys_held=bool(self.held_keys)):
             self.mlx.mlx_sync(self.display, self.mlx.SYNC_WIN_FLUSH, self.window)
-            self._drawn_at = self.now
-            self.refinement.resolution.display_times.append(self._drawn_at - start)
+            self._current_at = self.now
+            self.refinement.resolution.display_times.append(self._current_at - start)
 
     def take_screenshot(self) -> None:
         """Save the picture if a screenshot is pending and the picture is complete. FileError."""

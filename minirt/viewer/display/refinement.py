@@ -11,7 +11,7 @@ from minirt.scene import Scene
 from minirt.viewer.display.painter import Job, Outcome, Painter
 
 FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
-DIVISORS = (1, 2, 3, 4, 6, 8)  # of width and height
+DIVISORS = (1, 2, 3, 4, 6, 8, 12)  # of width and height
 FINER_SHARE = 0.8  # of the time: a finer picture must fit into it before it replaces a coarser one
 TRIAL_EXCESS = 1.5  # times the time: a finer picture that is estimated to take at most this is tried all the same ...
 TRIAL_INTERVAL = 30  # ... after so many pictures in a row

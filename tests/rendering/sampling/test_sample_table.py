@@ -239,7 +239,12 @@ def test_the_estimate_covers_all_strips() -> None:
     assert estimated_error(*TALL, 1, 4) == pytest.approx(sqrt(squared / 9 + SQUARED_ROUNDING) / 255)
 
 
-def test_an_estimate_that_is_no_longer_wanted_ends_after_a_strip() -> None:
+def test_an_estimate_that_is_no_longer_wanted_ends_after_a_strip(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines: list[int] = []  # of which the rounding error was computed between two questions
+    target = "minirt.rendering.sampling.packets.rounding_error"
+    monkeypatch.setattr(target, lambda strip, *_, **__: lines.append(len(strip)) or 0.5)
+    assert estimated_error(TALL[0], TALL[0], 1, 4, tone="srgb") == pytest.approx(0.5)
+    assert lines == [LINES, LINES, LINES, 5]
     for asked in range(4):
         questions = count()
         assert estimated_error(*TALL, 1, 4, lambda: next(questions) < asked) is None  # noqa: B023

@@ -151,7 +151,7 @@ def render_moving(resolution: AdaptiveResolution, seconds: float, always: float 
 
 @pytest.mark.parametrize(
     ("longest", "divisor"),
-    [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 6), (37, 8), (1e6, 8)],
+    [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 6), (37, 8), (1e6, 12)],
 )
 def test_the_divisor_is_as_small_as_the_render_time_allows(longest, divisor):
     resolution = AdaptiveResolution()
@@ -164,12 +164,12 @@ def test_the_divisor_is_as_small_as_the_render_time_allows(longest, divisor):
 @pytest.mark.parametrize(
     ("pictures", "divisors"),
     [
-        ([(0.06, CANCELLED)], [8, 8]),  # no time is known
-        ([(0.5, {}), (0.25, CANCELLED), (9, {"samples": 4})], [8, 1, 1, 1]),  # too short to count; refined
-        ([(0.5, {}), (3, CANCELLED), (3, CANCELLED)], [8, 1, 1, 2]),  # at least its time
-        ([(0.5, {}), (0.5, {}), (0.5, {}), (5, URGENT), (5, URGENT)], [8, 1, 1, 1, 1, 3]),
-        ([(3, {}), (30, URGENT)], [8, 2, 2]),  # late, of the former divisor
-        ([(3, {}), (0.75, {"divisor": 2, **URGENT}), (0.01, CANCELLED)], [8, 2, 2, 2]),  # at full resolution
+        ([(0.06, CANCELLED)], [12, 12]),  # no time is known
+        ([(0.5, {}), (0.25, CANCELLED), (9, {"samples": 4})], [12, 1, 1, 1]),  # too short to count; refined
+        ([(0.5, {}), (3, CANCELLED), (3, CANCELLED)], [12, 1, 1, 2]),  # at least its time
+        ([(0.5, {}), (0.5, {}), (0.5, {}), (5, URGENT), (5, URGENT)], [12, 1, 1, 1, 1, 3]),
+        ([(3, {}), (30, URGENT)], [12, 2, 2]),  # late, of the former divisor
+        ([(3, {}), (0.75, {"divisor": 2, **URGENT}), (0.01, CANCELLED)], [12, 2, 2, 2]),  # at full resolution
     ],
 )
 def test_two_slow_pictures_are_needed_to_coarsen_and_some_do_not_count(pictures, divisors):
@@ -216,7 +216,7 @@ def test_a_finer_picture_is_tried_where_coarse_ones_mislead():
     """Each picture takes at least a tenth of the frame time, at any resolution."""
     resolution, always = AdaptiveResolution(), FRAME_TIME / 10
     resolution.record(outcome(FRAME_TIME * 90))
-    assert render_moving(resolution, FRAME_TIME * 90, always) == 8  # another program had the processor
+    assert render_moving(resolution, FRAME_TIME * 90, always) == 12  # another program had the processor
     used = [render_moving(resolution, FRAME_TIME * 0.9, always) for _ in range(1000)]
     assert used[-1] == 1
     assert sum(a != b for a, b in itertools.pairwise(used)) <= 4
