@@ -96,6 +96,21 @@ def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: N
         pixels[y + i // packet_width, x + i % packet_width] = argb(lane(red, i), lane(green, i), lane(blue, i))
 
 
+def copy_levels(next_line: Any, pixels: Any, levels: Any) -> None:
+    """Copy red, green and blue of pixels, (h, 4 w) bytes in the order blue, green, red, alpha, into `levels`, (h, 3 w).
+
+    Any number of threads may do so at the same time, claiming lines from a counter until none is left.
+    """
+    while True:
+        top = fetch_add(next_line, TILE)
+        if top >= levels.shape[0]:
+            return
+        for y in range(top, min(top + TILE, levels.shape[0])):
+            line, into = pixels[y], levels[y]
+            for x in range(levels.shape[1] // 3):
+                into[3 * x], into[3 * x + 1], into[3 * x + 2] = line[4 * x + 2], line[4 * x + 1], line[4 * x]
+
+
 def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, classes: Any) -> None:
     """Find the contrast classes of rows of packets, taking the next one from the counter `next_row` until none is left.
 

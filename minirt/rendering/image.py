@@ -19,6 +19,7 @@ from minirt.errors import RenderError
 from minirt.formats import png
 from minirt.formats.table import FLOAT, check_bits, check_quality, encoding, format_of
 from minirt.helpers import file_io
+from minirt.kernel.machine_code.functions import bound, copy_levels
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
@@ -28,20 +29,14 @@ if TYPE_CHECKING:
     from minirt.rendering.threads import Run
 
 DEEP = 2**16  # levels of 16 bits
-STRIP = 64  # lines that a thread copies at once
 
 
 def rgb_of(pixels: np.ndarray, run: Run = lambda job: job()) -> np.ndarray:
     """Return red, green and blue, (h, w, 3), of pixels (h, w, 4) in the order blue, green, red, alpha; `run` runs a job
     on all threads."""
-    levels, strips = np.empty((*pixels.shape[:2], 3), np.uint8), iter(range(0, len(pixels), STRIP))
-
-    def copy_strips() -> None:
-        for top in strips:
-            for channel in range(3):  # a copy of all at once takes three times as long
-                levels[top : top + STRIP, :, channel] = pixels[top : top + STRIP, :, 2 - channel]
-
-    run(copy_strips)
+    height, width, _ = pixels.shape
+    levels, lines = np.empty((height, width, 3), np.uint8), np.ascontiguousarray(pixels).reshape(height, 4 * width)
+    run(bound(copy_levels, np.zeros(1, np.int64), lines, levels.reshape(height, 3 * width)))
     return levels
 
 

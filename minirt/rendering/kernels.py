@@ -184,12 +184,13 @@ PIXEL = np.zeros((1, 1, 4), np.uint8)
 
 
 def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
-    """Return calls of the kernels for a scene: of those that pack it and that find contrast, and of the specialised
-    one that draws it."""
+    """Return calls of the kernels for a scene: of those that pack it, that find contrast and that copy levels, and of
+    the specialised one that draws it."""
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
-    return [*recorder.calls.values(), classify_call(), functions.frame.call(*frame_arguments(arrays, PIXEL))]
+    others = classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
+    return [*recorder.calls.values(), *others, functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
 
 def generic_call(generic: GenericKernel) -> Call:

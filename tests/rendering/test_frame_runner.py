@@ -19,6 +19,7 @@ from minirt.kernel.frame import CANCELLED
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import Renderer, frame_runner, threads
 from minirt.rendering.frame import sample_positions
+from minirt.rendering.image import rgb_of
 from minirt.rendering.threads import ThreadPool, usable_cores
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture
@@ -45,6 +46,12 @@ def cancelled(renderer: Renderer, work: Callable[[], Answer]) -> Answer:
     thread.join(HANG_LIMIT)
     (answer,) = answers
     return answer
+
+
+@pytest.mark.parametrize("part", [np.s_[:], np.s_[3:41, 5:30], np.s_[:0]])
+def test_all_threads_copy_the_levels_of_pixels(part: tuple[slice, ...]) -> None:
+    pixels = np.random.default_rng(1).integers(0, 256, (50, 37, 4), np.uint8)[part]
+    assert np.array_equal(rgb_of(pixels, Renderer(2).runner.run_on_all), pixels[..., 2::-1])
 
 
 def test_cancelling_ends_a_long_frame_and_the_next_is_right() -> None:
