@@ -43,8 +43,7 @@ from minirt.shapes.shape import Ball, Position, Shape
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
 ROUNDINGS = 1.5  # by which a ray that hits a triangle may pass beside it
 CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
-ROUNDED = 2.0**-20  # in float32, where the pyramid of a small triangle may be as narrow as its margin
-APART = 1024  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
+APART = 256  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
@@ -216,8 +215,8 @@ def boundary(triangle: Any, point: Vec) -> Boundary:
 
 
 # Culling for packets of rays with a common point, by the pyramid between that point and the triangle. The side planes
-# of the pyramid are the same for all rays of a packet. So this test takes a third of the time of an intersection, and
-# in a mesh with triangles as small as pixels nearly every triangle that passes it is hit.
+# of the pyramid are the same for all rays of a packet. So this test takes half of the time of an intersection, and in
+# a mesh with triangles as small as pixels nearly every triangle that passes it is hit.
 
 
 def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
@@ -227,16 +226,14 @@ def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active
     triangle, as seen from the apex, cannot hit it.
     """
     a, b, c = triangle.a - apex, triangle.b - apex, triangle.c - apex
-    size = maximum(maximum(max_norm(a), max_norm(b)), max_norm(c))
-    far = splat(size, direction.x)
+    ab, bc, ca = triangle.b - triangle.a, triangle.c - triangle.b, triangle.a - triangle.c
+    far = splat(maximum(maximum(max_norm(a), max_norm(b)), max_norm(c)), direction.x)
     if start is not None:
         far = far + max_norm(apex - start)
         active = active & (depth_behind_plane(triangle, dot(triangle.normal, a), start) >= 0.0)
-    rounding, edge = APART * unit_roundoff(direction.x), maximum(max_norm(b - a), max_norm(c - a))
-    is_hopeless = rounding > ROUNDED and not any(edge * edge >= rounding * size * size)  # of rays through a lens, too
-    if not is_hopeless and any(active):
-        of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
-        margin = rounding * size * far
+    if any(active):
+        of_a, of_b, of_c = dot(cross(b, bc), direction), dot(cross(c, ca), direction), dot(cross(a, ab), direction)
+        margin = APART * unit_roundoff(direction.x) * maximum(max_norm(ab), max_norm(ca)) * far
         least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
         active = active & ((least >= -margin) | (most <= margin))
     return active

@@ -222,15 +222,16 @@ def test_no_ray_that_hits_is_culled(seed: int, regime: tuple[float, float, float
         assert not (hit & ~tried).any()
 
 
+@pytest.mark.parametrize(("number", "distance", "least"), [(np.float64, 5.0, -6), (np.float32, 500.0, 0)])
 @pytest.mark.parametrize("seed", range(5))
-def test_rays_beside_the_triangle_are_culled(seed: int) -> None:
-    corners, apex, normal, _, random = drawn(seed, 1.0, 10.0, 5.0, np.float64)
+def test_rays_beside_the_triangle_are_culled(seed: int, number: type, distance: float, least: int) -> None:
+    corners, apex, normal, _, random = drawn(seed, 1.0, 10.0, distance, number)
     outside = random.dirichlet(np.ones(3), COUNT)
-    outside[:, 0] = -(10.0 ** random.uniform(-6, 2, COUNT))
+    outside[:, 0] = -(10.0 ** random.uniform(least, 2, COUNT))
     outside[:, 1] = 1 - outside[:, 0] - outside[:, 2]
     aim = outside @ corners - apex
-    direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
-    given = packed(corners, normal), vec(apex, np.float64)
+    direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
+    given = packed(corners, normal, number), vec(apex, number)
     assert not may_meet(*given, None, direction, np.ones(COUNT, bool)).any()
 
 
