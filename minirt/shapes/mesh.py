@@ -22,7 +22,7 @@ import numpy as np
 from minirt import meshes
 from minirt.element import fields_of
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
-from minirt.lanes import Number, Vec, copysign, cross, dot, maximum, minimum, unit, where
+from minirt.lanes import Number, Vec, any, copysign, cross, dot, max_norm, maximum, minimum, unit, where
 from minirt.materials import Attributes
 from minirt.records import record
 from minirt.shapes import triangle
@@ -193,8 +193,11 @@ def barycentric_coordinates(mesh: PackedMeshTriangle, point: Vec) -> tuple[Numbe
 def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
     """Interpolate the normals of the corners (Phong, Illumination for Computer Generated Pictures, 1975).
 
-    Where they cancel the triangle's own `normal` is used.
+    Where they cancel, or are all that of the triangle, its own `normal` is used.
     """
+    apart = maximum(max_norm(mesh.normal_a - mesh.normal), max_norm(mesh.normal_b - mesh.normal))
+    if not any(maximum(apart, max_norm(mesh.normal_c - mesh.normal)) > 0.0):
+        return normal
     of_a, of_b, of_c = barycentric_coordinates(mesh, point)
     mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
     return unit(where(dot(mean, mean) > OPPOSED, mean, normal))
