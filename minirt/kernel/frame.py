@@ -109,14 +109,15 @@ def frame(
                         tile = tile_at(scene, x, y, across)
                         empty = not has_environment(scene) and is_empty(scene, tile)
                     if empty:
-                        store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
+                        radiance = background_light(scene, zero > 0.0, black, black)
+                        store_packet(pixels, linear, sums, place, x, y, radiance)
                         continue
                     remember_spacing(scene, memory, samples, estimate)
                     radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
                     if rarely(samples > 1):
                         radiance = accumulate(radiance, sums, place, sample) / samples
                     if sample == samples - 1:
-                        store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, item)
+                        store_estimate(pixels, linear, errors, sums, place, x, y, radiance, item)
 
 
 def tile_at(scene: SceneArrays, x: int, y: int, across: int) -> int:

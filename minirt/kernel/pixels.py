@@ -35,15 +35,15 @@ def to_byte_range(channel: Number) -> Number:
 
 
 def store_estimate(
-    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, item: int
+    pixels: Any, linear: Any, errors: Any, sums: Any, place: int, x: int, y: int, radiance: Vec, item: int
 ) -> None:
-    """Store the radiance of a packet in the picture, and where references tell its squared error, that error. `item` is
-    the packet's row in the plan; negative without a plan."""
-    if estimate == 0:
-        store_packet(pixels, linear, x, y, radiance)
+    """Store the radiance of a packet, and where references tell its squared error, that error. Its `place` in `sums` is
+    that of an estimate where `item`, the packet's row in the plan, is not negative; it is negative without a plan."""
+    if item < 0 or place == 0:
+        store_packet(pixels, linear, sums, place, x, y, radiance)
     if rarely(item >= 0):
-        save_vec(radiance, sums, estimate * ESTIMATE)
-        if estimate == 2:
+        save_vec(radiance, sums, place)
+        if place == 2 * ESTIMATE:
             errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
 
 
@@ -65,23 +65,25 @@ def squared_error(sums: Any, height: int, across: int, count: int) -> float:
     return total
 
 
-def store_packet(pixels: Any, linear: Any, x: int, y: int, radiance: Vec) -> None:
-    """Store the radiance of a packet in the picture, except for pixels beyond the picture's edges."""
+def store_packet(pixels: Any, linear: Any, sums: Any, place: int, x: int, y: int, radiance: Vec) -> None:
+    """Store the radiance of a packet, except for pixels beyond the edges. Overwrites its `place` in `sums`."""
     height, across = pixels.shape
     has_linear = linear.shape[0] > 0
-    packet_width = width(radiance.x) // PACKET_HEIGHT
+    count = width(radiance.x)
     red, green, blue = to_byte_range(radiance.x), to_byte_range(radiance.y), to_byte_range(radiance.z)
-    if rarely(has_linear or x + packet_width > across or y + PACKET_HEIGHT > height):
-        for i in range(width(radiance.x)):
-            column, row = x + i % packet_width, y + i // packet_width
-            if column < across and row < height:
-                pixels[row, column] = argb(lane(red, i), lane(green, i), lane(blue, i))
-                if has_linear:
-                    linear[row, column, 0] = lane(radiance.x, i)
-                    linear[row, column, 1] = lane(radiance.y, i)
-                    linear[row, column, 2] = lane(radiance.z, i)
-    else:
+    is_whole = x + count // PACKET_HEIGHT <= across and y + PACKET_HEIGHT <= height
+    if is_whole:
         store_block(pixels, x, y, red, green, blue)
+    if rarely(has_linear or not is_whole):
+        save_vec(radiance, sums, place)
+        for i in range(count):
+            column, row = x + i % (count // PACKET_HEIGHT), y + i // (count // PACKET_HEIGHT)
+            if column < across and row < height:
+                if not is_whole:
+                    pixels[row, column] = argb(lane(red, i), lane(green, i), lane(blue, i))
+                if has_linear:
+                    for channel in range(3):
+                        linear[row, column, channel] = sums[place + channel * count + i]
 
 
 def argb(red: float, green: float, blue: float) -> int:

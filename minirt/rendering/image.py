@@ -70,7 +70,7 @@ class Image:
         light, curve = self.light("16 bits"), tone_named(self.tone, DEEP)
         levels = np.empty(light.shape, np.uint16)
         for into, row in zip(levels, light, strict=True):
-            into[...] = curve.nearest(row)
+            into[...] = np.searchsorted(curve.halfway, row, "right")
         return levels
 
     def light(self, what: str) -> np.ndarray:

@@ -50,6 +50,8 @@ def test_levels_are_the_nearest_on_the_curve(tone: str) -> None:
     made = levels(LIGHT[None], tone)[0]
     assert np.abs(made - exact).max() <= 0.5 + 1e-9
     assert (made == np.floor(exact + 0.5)).mean() > 0.9999  # others lie half-way but for rounding
+    halfway = tone_named(tone).halfway
+    assert np.array_equal(levels(np.stack([halfway, np.nextafter(halfway, 0)]), tone), [range(1, 256), range(255)])
 
 
 @pytest.mark.parametrize("tone", TONES)
