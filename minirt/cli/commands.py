@@ -75,6 +75,8 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     from minirt.rendering.renderer import renderer
     from minirt.viewer.app import desktop
 
+    chosen = renderer(options.threads, options.precision, options.depth, options.dither)
+    chosen.moves_in_single = chosen.precision == "double" and not any("--prec" in each for each in options.command)
     try:
         return desktop.run(
             scene,
@@ -86,7 +88,7 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
             watch=options.watch,
             text_scale=options.text_scale,
             saved=saved,
-            renderer=renderer(options.threads, options.precision, options.depth, options.dither),
+            renderer=chosen,
         )
     except MlxError as error:
         if not options.fallback:

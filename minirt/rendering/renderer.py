@@ -51,6 +51,7 @@ class Renderer:
             raise RenderError(f"precision must be double or single, got '{precision}'")
         self.threads = usable_cores() if threads is None else check_whole("threads", threads, 1)
         self.precision = precision
+        self.moves_in_single = precision == "double"  # in a window, see `minirt.viewer.display.precision`
         self.depth = DEPTH if depth is None else check_whole("depth", depth, 0, MAX_DEPTH)
         self.dither = dither
         self.without = without

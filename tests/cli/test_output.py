@@ -177,6 +177,18 @@ def test_the_last_frame_of_a_replay_is_the_rendered_picture(run: Run, folder: Pa
     assert np.array_equal(pixels(ended.out), rendered(40, 30, int(samples[1]) if samples else 1))
 
 
+def test_a_precision_that_was_asked_for_holds_in_the_window_while_something_moves(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from minirt.viewer.app import desktop
+
+    passed: list[bool] = []
+    monkeypatch.setattr(desktop, "run", lambda *_, renderer, **more: passed.append(renderer.moves_in_single) or 0)
+    for options in ([], ["--precision", "double"], ["--precision=single"], []):
+        run("ball.rt", *options)
+    assert passed == [True, False, False, True]
+
+
 def test_the_default_samples_of_the_window_are_more_than_of_a_file(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     from minirt.viewer.app import desktop
 

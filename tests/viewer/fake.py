@@ -80,6 +80,7 @@ class FakeRenderer:
         if self.stops:
             self.gate.set()
 
+    moves_in_single = False
     about: tuple[str, ...] = ()
     pick = staticmethod(pick)
 

@@ -135,13 +135,10 @@ class EventDispatcher:
     def on_tick(self) -> None:
         """A sixtieth of a second passed while a key is held or words wait for their picture."""
         session = self.session
-        waited = session.words_wait
         state, now = session.state, session.now
         for held in session.held_keys.values():
             state = held.advance(state, held.steps(now), session.step, now)
         session.show(state)
-        if waited:
-            session.draw_late_words()
         if self.panel and self.panel.is_busy:
             self.panel.frame()
 

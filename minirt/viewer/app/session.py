@@ -7,7 +7,6 @@ newer than the picture: those of a new scene are drawn with its first picture, o
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf
 from pathlib import Path
 
 from minirt.errors import MiniRTError, RenderError
@@ -91,7 +90,7 @@ class Session:
         self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
-        self._current_at = -inf  # when the window last got a frame, or last had the words of the current scene
+        self._current_at = self.now  # when the window last got a frame, or last had the words of the current scene
         self._judged: Scene | None = None  # the scene of the file whose first picture was searched for shapes
         self.watch_file(path)
 
@@ -111,13 +110,9 @@ class Session:
         self.refinement.request_missing(self.shown_scene, moving=bool(self.held_keys) or self.slides)
 
     def refresh(self) -> None:
-        """Draw the window, unless words wait for their picture and it has not come."""
-        if not self.words_wait or self.refinement.latest is not self._drawn:
-            self.draw()
-
-    def draw_late_words(self) -> None:
-        """Draw words that have waited for their picture for WORDS_DELAY since the last frame."""
-        if self.words_wait and self.now - self._current_at >= WORDS_DELAY:
+        """Draw the window, unless words wait for their picture and it has not come, for at most WORDS_DELAY."""
+        is_late = self.now - self._current_at >= WORDS_DELAY
+        if is_late or not self.words_wait or self.refinement.latest is not self._drawn:
             self.draw()
 
     def draw(self) -> None:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.sampling.packets import estimated_error
 from minirt.scene import Scene
+from minirt.viewer.display.precision import MovingPrecision
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 
@@ -51,18 +52,6 @@ class Job:
         """Whether this is a picture, however coarse, of that scene at that size."""
         return self.scene is scene and (self.width, self.height) == (width, height)
 
-    @property
-    def is_final(self) -> bool:
-        """Whether no better picture of the same scene follows."""
-        return self.divisor == 1 and self.samples >= self.goal
-
-    def next(self, pixels: Pixels) -> Job:
-        """Return the job that follows when this one gave `pixels`: full resolution, or more samples."""
-        if self.divisor > 1:
-            return replace(self, divisor=1, urgent=False)
-        samples = min(PASS_GROWTH * self.samples, self.goal)
-        return replace(self, urgent=False, samples=samples, base=pixels, base_samples=self.samples)
-
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -74,7 +63,21 @@ class Outcome:
     seconds: float = 0.0  # of rendering; 0 in simulated time
     error_estimate: float | None = None  # of a refined picture: see `minirt.rendering.sampling.packets`
     preview: bool = False  # another picture follows when the kernel is ready
+    single: bool = False  # in single precision, as something moves
     about: tuple[str, ...] = ()  # notes on how it was rendered
+
+    @property
+    def is_final(self) -> bool:
+        """Whether no better picture of the same scene follows."""
+        return self.job.divisor == 1 and self.job.samples >= self.job.goal and not self.single
+
+    def next(self) -> Job:
+        """Return the job that follows this picture: full resolution in double precision, or more samples."""
+        job = self.job
+        if job.divisor > 1 or self.single:
+            return replace(job, divisor=1, urgent=False)
+        samples = min(PASS_GROWTH * job.samples, job.goal)
+        return replace(job, urgent=False, samples=samples, base=self.pixels, base_samples=job.samples)
 
 
 class Painter:
@@ -130,6 +133,7 @@ class BackgroundPainter(Painter):
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, lambda: self._closed or notify())
         renderer.specialise_early()
+        self._precision = MovingPrecision(renderer)
         self._changed = threading.Condition()
         self._waiting: Job | None = None
         self._running: Job | None = None
@@ -157,8 +161,9 @@ class BackgroundPainter(Painter):
             self._changed.notify_all()
         if self._threads[0].ident is None:
             return True
-        self.renderer.stop()
-        self.renderer.cancel()
+        for each in (self.renderer, self._precision.single):
+            each.stop()
+            each.cancel()
         end = time.monotonic() + patience
         for thread in self._threads:
             thread.join(max(0.0, end - time.monotonic()))
@@ -182,7 +187,10 @@ class BackgroundPainter(Painter):
                     self.outcomes = [each for each in self.outcomes if each.pixels is None]
                 if outcome:
                     self.outcomes.append(outcome)
+                is_idle = outcome and outcome.pixels is not None and not self._waiting
             self.notify()
+            if is_idle and job.samples == 1:
+                self._precision.judge(job.scene, *job.shape[1::-1])
 
     def _render(self, job: Job) -> Outcome | None:
         """Render a job, or its preview while its kernel is missing; None if it has neither."""
@@ -192,9 +200,13 @@ class BackgroundPainter(Painter):
             except Exception as error:
                 return Outcome(job, error=error)
             return None if pixels is None else Outcome(job, pixels, preview=True)
-        start = time.perf_counter()
-        outcome = paint(self.renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
-        return replace(outcome, seconds=time.perf_counter() - start)
+        single, start = self._precision.is_single(urgent=job.urgent), time.perf_counter()
+        renderer = self._precision.single if single else self.renderer
+        outcome = paint(renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
+        seconds = time.perf_counter() - start
+        if job.urgent and outcome.pixels is not None:
+            self._precision.record(seconds / outcome.pixels.size, single=single)
+        return replace(outcome, seconds=seconds, single=single)
 
     def _is_soon_prepared(self, job: Job) -> bool:
         """Start to prepare the kernel, unless that has begun; return whether it is ready within PREVIEW_DELAY."""

@@ -35,7 +35,7 @@ class Refinement:
     @property
     def complete(self) -> bool:
         """Whether the latest picture is the final one of the last request."""
-        return self._answer is not None and self._answer.job.is_final
+        return self._answer is not None and self._answer.is_final
 
     def request_missing(self, scene: Scene, moving: bool) -> None:
         """Request the next picture of a scene, if one is missing; `moving`: the scene will change again soon."""
@@ -46,8 +46,8 @@ class Refinement:
         elif not last.shows(scene, width, height):
             divisor = self.resolution.divisor(width, height)
             self._request(Job(scene, width, height, divisor, urgent=True, goal=self.samples))
-        elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.job.is_final:
-            self._request(last.next(answer.pixels))
+        elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.is_final:
+            self._request(answer.next())
 
     def collect(self) -> list[Exception]:
         """Take the outcomes of the painter; return the errors among them."""

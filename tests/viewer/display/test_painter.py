@@ -215,8 +215,8 @@ def test_a_request_before_the_renderer_can_be_cancelled_still_cancels(harness):
 def test_samples_grow_fourfold_per_pass_up_to_the_goal(goal, passes):
     job, samples = replace(JOB, goal=goal, urgent=True), []
     pixels = np.zeros(JOB.shape, np.uint8)
-    while not job.is_final:
-        job = job.next(pixels)
+    while not (outcome := Outcome(job, pixels)).is_final:
+        job = outcome.next()
         samples.append(job.samples)
         assert job.base is pixels
         assert not job.urgent
@@ -225,5 +225,6 @@ def test_samples_grow_fourfold_per_pass_up_to_the_goal(goal, passes):
 
 def test_after_a_coarse_picture_follows_full_resolution():
     coarse = replace(JOB, divisor=3, goal=16, urgent=True)
-    assert not coarse.is_final
-    assert coarse.next(np.zeros(coarse.shape, np.uint8)) == replace(JOB, goal=16)
+    outcome = Outcome(coarse, np.zeros(coarse.shape, np.uint8))
+    assert not outcome.is_final
+    assert outcome.next() == replace(JOB, goal=16)
