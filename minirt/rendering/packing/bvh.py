@@ -97,8 +97,8 @@ def wide_nodes(
     tree = BinaryTree(boxes, bounds, links, *scratch, found, width)
     kernel.divide(tree)
     children, references = np.empty((2, found[0] // 2 + 1, width), np.int64)
-    leaves = np.empty(found[0], np.int64)
-    kernel.collapse(tree, children, references, leaves)
+    leaves, areas = np.empty(found[0], np.int64), np.empty((found[0], width))
+    kernel.collapse(tree, areas, np.empty((found[0], width + 1), np.int8), children, references, leaves)
     node_count, leaf_count = found
     children, references = children[:node_count], references[:node_count, None]
     with np.errstate(invalid="ignore"):  # an empty tree has a box of infinities

@@ -235,11 +235,12 @@ def test_a_ray_visits_few_leaves() -> None:
     assert len(scene.nodes) // NODE < 27_000 / 16
 
 
-def test_leaves_are_nearly_full() -> None:
-    # A leaf costs the same however full it is, so splits into multiples of `WIDTH` are cheaper.
+def test_leaves_and_nodes_are_nearly_full() -> None:
+    # They cost the same however full they are, so splits into multiples of `WIDTH` are cheaper.
     random = np.random.default_rng(3)
     scene = build_tree([sphere(*place, 1) for place in random.uniform(0, 100, (10_000, 3))])
     assert 0.85 * WIDTH * len(scene.groups[0].labels) < 10_000
+    assert 0.6 * WIDTH * len(scene.nodes) / NODE < len(scene.groups[0].labels)
 
 
 def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> list[int]:
