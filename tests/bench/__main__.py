@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+from argparse import ArgumentParser
 from functools import lru_cache, partial
 from importlib.util import find_spec
 from itertools import cycle
@@ -134,4 +134,6 @@ def main(quick: bool) -> None:
 
 
 if __name__ == "__main__":
-    main("--quick" in sys.argv[1:])
+    parser = ArgumentParser("python -m tests.bench")
+    parser.add_argument("--quick", action="store_true", help="fewer rounds, and fewer spheres of the growth")
+    main(parser.parse_args().quick)
