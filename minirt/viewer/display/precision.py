@@ -11,7 +11,7 @@ from minirt.scene import Scene
 
 JUDGED = 16  # pictures of a movement after which its scene is judged again, which takes 1 to 5 ms
 GROWTH = 1.1  # of a cost from one picture to the next, at most; single precision must be faster by as much
-MOST_SHAPES = 20_000  # beside the triangles of meshes: packing more in both precisions takes too long
+MOST_SHAPES = 12_000  # or triangles of meshes: judging more for the first time would delay a key by 40 ms or more
 
 
 class MovingPrecision:
