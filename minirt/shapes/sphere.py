@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, outlined, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.compensated import minus, offset, position_error, scalar_product, square_of, value, zero_within
@@ -81,10 +81,8 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number |
         close = hit & close
         product = chord
         if rarely(close):
-            exact = offset(splat(origin, chord), splat(sphere.centre, chord))
-            product = value(minus(scalar_product(exact, exact), square_of(sphere.radius, chord)))
-            chord = where(close, approach * approach - product, chord)
-            product = zero_within(product, 2.0 * sphere.radius * position_error(origin, f))
+            power, product = exact_power(splat(sphere.centre, t), splat(sphere.radius, t), splat(origin, t))
+            chord = where(close, approach * approach - power, chord)
         half = sqrt(chord)
         near = approach - half
         far = approach + half
@@ -94,6 +92,14 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number |
         t = where(near > 0.0, near, far)
         hit = hit & (t > 0.0)  # NaN where there is no chord
     return hit, t
+
+
+@outlined
+def exact_power(centre: Vec, radius: Number, origin: Vec) -> tuple[Number, Number]:
+    """Compute the power of an origin without cancellation; the second one is exactly 0 for an origin on the sphere."""
+    f = offset(origin, centre)
+    power = value(minus(scalar_product(f, f), square_of(radius, radius)))
+    return power, zero_within(power, 2.0 * radius * position_error(origin, origin - centre))
 
 
 def surface(sphere: PackedSphere, point: Vec) -> tuple[Vec, Vec]:
