@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import frame_runner, renderer
 from minirt.rendering.frame import Frame
@@ -57,7 +56,7 @@ def packets_of(frame: Frame) -> int:
     if not len(frame.plan):
         return samples * packets(width, height, numbers // 3)
     drawn, probed = frame.plan[:, 3], frame.plan[:, 4] > 0
-    return int(drawn.sum() + 2 * REFERENCE_SAMPLES * drawn[probed].sum())
+    return int(drawn.sum() + 2 * drawn[probed].sum())
 
 
 def packets(width: int, height: int, rays: int = 16) -> int:

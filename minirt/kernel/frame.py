@@ -14,9 +14,6 @@ from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.trace import is_empty
 from minirt.lanes import Number, Vec, lane, load, load_vec, rarely, splat, unit, where, width
 
-# Samples of a reference by those of what is drawn. Errors differ more between packets than estimates of one of them do:
-# more packets tell more than better references.
-REFERENCE_SAMPLES = 1
 CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
 
 
@@ -67,10 +64,10 @@ def frame(
     has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of a packet's rays, less the direction
     through the packet's upper left corner; where the scene has a lens or light sources with a size it is longer, see
     `minirt.kernel.shading.lights`. `plan` (k, 5) has for each packet to draw its column and row among the packets,
-    its first row in `rays`, its number of samples, and the first row of two reference estimates, each of
-    `REFERENCE_SAMPLES` times as many samples, 0 for none. Without rows all packets take all rows of `rays`. `errors`
-    (k,) receives the squared errors of packets with references, see `squared_error`. A counter set to `CANCELLED` from
-    outside ends the frame at the next packet.
+    its first row in `rays`, its number of samples, and the first row of two reference estimates, each of as many
+    samples, 0 for none. Without rows all packets take all rows of `rays`. `errors` (k,) receives the squared errors of
+    packets with references, see `squared_error`. A counter set to `CANCELLED` from outside ends the frame at the next
+    packet.
     """
     height, across = pixels.shape
     packet_width = width(rays) // PACKET_HEIGHT
@@ -127,19 +124,16 @@ def tile_at(scene: SceneArrays, x: int, y: int, across: int) -> int:
 
 def planned_rays(plan: Any, item: int) -> int:
     """Return the number of rays that each pixel of a packet takes by plan."""
-    references = 0 if plan[item, 4] == 0 else 2 * REFERENCE_SAMPLES
-    return int(plan[item, 3] * (1 + references))
+    return int(plan[item, 3] * (1 if plan[item, 4] == 0 else 3))
 
 
 def planned(plan: Any, item: int, turn: int) -> tuple[int, int, int, int]:
     """Return what a packet takes when a pixel has taken `turn` rays before: the number of the estimate, the row of
     `rays`, the number of the sample in that estimate, and the number of its samples."""
     first, samples, reference = plan[item, 2], plan[item, 3], plan[item, 4]
-    if turn < samples:
-        return 0, first + turn, turn, samples
-    each, turn = REFERENCE_SAMPLES * samples, turn - samples
-    estimate = turn // each
-    return 1 + estimate, reference + turn, turn - estimate * each, each
+    estimate = turn // samples
+    row = first + turn if estimate == 0 else reference + turn - samples
+    return estimate, row, turn - estimate * samples, samples
 
 
 def tile_count(pixels: int, square: int = TILE) -> int:

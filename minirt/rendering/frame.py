@@ -1,9 +1,9 @@
 """Arguments of the kernel for a picture or a part of it, and sample positions.
 
 Automatic sampling draws by a table: for some numbers of samples those of `--samples N`, a centred lattice, which has
-the least error, and references that tell their error. These are a lattice of `REFERENCE_SAMPLES` times as many, shifted
-at random in each pixel of a packet and wrapped around (Cranley and Patterson, Randomization of number theoretic methods
-for multiple integration, 1976): their mean over all shifts is the exact light.
+the least error, and references that tell their error. These are the same lattice, shifted at random in each pixel of a
+packet and wrapped around (Cranley and Patterson, Randomization of number theoretic methods for multiple integration,
+1976): their mean over all shifts is the exact light.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT, SUMS
 from minirt.kernel.shading.patterns import SPACING
 from minirt.lanes import width
@@ -143,13 +142,13 @@ class SampleTable:
             count, most = int(COUNTS[level]), 2 ** (packets - 1).bit_length()
             if not packets:
                 continue
-            pairs = min(max(REFERENCE_ROWS // (2 * REFERENCE_SAMPLES * count), 1), VARIANTS, most)
+            pairs = min(max(REFERENCE_ROWS // (2 * count), 1), VARIANTS, most)
             drawn = min(camera.variants_of(count), most) if with_places else 1
             self.variants[level], self.drawn_variants[level] = pairs, drawn
             pairs *= with_references
             self.first[level], self.reference[level] = rows, rows + count * drawn
             parts.append(positions_of(count, drawn, pairs, pixels, with_places))
-            rows += count * (drawn + 2 * REFERENCE_SAMPLES * pairs)
+            rows += count * (drawn + 2 * pairs)
         self.positions = np.concatenate(parts)
 
     def plan(self, levels: np.ndarray) -> np.ndarray:
@@ -158,7 +157,7 @@ class SampleTable:
         chosen = (random_numbers(len(levels)) * self.drawn_variants[levels]).astype(np.int32)
         if self.with_references:
             pair = np.arange(len(levels)) % self.variants[levels]
-            references = self.reference[levels] + 2 * REFERENCE_SAMPLES * counts * pair
+            references = self.reference[levels] + 2 * counts * pair
         return np.stack([self.first[levels] + counts * chosen, counts, references], axis=1)
 
 
@@ -167,16 +166,13 @@ def positions_of(count: int, drawn: int, pairs: int, pixels: int, with_places: b
     """The positions of variants of drawn samples and of their references, or also the places in lens and lights."""
     # Shifts of both references of each pair, independent and the same at each call.
     shifts = random_numbers(2 * pairs * pixels * 2).reshape(2 * pairs, pixels, 2)
-    lattice = sample_positions(REFERENCE_SAMPLES * count)
+    lattice = sample_positions(count)
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
     positions = np.tile(sample_positions(count)[:, None], (drawn, pixels, 1)), references.reshape(-1, pixels, 2)
     if not with_places:
         return np.concatenate(positions)
-    places = (
-        camera.aperture_places(count, drawn, pixels, 1),
-        camera.aperture_places(REFERENCE_SAMPLES * count, 2 * pairs, pixels, 2),
-    )
+    places = camera.aperture_places(count, drawn, pixels, 1), camera.aperture_places(count, 2 * pairs, pixels, 2)
     return np.concatenate([np.concatenate(positions), np.concatenate(places)], axis=-1)
 
 

@@ -22,14 +22,13 @@ from time import perf_counter
 
 import numpy as np
 
-from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, SampleTable, plan_of
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.sampling.packets import Packets, cost
 
 PROBES = 0.1  # share of samples that probes take
 LEAST_PROBES, MOST_PROBES = 4, 400  # in a sweep
-REFERENCES = 2 * REFERENCE_SAMPLES  # samples of a probe beside those that are drawn, as a multiple of them
+REFERENCES = 2  # samples of a probe beside those that are drawn, as a multiple of them
 FAR = 2.0  # ratio of planned samples to those of the last probes from which on there is another pilot
 PILOTS = 4  # at most
 PORTIONS = 8  # of the packets, where the time is limited

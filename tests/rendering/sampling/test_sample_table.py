@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
 from minirt.rendering.frame import COUNTS, SampleTable, positions_of, sample_positions
 from minirt.rendering.sampling.packets import (
@@ -47,12 +46,12 @@ def test_plans_name_rows_of_the_table_and_references_differ() -> None:
     assert np.array_equal(plan[:, 1], COUNTS[levels])
     assert (plan[:, 2] > 0).all()
     assert not SampleTable(np.arange(12), RAYS, with_references=False).plan(levels)[:, 2].any()
-    ends = plan[:, 2] + 2 * REFERENCE_SAMPLES * plan[:, 1]
+    ends = plan[:, 2] + 2 * plan[:, 1]
     assert ends.max() <= len(table.positions)
     assert (table.positions >= 0).all()
     assert (table.positions < 1).all()
     for _, number, first in plan[:20]:
-        one, other = table.positions[first:][: 2 * REFERENCE_SAMPLES * number].reshape(2, -1, RAYS, 2)
+        one, other = table.positions[first:][: 2 * number].reshape(2, -1, RAYS, 2)
         assert not np.isclose(one, other).all(axis=(0, 2)).any()
 
 
