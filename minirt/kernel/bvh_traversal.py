@@ -164,14 +164,14 @@ def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
     save_vec(Vec(farthest, splat(-1.0, farthest), splat(0.0, farthest)), memory, HIT)
     walk(closest_in_block, closest_of_shape, tree, memory)
     hit = load_vec(memory, HIT)
-    return where(active, hit.x, inf), hit.y, hit.z
+    return where(active, hit.x, inf), hit.y, hit.z, -1
 
 
 def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: Any) -> None:
     """Continue `closest_hit` of some rays of a packet by one shape, and store the result in `HIT`."""
     origin, direction, best = load_vec(memory, ORIGIN), load_vec(memory, DIRECTION), load_vec(memory, HIT)
     hit, t = intersect(shape, origin, direction)
-    state = closer_hit(shape, index, extent, hit & rays, t, origin, direction, (best.x, best.y, best.z))
+    state = closer_hit(shape, index, extent, hit & rays, t, origin, direction, (best.x, best.y, best.z, -1))
     save_vec(Vec(state[0], state[1], state[2]), memory, HIT)
 
 
@@ -181,15 +181,14 @@ def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
     candidates = bits(hit & (t <= search_limit(memory[HIT + ray])))
     if candidates != 0:
-        best = vec_at(memory, HIT, ray)
-        state = best.x, best.y, best.z
+        best, owner, extent = memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray]
         while candidates != 0:
             i = lowest(candidates)
             candidates = candidates & (candidates - 1)
             shape = read_one(group.blocks, block, i)  # cached already, unlike the shape's row in `rows`
-            index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
-            state = closer_hit(shape, index, extent, True, lane(t, i), origin, direction, state)
-        memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = state
+            label, state = group.labels[block, i], (best, owner, extent, -1)
+            best, owner, extent, _ = closer_hit(shape, label[0], label[1], True, lane(t, i), origin, direction, state)
+        memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = best, owner, extent
 
 
 @outlined
@@ -237,7 +236,7 @@ def trace_rays(
                     memory[ORIGIN + axis * WIDTH + ray] = origins[min(begin + ray, count - 1), axis]
                     memory[DIRECTION + axis * WIDTH + ray] = directions[min(begin + ray, count - 1), axis]
             origin, direction = load_vec(memory, ORIGIN), unit(rescale(load_vec(memory, DIRECTION)))
-            t, owner, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
+            t, owner, _, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
             save_vec(origin + t * direction, memory, ORIGIN)
             save_vec(Vec(t, owner, t), memory, HIT)
             for ray in range(min(WIDTH, count - begin)):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.beams import fold_over_mesh, vec_of
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read, vector
-from minirt.kernel.trace import for_each_kind, in_cone
+from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, where, width
 
 
@@ -100,7 +100,8 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
         cone, row = scene.light_cones[rays.light, index], scene.slots[index, 1]
         if not any(visible & in_cell & (rays.distance > cone[4])):
             break
-        if may_count(scene, index, glass) and (cone[3] <= -1.0 or rarely(in_cell & in_cone(cone, -rays.towards))):
+        towards = dot(vector(cone, 0), rays.towards)  # minus the cosine of the angle from the axis
+        if may_count(scene, index, glass) and (cone[3] <= -1.0 or rarely(in_cell & (towards <= -cone[3]))):
             if group.trees is None:
                 visible = unoccluded_by_shape(group, row, index, in_cell, visible, arguments)
             else:

@@ -16,7 +16,8 @@ from minirt.lanes import Mask, Number, Vec, any, dot, fabs, max_norm, maximum, r
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
 COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to their distance, may be one place
-Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
+# Distance, index and extent of the shape that each ray hits; and the index of one that some ray hits, -1 if not known.
+Hit = tuple[Number, Number, Number, int]
 
 
 def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, arguments: Any) -> Any:
@@ -61,7 +62,7 @@ def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> H
     A ray that hits nothing gets infinity, -1 and 0. Where two surfaces coincide within rounding, the shape with the
     lower index is hit on the whole overlap, and the extent is the larger of the two.
     """
-    no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
+    no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x), -1
     found: Hit = for_each_kind(closest_of_kind, scene.groups, no_hit, (scene, tile, origin, direction))
     return found
 
@@ -110,7 +111,7 @@ def closer_hit(
 
     The nearer hit wins. Where both lie within rounding of each other, the shape with the lower index wins.
     """
-    best, owner, extent = state
+    best, owner, extent, last = state
     new_extent = splat(shape_extent, best)
     closer = hit & (t < best)
     contested = hit & (best < inf)
@@ -129,7 +130,8 @@ def closer_hit(
         best = where(closer, t, best)
         owner = where(closer, index, owner)
         extent = where(closer, new_extent, extent)
-    return best, owner, extent
+        last = int(index)
+    return best, owner, extent, last
 
 
 def clearance(point: Vec, extent: Number) -> Number:

@@ -154,9 +154,11 @@ def test_the_first_shape_owns_the_overlap_without_specks_of_shadow(name: str, ca
 
 def owners(best: np.ndarray, rival: Plane, origin: Vec, direction: Vec) -> np.ndarray:
     """Return the owner of each hit: 1, the shape that was hit at `best`, or 0, a plane that is tested after it."""
-    state = best, np.ones_like(best), np.zeros_like(best)
+    state = best, np.ones_like(best), np.zeros_like(best), 1
     hit, t = plane.intersect(rival.pack(), origin, direction)
-    return trace.closer_hit(rival.pack(), 0, 0.0, hit, t, origin, direction, state)[1]
+    found = trace.closer_hit(rival.pack(), 0, 0.0, hit, t, origin, direction, state)
+    assert found[3] in found[1]  # a shape that some ray hits
+    return found[1]
 
 
 def test_the_first_of_two_planes_tilted_by_rounding_owns_the_overlap_to_the_horizon() -> None:

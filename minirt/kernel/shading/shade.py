@@ -44,13 +44,13 @@ def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface:
     """Compute the light that falls onto the surfaces at the hits of rays, and the highlights that they reflect back.
 
     The light is ambient light and, by Lambert's cosine law, that of every light source that is not occluded. It reaches
-    the side from which the ray comes; cosines are those of the shading normal. Rays that do not hit get no light.
+    the side from which the ray comes; cosines are those of the shading normal. Rays that do not hit get ambient light.
     """
     normal, shading_normal = surface.normal, surface.shading_normal
     rounding = clearance(surface.point, found[2])
     start = surface.point + rounding * normal
-    total = where(hit, vector(scene.ambient, 0), Vec(0.0, 0.0, 0.0))
     zero = splat(0.0, rounding)
+    total = splat(vector(scene.ambient, 0), zero)
     highlight = Vec(zero, zero, zero)
     first_source, end = 0, scene.lights.shape[0]
     if scene.light_grid is not None and has_rows(scene.light_grid.grids):
@@ -190,7 +190,7 @@ def follow_shadow_rays(
     light = where(occluded, Vec(1.0, 1.0, 1.0), light)
     active = occluded
     for _ in range(MOST_SURFACES):
-        t, owner, extent = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
+        t, owner, extent, _ = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
         active = active & (t < reach)
         if not any(active):
             break

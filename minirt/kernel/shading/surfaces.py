@@ -111,12 +111,13 @@ class Surface(NamedTuple):
 def surfaces(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> Surface:
     """Compute the surfaces that rays hit, from the shapes that own the hits and from the points within rounding.
 
-    The rays of a packet hit few different shapes, mostly one: that of the first hit is evaluated for all rays, and
+    The rays of a packet hit few different shapes, mostly one: a shape that some ray hits is evaluated for all rays, and
     further shapes only correct their own rays.
     """
-    t, owner, _ = found
+    t, owner, _, index = found
     point = ray.origin + t * ray.direction
-    index = int(lane(owner, first(hit)))
+    if rarely(index < 0):
+        index = int(lane(owner, first(hit)))
     result = surface_at(scene, memory, index, point, t, ray.direction)
     remaining = hit & (owner != index)
     while rarely(remaining):

@@ -79,7 +79,7 @@ def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, d
     hit = found[0] < inf
     radiance = splat(Vec(0.0, 0.0, 0.0), direction.x)
     if any(hit):
-        radiance, _ = shade(scene, memory, ray, found, hit)
+        radiance = where(hit, shade(scene, memory, ray, found, hit)[0], radiance)
     return background_light(scene, hit, radiance, direction)
 
 
