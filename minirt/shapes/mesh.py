@@ -193,10 +193,10 @@ def barycentric_coordinates(mesh: PackedMeshTriangle, point: Vec) -> tuple[Numbe
 def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
     """Interpolate the normals of the corners (Phong, Illumination for Computer Generated Pictures, 1975).
 
-    Where they cancel, or are all that of the triangle, its own `normal` is used.
+    Where they cancel, or all are 0 or that of the triangle, its own `normal` is used.
     """
-    apart = maximum(max_norm(mesh.normal_a - mesh.normal), max_norm(mesh.normal_b - mesh.normal))
-    if not any(maximum(apart, max_norm(mesh.normal_c - mesh.normal)) > 0.0):
+    uneven = max_norm(mesh.normal_b - mesh.normal_a) + max_norm(mesh.normal_c - mesh.normal_a)
+    if not any(uneven + max_norm(mesh.normal_a) * max_norm(mesh.normal_a - mesh.normal) > 0.0):
         return normal
     of_a, of_b, of_c = barycentric_coordinates(mesh, point)
     mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
