@@ -8,7 +8,7 @@ Marbles take 0.56 of the time that they take when all rays go by themselves.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf
+from math import inf, nan
 from typing import Any
 
 from minirt.kernel.bvh_nodes import (
@@ -221,7 +221,7 @@ def trace_rays(
     """Find the closest hits of n rays, claiming chunks of rays from the counter `next_ray` until none is left.
 
     Any number of threads may do so at the same time. Reads `origins` and `directions`, (n, 3), which may have any
-    length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,), except for rays without a hit.
+    length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,): NaN, infinity and -1 without a hit.
     """
     count = origins.shape[0]
     memory = packet_memory()
@@ -240,13 +240,13 @@ def trace_rays(
             save_vec(origin + t * direction, memory, ORIGIN)
             save_vec(Vec(t, owner, t), memory, HIT)
             for ray in range(min(WIDTH, count - begin)):
-                index = int(memory[HIT + WIDTH + ray])
+                index, point = int(memory[HIT + WIDTH + ray]), vec_at(memory, ORIGIN, ray)
+                on, normal = Vec(nan, nan, nan), Vec(nan, nan, nan)
                 if index >= 0:
-                    point = vec_at(memory, ORIGIN, ray)
                     on, normal = of_shape(surface, tree.groups, tree.slots[index], (point,), (point, point))
-                    distances[begin + ray], owners[begin + ray] = memory[HIT + ray], index
-                    store_vec(points, begin + ray, on)
-                    store_vec(normals, begin + ray, normal)
+                distances[begin + ray], owners[begin + ray] = memory[HIT + ray], index
+                store_vec(points, begin + ray, on)
+                store_vec(normals, begin + ray, normal)
 
 
 def store_vec(vectors: Any, i: int, v: Vec) -> None:

@@ -82,7 +82,7 @@ def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
     """Return u and v of n hits, (n, 2)."""
     arrays = ShapeArrays()
     arrays.update(shapes)
-    owner, primitive = hits.owner, arrays.first_primitive[np.maximum(hits.owner, 0)] + hits.known().parts
+    owner, primitive = hits.owner, hits.known().primitives
     uv, normal = np.full((len(owner), 2), np.nan), hits.normal.copy()
     # Where `uv:` or a turn of the shape changes its coordinates from those of its `mapping`.
     turned = [i for i in np.unique(owner[owner >= 0]) if shapes[i].uv or shapes[i].map_frame()]
