@@ -78,7 +78,7 @@ def blue_noise() -> np.ndarray:
 
 NO_LINEAR = np.zeros((0, 0, 3))
 DITHERING = sqrt(2)  # ratio of the RMSE of dithering to that of rounding, where all fractions of a level are as likely
-STRIP = 16  # lines at once: their data fits a processor's cache
+STRIP = 2  # lines at once: arrays so small that malloc keeps their pages (0.35 of the time of 16 lines)
 FRACTION = 15  # lowest bits of a float32 that `levels_below` leaves out
 CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
 
@@ -117,7 +117,7 @@ def map_tones(
 
 
 def rounded(light: np.ndarray, tone: str) -> np.ndarray:
-    """Return the nearest levels of 8 bits. The upper bits of light tell them up to one (0.05 of a search's time)."""
+    """Return the nearest levels of 8 bits. The upper bits of light tell them up to one."""
     with np.errstate(over="ignore"):
         level = levels_below(tone).take(light.astype(np.float32).view(np.int32) >> FRACTION, mode="wrap")
     return level + (light >= np.append(tone_named(tone).halfway, nan).take(level))
