@@ -7,6 +7,7 @@ import logging
 from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, cached_property
+from itertools import chain, islice
 from threading import Lock, Thread
 from typing import Any, NamedTuple
 
@@ -126,7 +127,7 @@ class Kernels:
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
         return (
-            not scene.shapes
+            not scene.runs
             or all(map(LIBRARY.has, self.for_all_scenes))
             or all(map(LIBRARY.has, self.specialised(scene)))
         )
@@ -148,7 +149,7 @@ class Kernels:
 
     def compile(self, scene: Scene) -> None:
         """Compile the missing specialised kernels for a scene, in two processes. RenderError where that fails."""
-        if not scene.shapes:
+        if not scene.runs:
             return
         *packing, drawing = self.specialised(scene)
         with ThreadPoolExecutor(1) as pool:
@@ -167,7 +168,7 @@ class Kernels:
 
 def some_primitives(scene: Scene) -> int:
     """Count the primitives of a scene, at least up to `SMALL` and one: shapes, and for each mesh its triangles."""
-    return sum(shape.parts for shape in scene.shapes[: SMALL + 1])
+    return sum(shape.parts for shape in islice(chain.from_iterable(scene.runs), SMALL + 1))
 
 
 def minimal_scene(scene: Scene) -> Scene:

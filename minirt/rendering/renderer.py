@@ -155,7 +155,7 @@ class Renderer:
 
         Otherwise there is a kernel that can draw it."""
         self.runner.not_finite = 0
-        has_shapes = bool(request.scene.shapes and request.pixels.size)
+        has_shapes = bool(request.scene.runs and request.pixels.size)
         if has_shapes and not self.kernels.is_ready(request.scene):
             self.kernels.compile(request.scene)
         request = request._replace(linear=self.tone_mapper.light_for(request, edges_only))
@@ -204,7 +204,7 @@ class Renderer:
         if not self.busy.acquire(timeout=PATIENCE):
             return pick.pick(scene, width, height, x, y)
         try:
-            return pick.pick(scene, width, height, x, y, self.packing.shape_arrays_for(scene.shapes))
+            return pick.pick(scene, width, height, x, y, self.packing.shape_arrays_for(*scene.runs))
         finally:
             self.busy.release()
 

@@ -65,18 +65,18 @@ class Packing:
         self.view: View | None = None  # of the last scene
         self.spare: dict[int, Bins] = {}  # of the first lights, after a change of shapes
 
-    def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
-        """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
-        if self.shape_arrays.update(shapes):
+    def shape_arrays_for(self, *runs: tuple[Shape, ...]) -> ShapeArrays:
+        """Return the arrays of these shapes, run by run. Where the last scene had others its results are dropped."""
+        if self.shape_arrays.update(*runs):
             bins = (each.bins for each in self.cache.values() if isinstance(each, BinnedShapes))
             self.spare = dict(enumerate(islice((each for each in bins if each), FEW)))
             kept = {key: each for key, each in self.cache.items() if isinstance(each, LightGrid)}
             self.cache, self.last, self.cells_that_fit, self.bvh = kept, None, {}, None
         return self.shape_arrays
 
-    def bvh_of(self, shapes: tuple[Shape, ...]) -> Tree:
-        """Return the BVH over these shapes, which is kept until other ones are packed."""
-        arrays = self.shape_arrays_for(shapes)
+    def bvh_of(self, *runs: tuple[Shape, ...]) -> Tree:
+        """Return the BVH over the shapes of some runs, which is kept until other ones are packed."""
+        arrays = self.shape_arrays_for(*runs)
         if not self.bvh:
             self.bvh = build_bvh(arrays, self.kernel, inf if BOXES in self.without else MARGIN)
         return self.bvh
@@ -87,7 +87,7 @@ class Packing:
         Until the next call: where nothing but the camera moves they are the same arrays, with other contents.
         """
         place = width, height, crop or Crop(width, height)
-        self.shape_arrays_for(scene.shapes)
+        self.shape_arrays_for(*scene.runs)
         last, self.last = self.last, None  # an error leaves none
         if not (last and last[1] == place and self.follows(scene, last[0], last[2])):
             last = scene, place, self.pack_anew(scene, place)
@@ -105,7 +105,7 @@ class Packing:
 
     def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
         """Return arrays that are made anew, except what the scene shares with the last one."""
-        crop, shapes = place[2], self.shape_arrays_for(scene.shapes)
+        crop, shapes = place[2], self.shape_arrays_for(*scene.runs)
         before, self.cache = self.cache, {}
 
         def cached(key: Hashable, compute: Callable[..., Any], *arguments: Any) -> Any:
@@ -165,12 +165,12 @@ class Packing:
             light_grid=cached(shining, lights.light_grid, emitted, spots),
             soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,
-            eye_medium=materials.medium_at(numbers[:3], scene.shapes, colours) if "media" in used else None,
+            eye_medium=materials.medium_at(numbers[:3], shapes.shapes, colours) if "media" in used else None,
             smooth=cached("smooth", shapes.smooth) if "smooth" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
             environment=environment,
-            bvh=self.bvh_of(scene.shapes) if needs_bvh and BVH not in self.without else None,
+            bvh=self.bvh_of(*scene.runs) if needs_bvh and BVH not in self.without else None,
             **packed,
         )
         if self.precision == "single" and self.view and fits_single(arrays):

@@ -39,6 +39,12 @@ class Page:
         return answer
 
 
+def span_of_ids(items: tuple[Item, ...]) -> range:
+    """Return a range of the identities of some items: those of items that are made together lie close together."""
+    ids = list(map(id, items))
+    return range(min(ids), max(ids) + 1)
+
+
 def split_into_pages(items: tuple[Item, ...]) -> Iterator[Page]:
     """Split items into pages of `PAGE_LENGTH` items."""
     return (Page(items[start : start + PAGE_LENGTH]) for start in range(0, len(items), PAGE_LENGTH))

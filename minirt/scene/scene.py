@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from itertools import chain
-from operator import indexOf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -28,7 +27,7 @@ from minirt.scene.elements import (
     Resolution,
     SpotLight,
 )
-from minirt.scene.pages import Answer, Item, Page, replace_item, split_into_pages
+from minirt.scene.pages import Answer, Item, Page, replace_item, span_of_ids, split_into_pages
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
@@ -91,6 +90,10 @@ class Scene(Immutable):
     )
     elements = every(Element, "All elements, without comments and blank lines, in the order of the file.")
     shapes = every(Shape, "All shapes, in the order of the file.")  # type: ignore[type-abstract]
+    runs: cached_property[tuple[tuple[Shape, ...], ...]] = cached(
+        lambda scene: tuple(filter(None, (page.of(Shape) for page in scene.pages))),
+        "All shapes page by page: scenes that share pages share these tuples.",
+    )
     lights = every(Lamp, "All light sources, in the order of the file.")
     cameras: cached_property[tuple[Camera, ...]] = cached(
         lambda scene: tuple(sorted(scene.of(Camera), key=lambda camera: isinstance(camera, FurtherCamera))),
@@ -213,10 +216,12 @@ class Scene(Immutable):
 
     def index(self, element: Element) -> int:
         """Return the index in `items` of the element itself, else of the first equal one; ValueError without one."""
-        try:
-            return indexOf(map(id, self.items), id(element))
-        except ValueError:
-            return self.items.index(element)
+        start = 0
+        for page in self.pages:
+            if id(element) in page.cached(span_of_ids) and id(element) in (ids := list(map(id, page.items))):
+                return start + ids.index(id(element))
+            start += len(page.items)
+        return self.items.index(element)
 
     def edit(self, index: int, *new: Element) -> Scene:
         """Return the scene with `elements[index]` replaced by any number of elements."""
@@ -235,8 +240,6 @@ class Scene(Immutable):
             kept = [number for number, camera in enumerate(scene.cameras, 1) if camera is self.camera]
             replaced = self.shown + 1 if len(scene.cameras) == len(self.cameras) else 1
             scene = scene.seen_by(kept[0] if kept else replaced)
-        if "shapes" in vars(self) and not any(isinstance(item, Shape) for item in (page.items[index], *new)):
-            vars(scene)["shapes"] = self.shapes
         return scene
 
     def drop_caches(self) -> Scene:

@@ -103,12 +103,11 @@ def test_an_edit_copies_one_page(long: Scene) -> None:
     assert long.pages[0].of(Camera) is long.pages[0].of(Camera)
 
 
-def test_an_edit_of_no_shape_keeps_the_tuple_of_shapes(long: Scene) -> None:
-    index = next(long.indices_of(Camera))
-    shapes = long.shapes
-    assert long.edit(index, long.camera.replace(fov=20)).shapes is shapes
-    assert long.edit(next(long.indices_of(FurtherLight))).shapes is shapes
-    assert long.edit(next(long.indices_of(Sphere)), BALL).shapes is not shapes
+def test_an_edit_keeps_the_runs_of_shapes_of_other_pages(long: Scene) -> None:
+    index, shapes = next(long.indices_of(Camera)), long.shapes
+    for edited in (long.edit(index, long.camera.replace(fov=20)), long.edit(next(long.indices_of(Sphere)), BALL)):
+        assert sum(one is not other for one, other in zip(edited.runs, long.runs, strict=True)) == 1
+        assert sum(edited.runs, ()) == edited.shapes
     assert long.edit(index, long.camera, BALL).shapes == (BALL, *shapes)
     light = len(long.elements) - 1
     assert long.edit(light, BALL).shapes == (*shapes, BALL)

@@ -75,9 +75,8 @@ def features(scene: Scene) -> frozenset[Hashable]:
     Of these "parallel", "transparent", "fades" and "smooth" are parts: parallel light, glass, fading reflections, and
     smooth meshes.
     """
-    pages = (page for page in scene.pages if len(page.of(Shape)) < len(page.items))
-    beside_shapes = (page.cached(features_beside_shapes) for page in pages)
-    return frozenset({"lens"} if scene.camera.lens else ()).union(*examples(scene), *beside_shapes)
+    among = {page.cached(features_among) for page in scene.pages}
+    return frozenset({"lens"} if scene.camera.lens else ()).union(*among)
 
 
 def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
@@ -98,8 +97,9 @@ def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shap
     return {(type(item), *shape_features(item)): item for item in looks}
 
 
-def features_beside_shapes(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    return frozenset().union(*(features_of(item) for item in items if not isinstance(item, Shape)))
+def features_among(items: Iterable[Element | str]) -> frozenset[Hashable]:
+    beside_shapes = (features_of(item) for item in items if not isinstance(item, Shape))
+    return frozenset().union(*examples_among(items), *beside_shapes)
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:

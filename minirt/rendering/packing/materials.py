@@ -191,7 +191,7 @@ class Reader:
 TOWARDS = Vec(*np.array([0.5773, 0.2113, 0.7887]) / np.linalg.norm([0.5773, 0.2113, 0.7887]))  # any direction will do
 
 
-def medium_at(point: np.ndarray, shapes: tuple[Shape, ...], colours: Colours) -> np.ndarray:
+def medium_at(point: np.ndarray, shapes: Iterable[Shape], colours: Colours) -> np.ndarray:
     """Return the absorption of red, green and blue at a point, in halvings for each scene unit."""
     total = np.zeros(3)
     for shape in shapes:

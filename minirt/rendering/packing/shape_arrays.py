@@ -6,7 +6,7 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -112,25 +112,26 @@ class ShapeArrays:
     its product with the points of the plane, and the rounding error of that, whose primitives are `plane_indices`.
     """
 
-    shapes: tuple[Shape, ...]
+    runs: tuple[tuple[Shape, ...], ...]
+    shapes: list[Shape]
 
     def __init__(self) -> None:
-        self.allocate(())
+        self.allocate()
 
-    def update(self, shapes: tuple[Shape, ...]) -> bool:
-        """Bring the arrays up to date; return whether anything changed."""
-        if shapes is self.shapes:
-            return False
-        fits = len(shapes) == len(self.shapes)
-        changed = differing_indices(self.shapes, shapes) if fits else []
-        pairs = ((self.shapes[i], shapes[i]) for i in changed)
+    def update(self, *runs: tuple[Shape, ...]) -> bool:
+        """Bring the arrays up to date with shapes, run by run; return whether anything changed."""
+        fits = [*map(len, runs)] == [*map(len, self.runs)]
+        changed = dict(differing_shapes(self.runs, runs)) if fits else {}
+        pairs = ((self.shapes[i], shape) for i, shape in changed.items())
         fits = fits and all(type(old) is type(new) and old.parts == new.parts for old, new in pairs)
         if not fits:
-            self.allocate(shapes)
-        self.shapes = shapes
+            self.allocate(*runs)
+        self.runs = runs
         if fits and not changed:
             return False
-        indices = np.array(changed, np.int64) if fits else np.arange(len(shapes))
+        for index, shape in changed.items():
+            self.shapes[index] = shape
+        indices = np.array([*changed], np.int64) if fits else np.arange(len(self.shapes))
         groups = self.slots[self.first_primitive[indices], 0]
         for group in range(len(self.rows)):
             of_group = indices[groups == group]
@@ -138,8 +139,9 @@ class ShapeArrays:
                 self.write(group, of_group[start : start + CHUNK])
         return True
 
-    def allocate(self, shapes: tuple[Shape, ...]) -> None:
+    def allocate(self, *runs: tuple[Shape, ...]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
+        self.runs, shapes = runs, [*chain.from_iterable(runs)]
         kinds = list(map(type, shapes))
         present = set(kinds)
         used = [kind for kind in ALL_KINDS if kind.element in present]
@@ -164,7 +166,7 @@ class ShapeArrays:
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((count, 2, 3))
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
-    def looks(self) -> tuple[tuple[Shape, ...], np.ndarray]:
+    def looks(self) -> tuple[Sequence[Shape], np.ndarray]:
         """Return shapes of one material each, meshes once for each of theirs, and that of each primitive, (n,)."""
         if Mesh not in self.group_numbers:
             return self.shapes, self.owner
@@ -219,14 +221,13 @@ def extents_from(eye: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     return extents
 
 
-def differing_indices(old: tuple[Any, ...], new: tuple[Any, ...]) -> list[int]:
-    """Indices at which two tuples hold different objects, up to the length of the shorter one."""
-    indices: list[int] = []
-    for start in range(0, min(len(old), len(new)), CHUNK):
-        one, other = old[start : start + CHUNK], new[start : start + CHUNK]
-        if one != other:  # identical objects compare equal at the speed of C
-            indices += [at for at, (a, b) in enumerate(zip(one, other, strict=False), start) if a is not b]
-    return indices
+def differing_shapes(old: Iterable[Sequence[Shape]], new: Iterable[Sequence[Shape]]) -> Iterator[tuple[int, Shape]]:
+    """Yield the indices at which runs of the same lengths hold different objects, and the new ones."""
+    start = 0
+    for before, after in zip(old, new, strict=True):
+        if before is not after and before != after:  # identical objects compare equal at the speed of C
+            yield from ((at, b) for at, (a, b) in enumerate(zip(before, after, strict=True), start) if a is not b)
+        start += len(after)
 
 
 def ranges(starts: np.ndarray, which: np.ndarray) -> np.ndarray:

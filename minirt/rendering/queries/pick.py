@@ -34,7 +34,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: Sh
     `shape_arrays` are brought up to date; those of the last picture save the time of packing the shapes.
     """
     shape_arrays = shape_arrays or ShapeArrays()
-    shape_arrays.update(scene.shapes)
+    shape_arrays.update(*scene.runs)
     origin, direction = camera_ray(scene.camera, width, height, x + 0.5, y + 0.5)
     distance = hit_distances(shape_arrays, origin, direction)
     near = distance <= distance.min(initial=np.inf) * (1 + 2 * COINCIDENT)

@@ -100,10 +100,10 @@ def notice_about(scene: Scene, pixels: np.ndarray) -> str:
     height, width = pixels.shape[:2]
     if not is_blank(pixels):
         return ""
-    if not scene.shapes:
+    if not scene.runs:
         return "the scene has no shapes"
     arrays = ShapeArrays()
-    arrays.update(scene.shapes)
+    arrays.update(*scene.runs)
     if len(arrays.slots) > MOST_PRIMITIVES:
         return ""
     seen = visible_shapes(arrays, scene.camera, width, height)

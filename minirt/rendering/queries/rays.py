@@ -140,11 +140,11 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     # The kernel writes them all, also where nothing is hit: for coherent rays filling them took a tenth of the time.
     found = np.empty(count), np.empty(count, np.int64), np.empty((count, 3)), np.empty((count, 3))
     owner, first_primitive = found[1], np.zeros(1, np.int64)
-    if count and scene.shapes:
+    if count and scene.runs:
         with chosen.busy:
             # The caller's thread only waits, so that Ctrl+C reaches it.
             counter = np.zeros(1, np.int64)
-            job = query(chosen.packing.bvh_of(scene.shapes), counter, starts, vectors, *found)
+            job = query(chosen.packing.bvh_of(*scene.runs), counter, starts, vectors, *found)
             chosen.runner.pool.run([job] * chosen.threads, partial(counter.fill, count))
             shapes = chosen.packing.shape_arrays
             first_primitive = shapes.first_primitive
