@@ -38,7 +38,10 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: Sh
     origin, direction = camera_ray(scene.camera, width, height, x + 0.5, y + 0.5)
     distance = hit_distances(shape_arrays, origin, direction)
     near = distance <= distance.min(initial=np.inf) * (1 + 2 * COINCIDENT)
-    closest: Any = np.array([[np.inf], [-1.0], [0.0]])  # distance, primitive and its extent
+    closest: Any = (
+        *np.array([[np.inf], [-1.0], [0.0]]),
+        -1,
+    )  # distance, primitive, extent, and the last hit
     for index in np.flatnonzero(np.isfinite(distance) & near).tolist():  # where they coincide the kernel's rule decides
         group, row = shape_arrays.slots[index]
         packed = packed_columns(shape_arrays.rows[group][row : row + 1])
