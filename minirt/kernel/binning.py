@@ -37,8 +37,9 @@ class Projection(NamedTuple):
     reach: float  # from the point, beyond which shapes are in no list
     lean: float
     balls: Any  # (b, 4) centre and radius
-    first_ball: Any  # (n + 1,)
-    boxes: Any  # (n, 2, 3)
+    first_ball: Any  # (s + 1,)
+    boxes: Any  # (s, 2, 3)
+    listed: Any  # (s,)
     slots: Any  # (n, 2)
     planes: Any  # (p, 5)
     plane_indices: Any  # (p,)
@@ -70,7 +71,7 @@ def project_shapes(next_chunk: Any, seen: Projection) -> None:
             end = project_planes(seen, slack, end)
         else:
             first = number * seen.chunk
-            for shape in range(first, min(first + seen.chunk, seen.cones.shape[0])):
+            for shape in range(first, min(first + seen.chunk, seen.listed.shape[0])):
                 end = project_shape(seen, slack, shape, end)
         seen.used[number] = end - number * room
 
@@ -81,21 +82,22 @@ def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
     It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
     """
     grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
+    index = seen.listed[shape]
     if has_rows(seen.extents):
-        seen.extents[shape, 3] = extent_from(seen.origin, seen.boxes, shape)
+        seen.extents[index, 3] = extent_from(seen.origin, seen.boxes, shape)
     if start == end:
         return at
     if seen.reach < inf:
-        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
-    for face in range(grid.frames.shape[0] if seen.cones[shape, 4] <= seen.reach else 0):
+        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[index])
+    for face in range(grid.frames.shape[0] if seen.cones[index, 4] <= seen.reach else 0):
         column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
         if columns > 0 and rows > 0:
-            at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
+            at = write_rectangle(seen, at, index, face * grid.down + row, column, columns, rows)
     for i in range(5):
-        seen.cones[shape, i] = 0.0
+        seen.cones[index, i] = 0.0
     if at > before:
-        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
-    quantise_distance(seen, shape)
+        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[index])
+    quantise_distance(seen, index)
     return at
 
 

@@ -45,6 +45,7 @@ class Group(NamedTuple):
     boxes: Any  # flat, for each block the low x, y, z and high x, y, z of its shapes; infinite in lanes to spare
     unbounded: Any  # (k,) indices in the scene of shapes without a bounding box; None for a kind that is not infinite
     number: int  # of the group in `Tree.slots`; -1 without rows
+    triangles: Any = None  # the rows have those of meshes, too
 
 
 class Tree(NamedTuple):

@@ -2,6 +2,7 @@
 
 from minirt.kernel.binning import fill_bins, project_shapes
 from minirt.kernel.bvh_build import collapse, divide
+from minirt.kernel.mesh_triangles import place_triangles
 from minirt.kernel.scene_arrays import to_single
 
-__all__ = ["collapse", "divide", "fill_bins", "project_shapes", "to_single"]
+__all__ = ["collapse", "divide", "fill_bins", "place_triangles", "project_shapes", "to_single"]

@@ -12,11 +12,13 @@ from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 
-from minirt.lanes import Mask, Number, Vec
+from minirt.lanes import Mask, Number, Vec, rounded_product
 from minirt.shapes import ALL_KINDS, Kind
+from minirt.shapes.mesh import PackedMeshTriangle
 from minirt.shapes.shape import Position
 
 Rows = Any  # an array of dtype `row_type(kind)`
+TRIANGLE_ROW = np.dtype([("mesh.corners", np.int32, (3,))])
 
 
 class Group(NamedTuple):
@@ -27,11 +29,24 @@ class Group(NamedTuple):
     A kind that the scene lacks has no rows.
     """
 
-    rows: Any  # a row for each shape
+    rows: Any  # a row for each shape; of meshes, one of `TRIANGLE_ROW` for each triangle
     tile_starts: Any  # (tiles + 1,)
     light_starts: Any  # (m, cells + 1)
     number: int  # of the group in `SceneArrays.slots`; -1 without rows
     trees: Any = None  # of meshes: `minirt.kernel.beams.MeshTrees`
+    triangles: Any = None  # of meshes
+
+
+class MeshTriangles(NamedTuple):
+    """The m triangles of all k meshes of a scene, by the indices of their corners among n points."""
+
+    points: Any  # (n, 3) in the scene
+    normals: Any  # (m, 3) unit normals of the planes of triangles
+    corners: Any  # int32 (m, 3)
+    numbers: Any  # int32 (m,) the number of the mesh of each triangle
+    turns: Any  # (k, 9) vectors along the x, y and z axis of each mesh's file
+    shading: Any  # (m, 9) normals at the corners, in the file's space; zeros, or one row of them, where it has none
+    uvs: Any  # (m, 6) texture coordinates at the corners, or one row for all triangles
 
 
 class SceneArrays(NamedTuple):
@@ -142,6 +157,31 @@ def read(rows: Rows, i: int) -> Any:
     """Return the packed shape in row i."""
     parts = (Vec(*part) if np.ndim(part) else part for part in rows[i])
     return kind_of(rows.dtype.names).packed(*parts)
+
+
+def read_row(group: Any, row: int) -> Any:
+    """Return the packed shape, or the packed triangle of a mesh, in a row of a group."""
+    if group.triangles is None:
+        return read(group.rows, row)
+    triangles, points, corners = group.triangles, group.triangles.points, group.triangles.corners[row]
+    a: Any = vector(points[corners[0]], 0)
+    b: Any = vector(points[corners[1]], 0)
+    c: Any = vector(points[corners[2]], 0)
+    turn, at = triangles.turns[triangles.numbers[row]], triangles.shading[min(row, triangles.shading.shape[0] - 1)]
+    normal: Any = vector(triangles.normals[row], 0)
+    at_a, at_b, at_c = turned(turn, vector(at, 0)), turned(turn, vector(at, 3)), turned(turn, vector(at, 6))
+    uv = triangles.uvs[min(row, triangles.uvs.shape[0] - 1)]
+    return PackedMeshTriangle(a, b, c, normal, at_a, at_b, at_c, uv[0], uv[1], uv[2], uv[3], uv[4], uv[5])
+
+
+def turned(turn: Any, v: Vec) -> Vec:
+    """Turn a vector of a mesh's file into the scene, rounded as by `minirt.shapes.mesh.Mesh.turned`."""
+    return scaled(vector(turn, 0), v.x) + scaled(vector(turn, 3), v.y) + scaled(vector(turn, 6), v.z)
+
+
+def scaled(v: Vec, scale: Number) -> Vec:
+    """Return a vector times a number, rounded: never fused with a sum that follows."""
+    return Vec(rounded_product(v.x, scale), rounded_product(v.y, scale), rounded_product(v.z, scale))
 
 
 def read_block(blocks: Any, i: int) -> Any:

@@ -12,7 +12,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.kernel.beams import fold_over_mesh, vec_of
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read, vector
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read_row, vector
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, where, width
 
@@ -115,7 +115,7 @@ def unoccluded_by_shape(group: Group, row: int, index: int, active: Mask, visibl
     """Remove the shadow rays that one shape, or a triangle of a mesh, occludes from `visible`; only `active` ones may
     meet it."""
     scene, rays, _, _, glass = arguments
-    shape = read(group.rows, row)
+    shape = read_row(group, row)
     if counts(scene, index, glass) and (
         is_parallel(scene, rays.light)
         or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & active))

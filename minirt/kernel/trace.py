@@ -11,7 +11,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.beams import fold_over_mesh
-from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read, surface, vector
+from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read_row, surface, vector
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, max_norm, maximum, rarely, splat, unit_roundoff, where
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
@@ -41,7 +41,7 @@ def of_shape_in_group(group: Any, state: Any, arguments: tuple[Callable[..., Any
     """Continue `of_shape`: compute the formula if the shape is in this group."""
     formula, number, row, others = arguments
     if number == group.number:
-        return formula(read(group.rows, row), *others)
+        return formula(read_row(group, row), *others)
     return state
 
 
@@ -92,10 +92,13 @@ def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
 def closest_of_shape(group: Group, row: int, index: int, active: Mask, state: Hit, arguments: Arguments) -> Hit:
     """Continue `closest_hit` by one shape, or by a triangle of a mesh, which only `active` rays may meet."""
     scene, _, origin, direction = arguments
-    shape = read(group.rows, row)
+    shape = read_row(group, row)
     if any(may_meet(shape, origin, None, direction, active)):
         hit, t = intersect(shape, origin, direction)
-        state = closer_hit(shape, index, scene.colours_and_extents[index, 3], hit, t, origin, direction, state)
+        extent = scene.colours_and_extents[index, 3]
+        if group.triangles is not None:
+            extent = max(max_norm(shape.a), max_norm(shape.b), max_norm(shape.c))
+        state = closer_hit(shape, index, extent, hit, t, origin, direction, state)
     return state
 
 

@@ -206,8 +206,10 @@ def generic_identity(generic: GenericKernel) -> str:
 def packing_calls() -> list[Call]:
     """Return calls of all functions beside those that draw, whose types are the same for all scenes."""
     *packing, _ = calls_for(parse(EXAMPLE).scene, "double", DEPTH)
-    rounding = np.zeros((0, 0)), np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 0), np.float32)
-    return [*packing, functions.to_single.call(*rounding)]
+    numbers, integers, table, corners = np.zeros(0), np.zeros(0, np.int64), np.zeros((0, 0)), np.zeros((0, 0), np.int32)
+    rounding = functions.to_single.call(table, integers, numbers, table.astype(np.float32))
+    placing = functions.place_triangles.call(integers, numbers, table, table, 0, corners, table, table)
+    return [*packing, rounding, placing]
 
 
 def ray_query() -> Call:

@@ -20,7 +20,7 @@ from minirt.kernel.shading.lights import LightGrid
 from minirt.lanes import Vec
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
-from minirt.rendering.packing.bvh import build_bvh, pack_trees
+from minirt.rendering.packing.bvh import build_bvh, pack_trees, place_meshes
 from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import nearest_hits
@@ -144,6 +144,8 @@ class Packing:
         shining = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
         needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
         trees = cached("trees", pack_trees, shapes, self.kernel)
+        triangles = cached("triangles", place_meshes, shapes, self.kernel, self.run)
+        of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
         paint: Any = scene.background and scene.background.paint
         sky = "environment", paint, colours
         environment = cached(sky, materials.pack_environment, scene, paint) if "environment" in used else None
@@ -160,7 +162,7 @@ class Packing:
             square=square,
             light_buffer_cells=cells,
             **light_buffers,
-            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count(), trees)),
+            groups=tuple(map(Group, shapes.tables, eye.starts, light_starts, count(), trees, of_kinds)),
             spots=spots,
             light_grid=cached(shining, lights.light_grid, emitted, spots),
             soft=lights.sizes(sources) if "soft" in used else None,
@@ -235,7 +237,7 @@ def all_but_pose(scene: Scene) -> tuple[Any, ...]:
 
 def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
-    starts, members = np.zeros((len(shapes.rows), 0, 1), np.int32), np.zeros(0, np.int32)
+    starts, members = np.zeros((len(shapes.tables), 0, 1), np.int32), np.zeros(0, np.int32)
     cones = np.zeros((0, len(shapes.slots), 5))
     if len(binned) == 1:  # in the same memory: a million shapes take long to copy
         starts, cones, members = binned[0].starts[:, None], binned[0].cones[None], binned[0].members

@@ -33,7 +33,7 @@ from minirt.lanes import (
     unit_roundoff,
     where,
 )
-from minirt.meshes.triangles import unit as unit_rows
+from minirt.lanes import unit as unit_vec
 from minirt.records import record
 from minirt.shapes import boundary as exact
 from minirt.shapes.boundary import Boundary
@@ -256,20 +256,23 @@ def plane_normal(a: Vec, b: Vec, c: Vec) -> Vec:
     return Vec(cross_component(y, z, v, w), cross_component(z, x, w, u), cross_component(x, y, u, v))
 
 
+def plane_normal_towards(a: Vec, b: Vec, c: Vec, approximate: Vec) -> Vec:
+    """Unit normal of the plane of a triangle, on the side of the `approximate` normal, which is kept where the corners
+    lie on a line."""
+    normal = plane_normal(a, b, c)
+    normal = where(max_norm(normal) > 0.0, normal, approximate)
+    normal = where(dot(normal, approximate) < 0.0, -normal, normal)
+    return unit_vec(normal / max_norm(normal))
+
+
 def cross_component(y: Pair, z: Pair, v: Pair, w: Pair) -> Number:
     """y w - z v."""
     return value(minus(times(y, w), times(z, v)))
 
 
 def plane_normals(corners: np.ndarray, approximate: np.ndarray) -> np.ndarray:
-    """Unit normals of triangles whose corners are rows of nine numbers, on the side of the `approximate` normals.
-
-    Where the corners lie on a line, once placed in the scene, the approximate normal is kept.
-    """
+    """Unit normals of triangles whose corners are rows of nine numbers, on the side of the `approximate` normals."""
     columns = corners.T.copy()
-    normal = plane_normal(Vec(*columns[:3]), Vec(*columns[3:6]), Vec(*columns[6:]))
-    normals = np.stack([normal.x, normal.y, normal.z], axis=1)
-    flat = ~normals.any(axis=1)
-    normals[flat] = approximate[flat]
-    normals[np.einsum("ij,ij->i", normals, approximate) < 0] *= -1
-    return unit_rows(normals)
+    a, b, c, side = Vec(*columns[:3]), Vec(*columns[3:6]), Vec(*columns[6:]), Vec(*approximate.T.copy())
+    normal = plane_normal_towards(a, b, c, side)
+    return np.stack([normal.x, normal.y, normal.z], axis=1)

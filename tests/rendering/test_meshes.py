@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import minirt
 from minirt.fields import MeshFile
+from minirt.kernel import interpreted
+from minirt.kernel.machine_code import functions
+from minirt.kernel.scene_arrays import read_row
+from minirt.lanes import Vec
 from minirt.materials import Specular
+from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import covers, pick
 from minirt.rendering.scene_packing import Packing
@@ -128,6 +135,26 @@ def test_arrays_after_edits_equal_those_of_a_fresh_packing() -> None:
         sizes = [shape.parts for shape in scene.shapes]
         assert np.array_equal(packing.shape_arrays.owner, np.repeat(np.arange(len(sizes)), sizes))
         assert packing.shape_arrays.first_primitive.tolist() == [0, *np.cumsum(sizes)]
+
+
+@pytest.mark.parametrize("kernel", [functions, interpreted], ids=["compiled", "interpreted"])
+def test_the_kernel_reads_the_packed_triangles_of_a_mesh_that_was_moved_turned_and_scaled(kernel: Any) -> None:
+    """One mesh has normals, one texture coordinates, and the corners of the last are one point in the scene."""
+    dot = Triangles(np.array([[0.0, 0, 0], [1e-20, 0, 0], [0, 1e-20, 0]]), np.array([[0, 1, 2]]))
+    files = MeshFile("ball.obj", ball(1)), named("icosahedron").file, named("pot").file, MeshFile("dot.obj", dot)
+    meshes = [Mesh(file, (i, 0.1, 0.0), 1.0, GREY) for i, file in enumerate(files)]
+    packing, arrays = Packing(kernel), None
+    for axis in ((0.0, 1.0, 0.0), (0.6, 0.0, 0.8)):
+        meshes = [mesh.replace(axis=axis, scale=1.7, position=(1e3, 0.3, i)) for i, mesh in enumerate(meshes)]
+        arrays = packing.pack(Scene((EYE, *meshes)), 24, 16)
+    rows = np.concatenate([mesh.rows() for mesh in meshes])
+    for i in range(0, len(rows), 7) if kernel is functions else (0, 90, 100, len(rows) - 1):
+        found = np.hstack([(v.x, v.y, v.z) if isinstance(v, Vec) else v for v in read_row(arrays.groups[0], i)])
+        assert np.array_equal(found[:9], rows[i, :9])
+        assert np.array_equal(found[21:], rows[i, 21:])
+        assert np.allclose(found[9:12], rows[i, 9:12], rtol=0, atol=1e-15)
+        if i < meshes[0].parts:
+            assert np.allclose(found[12:21], rows[i, 12:21], rtol=0, atol=1e-15)
 
 
 def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:

@@ -35,7 +35,7 @@ def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The shapes that were packed so far."""
     done: list[Any] = []
     monkeypatch.setattr(
-        shape_arrays, "primitives_of", lambda new, pack=shape_arrays.primitives_of: done.extend(new) or pack(new)
+        shape_arrays, "pack_shapes", lambda new, pack=shape_arrays.pack_shapes: done.extend(new) or pack(new)
     )
     return done
 
@@ -52,8 +52,8 @@ def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> None:
             pairs = zip(found, value, strict=True) if isinstance(value, tuple) else [(found, value)]
             assert all(np.array_equal(part, right) for part, right in pairs), name
     for group, expected in zip(arrays.groups, fresh.groups, strict=True):
-        pairs = zip((*group[:4], *(group.trees or ())), (*expected[:4], *(expected.trees or ())), strict=True)
-        assert all(np.array_equal(part, right) for part, right in pairs)
+        found, right = ((*each[:4], *(each.trees or ()), *(each.triangles or ())) for each in (group, expected))
+        assert all(map(np.array_equal, found, right))
 
 
 def test_the_arrays_have_the_numbers_of_the_scene() -> None:
@@ -104,10 +104,10 @@ def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_o
     for kind in crowded:
         random = np.random.default_rng(seed)
         shapes = [example(kind, random, 10.0 ** (i % 9 - 4), i % 2) for i in range(99)]
-        (crowd,) = shape_arrays.primitives_of(shapes)
-        assert np.array_equal(crowd.rows, shape_arrays.packed_rows([shape.pack() for shape in shapes])), seed
-        assert np.array_equal(crowd.boxes, shape_arrays.bounding_boxes(shapes)), seed
-        assert np.array_equal(crowd.balls, shape_arrays.bounding_balls(shapes)), seed
+        rows, boxes, balls = shape_arrays.pack_shapes(shapes)
+        assert np.array_equal(rows, shape_arrays.packed_rows([shape.pack() for shape in shapes])), seed
+        assert np.array_equal(boxes, shape_arrays.bounding_boxes(shapes)), seed
+        assert np.array_equal(balls, shape_arrays.bounding_balls(shapes)), seed
 
 
 @pytest.mark.parametrize(

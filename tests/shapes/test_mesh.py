@@ -13,7 +13,7 @@ from minirt.fields import MeshFile
 from minirt.kernel.scene_arrays import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
-from minirt.rendering.packing.shape_arrays import primitives_of
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import MESH, mesh
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
@@ -60,13 +60,16 @@ def test_a_mesh_is_its_triangles() -> None:
 
 def test_balls_and_boxes_are_around_the_triangles() -> None:
     made = named("pot", (4, 5, 6), 2.0)
-    rows, boxes, balls = map(np.concatenate, zip(*primitives_of([made, made]), strict=True))
+    arrays = ShapeArrays()
+    arrays.update((made, made))
     corners = made.rows()[:, :9].reshape(-1, 3, 3)
-    assert np.array_equal(rows, np.tile(made.rows(), (2, 1)))
-    assert balls.tolist() == 2 * [[[*centre, radius] for centre, radius in made.balls()]]
+    assert arrays.balls[:, :3].tolist() == 2 * [list(centre) for centre, _ in made.balls()]
+    boxes, extents = arrays.primitive_boxes()
     assert np.array_equal(boxes[made.parts :, 0], corners.min(axis=1))
     assert np.array_equal(boxes[made.parts :, 1], corners.max(axis=1))
+    assert np.array_equal(extents[made.parts :], np.abs(corners).max(axis=(1, 2)))
     low, high = np.array(made.bounds())
+    assert np.array_equal(arrays.boxes, [[low, high]] * 2)
     assert np.array_equal(low, corners.min(axis=(0, 1)))
     assert np.array_equal(high, corners.max(axis=(0, 1)))
     hull = np.array([centre for centre, radius in made.balls() if radius == 0])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from minirt.kernel import binning, bvh_build, bvh_traversal, pixels, scene_arrays
+from minirt.kernel import binning, bvh_build, bvh_traversal, mesh_triangles, pixels, scene_arrays
 from minirt.kernel.frame import frame as interpreted_frame
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.machine_code.library import LIBRARY, Call
@@ -43,6 +43,7 @@ def bound(function: Callable[..., None], *arguments: Any) -> Callable[[], None]:
 
 project_shapes, fill_bins = CompiledFunction(binning.project_shapes), CompiledFunction(binning.fill_bins)
 to_single = CompiledFunction(scene_arrays.to_single)
+place_triangles = CompiledFunction(mesh_triangles.place_triangles)
 divide, collapse = CompiledFunction(bvh_build.divide), CompiledFunction(bvh_build.collapse)
 trace_rays = CompiledFunction(bvh_traversal.trace_rays)
 frame = CompiledFunction(interpreted_frame)

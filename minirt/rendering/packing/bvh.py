@@ -1,5 +1,5 @@
 """Builds the BVH of a scene: bounding boxes, SAH (Wald 2007), wide nodes, and blocks of shapes as its leaves; and the
-trees of meshes, each once for its file."""
+trees of meshes, each once for its file, and their triangles, placed in the scene."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ import numpy as np
 from minirt.kernel import beams
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, Group, Tree
-from minirt.kernel.scene_arrays import kind_of, row_type
+from minirt.kernel.machine_code.functions import bound
+from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes import Kind
-from minirt.shapes.mesh import Mesh
+from minirt.shapes.mesh import BARYCENTRIC, Mesh
 
 CACHE_LINE = 64  # bytes
 NO_LEAF = -GROUPS  # a reference for the lanes to spare of a node, which rays of NaN hit, too: to a leaf of no group
@@ -35,14 +37,13 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN) ->
     kinds_are_infinite = [element.infinite for element in shape_arrays.group_numbers]
     is_infinite = np.array(kinds_are_infinite, bool)[shape_arrays.slots[:, 0]]
     infinite, bounded = np.flatnonzero(is_infinite), np.flatnonzero(~is_infinite)
-    boxes = np.empty((len(bounded), 8))
-    boxes[:, :3], boxes[:, 3:6] = -shape_arrays.boxes[bounded, 0], shape_arrays.boxes[bounded, 1]
+    boxes, (bounds, extents) = np.empty((len(bounded), 8)), shape_arrays.primitive_boxes()
+    boxes[:, :3], boxes[:, 3:6] = -bounds[bounded, 0], bounds[bounded, 1]
     boxes[:, INDEX], boxes[:, GROUP] = bounded, shape_arrays.slots[bounded, 0]
     nodes, leaves = wide_nodes(boxes, kernel, margin=margin)
     # The blocks of each kind are in the order of the leaves.
     kinds, (places, spare) = boxes[leaves[:, 0], GROUP], lanes_of(leaves, WIDTH)
     blocks = np.zeros(len(leaves), np.int64)
-    extents = np.ascontiguousarray(shape_arrays.colours_and_extents[:, 3])
     groups = []
     for group, rows in enumerate(shape_arrays.rows):
         of_group = np.flatnonzero(kinds == group)
@@ -186,3 +187,50 @@ def tree_of(triangles: Triangles, kernel: Any) -> np.ndarray:
         leaf_nodes = np.concatenate([leaf_boxes, leaf_names[:, None]], axis=1)
         trees[triangles] = np.concatenate([nodes, leaf_nodes], dtype=np.float32).ravel()
     return trees[triangles]
+
+
+# Triangles of meshes.
+
+
+def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTriangles | None:
+    """Return the triangles of all meshes of a scene, or None without any. They are those of the last call where the
+    files are the same; meshes that were edited are placed anew, on all threads by `run`."""
+    meshes = [shape for shape in shapes.shapes if isinstance(shape, Mesh)]
+    if not meshes:
+        return None
+    files, sizes = [mesh.triangles for mesh in meshes], [mesh.parts for mesh in meshes]
+    points, rows = np.cumsum([0, *(len(file.points) for file in files)]), np.cumsum([0, *sizes])
+    if shapes.triangles is None:
+        corners = [file.corners + first for file, first in zip(files, points, strict=False)]
+        shapes.triangles = MeshTriangles(
+            points=np.empty((points[-1], 3)),
+            normals=np.empty((rows[-1], 3)),
+            corners=np.concatenate(corners, dtype=np.int32, casting="same_kind"),
+            numbers=np.repeat(np.arange(len(meshes), dtype=np.int32), sizes),
+            turns=np.empty((len(meshes), 9)),
+            shading=joined([file.normals for file in files], sizes, np.zeros(9)),
+            uvs=joined([file.uvs for file in files], sizes, np.array(BARYCENTRIC)),
+        )
+    for number, mesh in enumerate(meshes):
+        if mesh is not shapes.placed.get(number):
+            (first, end), its, file = points[number : number + 2], slice(*rows[number : number + 2]), files[number]
+            shapes.triangles.turns[number] = turn = mesh.turned(np.eye(3)).ravel()
+            source = np.array([*turn, mesh.scale, *mesh.position]), file.points, file.flat_normals, int(first)
+            into = shapes.triangles.corners[its], shapes.triangles.points[first:end], shapes.triangles.normals[its]
+            job = bound(kernel.place_triangles, np.zeros(1, np.int64), *source, *into)
+            if run and mesh.parts >= PARALLEL:
+                run(job)
+            else:
+                job()
+            shapes.placed[number] = mesh
+    triangles: MeshTriangles = shapes.triangles
+    return triangles
+
+
+def joined(parts: list[np.ndarray | None], sizes: list[int], default: np.ndarray) -> np.ndarray:
+    """Join rows of triangles, the default for a file without any; one such row where no file has any."""
+    if all(part is None for part in parts):
+        return default[None]
+    tables = (np.tile(default, (n, 1)) if part is None else part for part, n in zip(parts, sizes, strict=True))
+    rows = [np.ascontiguousarray(table.reshape(len(table), -1)) for table in tables]
+    return rows[0] if len(rows) == 1 else np.concatenate(rows)

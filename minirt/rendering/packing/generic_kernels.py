@@ -15,7 +15,7 @@ from minirt.kernel import bvh_nodes
 from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_nodes import WIDTH, Tree
 from minirt.kernel.pixels import TILE
-from minirt.kernel.scene_arrays import Group, SceneArrays, row_type
+from minirt.kernel.scene_arrays import TRIANGLE_ROW, Group, MeshTriangles, SceneArrays, row_type
 from minirt.kernel.shading.lights import LightGrid
 from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
@@ -81,8 +81,11 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
     number: Any = np.float32 if generic.precision == "single" else np.float64
     numbers, integers = partial(np.zeros, dtype=number), partial(np.zeros, dtype=np.int64)
     rows, indices = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS], np.zeros(0, np.int32)
+    corners, three, nine = indices.reshape(0, 3), numbers((0, 3)), numbers((0, 9))
+    triangles = MeshTriangles(three, three, corners, indices, nine, nine, numbers((0, 6)))
     trees = MeshTrees(np.zeros(0, np.float32), integers((0, 2)), numbers((0, 14)), integers(0))
     maps = {name: FEATURES[name].rows(0, number) for name in MAPS if name in generic.features}
+    absent = indices, indices.reshape(0, 0), ABSENT
     features: dict[str, Any] = {name: FEATURES[name].rows(0, number) for name in ROWS if name != "background"}
     lacking: dict[str, Any] = dict.fromkeys(set(OPTIONAL) - generic.features)
     whole = SceneArrays(
@@ -99,7 +102,7 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         light_shapes=indices,
         light_cones=numbers((0, 0, 5)),
         groups=tuple(
-            Group(each, indices, indices.reshape(0, 0), ABSENT, trees if kind is MESH else None)
+            Group(np.zeros(0, TRIANGLE_ROW), *absent, trees, triangles) if kind is MESH else Group(each, *absent)
             for kind, each in zip(ALL_KINDS, rows, strict=True)
         ),
         light_grid=LightGrid(numbers((0, 8)), indices, indices),

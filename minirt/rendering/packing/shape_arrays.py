@@ -7,48 +7,35 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from itertools import chain
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from minirt.element import fields_of, positional_fields
-from minirt.fields import Point
+from minirt.fields import Point, Triple
 from minirt.kernel.projection import MARGIN
-from minirt.kernel.scene_arrays import row_type
+from minirt.kernel.scene_arrays import TRIANGLE_ROW, row_type
 from minirt.lanes import Vec
-from minirt.shapes import ALL_KINDS, Ball, Shape
+from minirt.shapes import ALL_KINDS, MESH, Ball, Shape
 from minirt.shapes.mesh import Mesh
 
 EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # of an infinite shape that is no plane
 
 
-class Primitives(NamedTuple):
-    """The n primitives of some shapes of a kind, in the order of the shapes."""
-
-    rows: np.ndarray  # (n, r) the numbers of their packed form
-    boxes: np.ndarray  # (n, 2, 3) least and greatest corner; of an infinite shape, its defining points
-    balls: np.ndarray  # (k, b, 4) centre and radius: a shape lies in the hull of b balls; planes have none
-
-
-def primitives_of(shapes: list[Shape]) -> Iterator[Primitives]:
-    """Pack the primitives of shapes of one kind: those of meshes block by block, the balls of one with its first."""
-    if isinstance(shapes[0], Mesh):
-        for shape in (each for each in shapes if isinstance(each, Mesh)):
-            balls = bounding_balls([shape])
-            for rows in shape.row_blocks():
-                a, b, c = rows[:, :9].reshape(-1, 3, 3).transpose(1, 0, 2)
-                boxes = np.stack([np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)], axis=1)
-                yield Primitives(rows, boxes, balls)
-                balls = balls[:0]
-    elif shapes[0].columnar:
+def pack_shapes(shapes: list[Shape]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Pack k shapes of one kind: the numbers of their packed form, (k, r), but for meshes; corners of their boxes,
+    (k, c, 3), of an infinite shape its defining points; and balls (k, b, 4) as of `bounding_balls`."""
+    if shapes[0].columnar:
         crowd = in_columns(shapes)
         corners, centres = np.array(crowd.bounds()), np.array([(*centre, radius) for centre, radius in crowd.balls()])
-        yield Primitives(packed_rows([crowd.pack()]), np.moveaxis(corners, -1, 0), np.moveaxis(centres, -1, 0))
-    else:
-        rows = packed_rows([shape.pack() for shape in shapes])
-        yield Primitives(rows, bounding_boxes(shapes), bounding_balls(shapes))
+        return packed_rows([crowd.pack()]), np.moveaxis(corners, -1, 0), np.moveaxis(centres, -1, 0)
+    balls = bounding_balls(shapes)
+    if isinstance(shapes[0], Mesh):
+        return balls[:0], balls[..., :3], balls
+    return packed_rows([shape.pack() for shape in shapes]), bounding_boxes(shapes), balls
 
 
 def in_columns(shapes: list[Shape]) -> Any:
@@ -88,13 +75,6 @@ def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
     return np.array([shape.bounds() or [getattr(shape, name) for name in points] for shape in shapes])
 
 
-def colours_of(shapes: list[Shape]) -> np.ndarray:
-    """Return the colours of the primitives of some shapes of a kind, (n, 3), in [0, 1]."""
-    if isinstance(shapes[0], Mesh):
-        return np.concatenate([shape.colours() for shape in shapes if isinstance(shape, Mesh)])
-    return column(shapes, "colour", 3) / 255
-
-
 CHUNK = 4096  # shapes that are compared or written at once, so that their Python objects stay in the processor's cache
 FIRST = np.arange(1)  # index of the first primitive
 
@@ -104,12 +84,12 @@ class ShapeArrays:
 
     `owner` (n,) is the index in `shapes` of each primitive's shape, `first_primitive` the first primitive of each
     shape, and `listed` those that lists for culling have: a mesh is there by its first triangle. Each kind of shape has
-    a group, numbered by `group_numbers`. `rows`, `slots` and `colours_and_extents` are those of
-    `minirt.kernel.scene_arrays`. `boxes`, (n, 2, 3), are the least and the greatest corner of each bounding box; of an
-    infinite shape, those of its defining points. Primitive i is in the hull of
-    `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it; a whole
-    mesh is in that of its first triangle, and the others have none. Or it is one of the `planes`, (p, 5) unit normal,
-    its product with the points of the plane, and the rounding error of that, whose primitives are `plane_indices`.
+    a group, numbered by `group_numbers`. `tables` are the rows, `slots` and `colours_and_extents` those of
+    `minirt.kernel.scene_arrays`; triangles of meshes have no extent there. `boxes`, (s, 2, 3), are the least and the
+    greatest corner of a box around each of s shapes; of an infinite shape, those of its defining points. Shape i is in
+    the hull of `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it.
+    Or it is one of the `planes`, (p, 5) unit normal, its product with the points of the plane, and the rounding error
+    of that, whose primitives are `plane_indices`.
     """
 
     runs: tuple[tuple[Shape, ...], ...]
@@ -123,17 +103,20 @@ class ShapeArrays:
         fits = [*map(len, runs)] == [*map(len, self.runs)]
         changed = dict(differing_shapes(self.runs, runs)) if fits else {}
         pairs = ((self.shapes[i], shape) for i, shape in changed.items())
-        fits = fits and all(type(old) is type(new) and old.parts == new.parts for old, new in pairs)
+        fits = fits and all(
+            type(a) is type(b) and getattr(a, "triangles", a) is getattr(b, "triangles", a) for a, b in pairs
+        )
         if not fits:
             self.allocate(*runs)
         self.runs = runs
         if fits and not changed:
             return False
+        self.__dict__.pop("rows", None)
         for index, shape in changed.items():
             self.shapes[index] = shape
         indices = np.array([*changed], np.int64) if fits else np.arange(len(self.shapes))
-        groups = self.slots[self.first_primitive[indices], 0]
-        for group in range(len(self.rows)):
+        groups = self.slots[self.listed[indices], 0]
+        for group in range(len(self.tables)):
             of_group = indices[groups == group]
             for start in range(0, len(of_group), CHUNK):
                 self.write(group, of_group[start : start + CHUNK])
@@ -153,17 +136,20 @@ class ShapeArrays:
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
         self.first_primitive = np.concatenate([[0], np.cumsum(sizes)])
-        self.rows = tuple(np.zeros(counts[group], row_type(kind)) for group, kind in enumerate(used))
+        self.tables = tuple(
+            np.zeros(counts[group], TRIANGLE_ROW if kind is MESH else row_type(kind)) for group, kind in enumerate(used)
+        )
+        self.tints: dict[int, Triple] = {}  # the colours of meshes that are written
+        self.triangles: Any = None  # of meshes, and which are placed, see `minirt.rendering.packing.bvh.place_meshes`
+        self.placed: dict[int, Shape] = {}
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
         for group in range(len(used)):
             self.slots[groups == group, 1] = np.arange(counts[group])
         self.plane_indices = np.flatnonzero(self.is_plane[groups])
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
         self.listed = self.first_primitive[:-1]
-        balls = np.zeros(count, np.int64)
-        balls[self.listed] = ball_counts[groups[self.listed]]
-        self.first_ball = np.concatenate([[0], np.cumsum(balls)])
-        self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((count, 2, 3))
+        self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.listed]])])
+        self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(shapes), 2, 3))
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
     def looks(self) -> tuple[Sequence[Shape], np.ndarray]:
@@ -183,19 +169,17 @@ class ShapeArrays:
 
     def write(self, group: int, shapes: np.ndarray) -> None:
         """Write some shapes of one kind, given by their indices, into the arrays."""
-        members = [self.shapes[index] for index in shapes.tolist()]
-        indices, end, hulls = ranges(self.first_primitive, shapes), 0, []
-        table = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
-        self.colours_and_extents[indices, :3] = colours_of(members)
-        for rows, boxes, balls in primitives_of(members):
-            start, end = end, end + len(rows)
-            at = indices[start:end]
-            table[self.slots[at, 1]] = rows
-            corners = corners_last(boxes)
-            low, high = corners.min(axis=0), corners.max(axis=0)
-            self.colours_and_extents[at, 3] = np.maximum(np.abs(low), np.abs(high)).max(axis=0)
-            self.boxes[at, 0], self.boxes[at, 1] = low.T, high.T
-            hulls.append(balls)
+        members, indices = [self.shapes[index] for index in shapes.tolist()], self.listed[shapes]
+        rows, boxes, balls = pack_shapes(members)
+        low, high, extents = spans(boxes)
+        self.boxes[shapes, 0], self.boxes[shapes, 1] = low.T, high.T
+        if isinstance(members[0], Mesh):
+            for index in shapes.tolist():
+                self.tint(index, self.shapes[index])
+        else:
+            self.tables[group].view(np.float64).reshape(len(self.tables[group]), -1)[self.slots[indices, 1]] = rows
+            self.colours_and_extents[indices, :3] = column(members, "colour", 3) / 255
+            self.colours_and_extents[indices, 3] = extents
         if self.is_plane[group]:
             points_and_normals = np.array([shape.flat() for shape in members])
             at = np.searchsorted(self.plane_indices, indices)
@@ -203,20 +187,46 @@ class ShapeArrays:
             self.planes[at, 3] = (points_and_normals[:, 0] * points_and_normals[:, 1]).sum(axis=1)
             self.planes[at, 4] = MARGIN * self.colours_and_extents[indices, 3]
         else:
-            balls = np.concatenate(hulls)
             x, y, z, radius = np.abs(np.moveaxis(balls, 2, 0))
             balls[..., 3] += MARGIN * (radius + np.maximum(np.maximum(x, y), z))
-            self.balls[ranges(self.first_ball, indices)] = balls.reshape(-1, 4)
+            self.balls[self.first_ball[shapes, None] + np.arange(balls.shape[1])] = balls
+
+    def tint(self, index: int, mesh: Any) -> None:
+        """Write the colours of the triangles of a mesh, unless they are there."""
+        if self.tints.get(index) != mesh.colour:
+            self.colours_and_extents[slice(*self.first_primitive[index : index + 2]), :3] = mesh.colours()
+            self.tints[index] = mesh.colour
+
+    @cached_property
+    def rows(self) -> tuple[np.ndarray, ...]:
+        """The rows of all groups, those of meshes with the numbers of each triangle, made when they are asked for."""
+        packed = [shape.rows() for shape in self.shapes if isinstance(shape, Mesh)]
+        return tuple(
+            np.concatenate(packed).view(row_type(MESH))[:, 0] if kind is Mesh else table
+            for kind, table in zip(self.group_numbers, self.tables, strict=True)
+        )
+
+    def primitive_boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the `boxes` of all primitives, (n, 2, 3), and their extents, (n,)."""
+        boxes, extents = self.boxes[self.owner], self.colours_and_extents[:, 3].copy()
+        if Mesh in self.group_numbers:
+            group = self.group_numbers[Mesh]
+            at, numbers = self.slots[:, 0] == group, self.rows[group].view(np.float64).reshape(-1, 27)
+            low, high, extents[at] = spans(numbers[:, :9].reshape(-1, 3, 3))
+            boxes[at, 0], boxes[at, 1] = low.T, high.T
+        return boxes, extents
 
 
-def corners_last(boxes: np.ndarray) -> np.ndarray:
-    """Return boxes (n, c, 3) as an array (c, 3, n), which takes an eighth of the time to reduce."""
-    return np.ascontiguousarray(boxes.transpose(1, 2, 0))
+def spans(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the least and the greatest coordinates of points (n, c, 3), (3, n), and the largest absolute one, (n,)."""
+    corners = np.ascontiguousarray(points.transpose(1, 2, 0))  # reduced in an eighth of the time
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    return low, high, np.maximum(np.abs(low), np.abs(high)).max(axis=0)
 
 
 def extents_from(eye: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     """Return upper bounds of the largest coordinates of shapes in boxes (n, 2, 3) relative to an eye."""
-    low, high = corners_last(boxes)
+    low, high, _ = spans(boxes)
     extents: np.ndarray = np.abs((low + high) / 2 - eye[:, None]).max(axis=0) + (high - low).max(axis=0) / 2
     return extents
 
@@ -228,10 +238,3 @@ def differing_shapes(old: Iterable[Sequence[Shape]], new: Iterable[Sequence[Shap
         if before is not after and before != after:  # identical objects compare equal at the speed of C
             yield from ((at, b) for at, (a, b) in enumerate(zip(before, after, strict=True), start) if a is not b)
         start += len(after)
-
-
-def ranges(starts: np.ndarray, which: np.ndarray) -> np.ndarray:
-    """Return all indices from `starts[i]` to `starts[i + 1]`, for each i of some."""
-    sizes = starts[which + 1] - starts[which]
-    indices: np.ndarray = np.repeat(starts[which] - np.cumsum(sizes) + sizes, sizes) + np.arange(sizes.sum())
-    return indices

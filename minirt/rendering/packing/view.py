@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from minirt.kernel.beams import CENTRE, MeshTrees
+from minirt.kernel.beams import CENTRE
 from minirt.kernel.machine_code.functions import bound
 from minirt.kernel.pixels import PACKET_HEIGHT
-from minirt.kernel.scene_arrays import SceneArrays, kind_of, row_axes, row_type
+from minirt.kernel.scene_arrays import Group, SceneArrays, kind_of, row_axes, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN
 from minirt.lanes import width
 from minirt.rendering.packing.camera import (
@@ -130,8 +130,13 @@ class Rounding:
         kind, table = kind_of(rows.dtype.names), rows.view(np.float64).reshape(len(rows), -1)
         return self.rounded(table, row_axes(kind)).view(row_type(kind, np.float32))[:, 0]
 
-    def trees(self, trees: MeshTrees | None) -> MeshTrees | None:
-        return trees and trees._replace(places=self.rounded(trees.places, PLACE))
+    def group(self, group: Group) -> Group:
+        """Return a group with its shapes, or with the places of its meshes and of their points."""
+        trees, triangles = group.trees, group.triangles
+        if not triangles:
+            return group._replace(rows=self.rows(group.rows))
+        triangles = as_single(triangles._replace(points=self.rounded(triangles.points, POINT)))
+        return group._replace(trees=trees._replace(places=self.rounded(trees.places, PLACE)), triangles=triangles)
 
 
 def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> SceneArrays:
@@ -156,10 +161,7 @@ def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> S
             # Narrowed by rounding errors, so that fewer directions count as close to another.
             light_tolerances=np.maximum(np.sqrt(arrays.light_tolerances) - MARGIN, 0.0) ** 2,
             light_cones=light_cones.reshape(arrays.light_cones.shape),
-            groups=tuple(
-                group._replace(rows=rounding.rows(group.rows), trees=rounding.trees(group.trees))
-                for group in arrays.groups
-            ),
+            groups=tuple(map(rounding.group, arrays.groups)),
         )
     )
     return single

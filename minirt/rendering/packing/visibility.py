@@ -42,7 +42,8 @@ PARALLEL = 4096  # shapes from which on several threads project them
 
 
 NO_EXTENTS = np.zeros((0, 4), np.float32)
-BOUNDS = "balls", "first_ball", "boxes", "slots", "planes", "plane_indices"  # of `Projection`, and of `ShapeArrays`
+# Fields of `Projection`, and of `ShapeArrays`.
+BOUNDS = "balls", "first_ball", "boxes", "listed", "slots", "planes", "plane_indices"
 Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all threads
 
 
@@ -132,7 +133,7 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
     every = in_all_cells(shape_arrays, 1, skipped)
     if cells == 1:
         return every
-    starts = np.zeros((len(shape_arrays.rows), 6 * cells * cells + 1), np.int32)
+    starts = np.zeros((len(shape_arrays.tables), 6 * cells * cells + 1), np.int32)
     return every._replace(starts=starts, members=every.members[:0])
 
 
@@ -153,12 +154,12 @@ class Bins:
         extents: np.ndarray = NO_EXTENTS,
         reach: float = np.inf,
     ) -> None:
-        shapes, planes, kinds = len(shape_arrays.slots), len(shape_arrays.planes), len(shape_arrays.rows)
+        shapes, planes, kinds = len(shape_arrays.listed), len(shape_arrays.planes), len(shape_arrays.tables)
         chunk = max(1, min(CHUNK, shapes))
         chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
         self.kernel = kernel
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
-        room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
+        room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((len(shape_arrays.slots), 5))
         self.seen = Projection(
             origin=np.zeros(3),
             grid=grid,
@@ -233,7 +234,7 @@ def in_all_cells(
     kinds = shape_arrays.slots[shapes, 0]
     order = np.lexsort((cones[shapes, 4], kinds))
     members = shapes[order].astype(np.int32)
-    ends = np.searchsorted(kinds[order], np.arange(len(shape_arrays.rows))[:, None] + [0, 1])
+    ends = np.searchsorted(kinds[order], np.arange(len(shape_arrays.tables))[:, None] + [0, 1])
     # All lists of one kind come first, then all lists of the next kind.
     lists = [np.tile(members[first:last], cells) for first, last in ends]
     starts = cells * ends[:, :1] + np.diff(ends) * np.arange(cells + 1)

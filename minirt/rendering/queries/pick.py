@@ -38,14 +38,12 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: Sh
     origin, direction = camera_ray(scene.camera, width, height, x + 0.5, y + 0.5)
     distance = hit_distances(shape_arrays, origin, direction)
     near = distance <= distance.min(initial=np.inf) * (1 + 2 * COINCIDENT)
-    closest: Any = (
-        *np.array([[np.inf], [-1.0], [0.0]]),
-        -1,
-    )  # distance, primitive, extent, and the last hit
+    _, extents = shape_arrays.primitive_boxes()
+    closest: Any = *np.array([[np.inf], [-1.0], [0.0]]), -1  # distance, primitive, its extent, and the last hit
     for index in np.flatnonzero(np.isfinite(distance) & near).tolist():  # where they coincide the kernel's rule decides
         group, row = shape_arrays.slots[index]
         packed = packed_columns(shape_arrays.rows[group][row : row + 1])
-        extent, is_hit = shape_arrays.colours_and_extents[index, 3], np.ones(1, bool)
+        extent, is_hit = extents[index], np.ones(1, bool)
         with np.errstate(all="ignore"):
             closest = closer_hit(packed, index, extent, is_hit, distance[[index]], origin, direction, closest)
     primitive = int(closest[1][0])

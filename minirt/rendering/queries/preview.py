@@ -184,7 +184,7 @@ def showing_camera(scene: Scene, arrays: ShapeArrays, width: int, height: int) -
 
 def bounding_ball(arrays: ShapeArrays) -> tuple[Triple, float]:
     """Return a ball around all bounded shapes; without any, around points of the infinite ones."""
-    is_bounded = ~np.array([kind.infinite for kind in arrays.group_numbers], bool)[arrays.slots[:, 0]]
+    is_bounded = np.array([not shape.infinite for shape in arrays.shapes], bool)
     boxes = arrays.boxes[is_bounded] if is_bounded.any() else arrays.boxes
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     x, y, z = (low + high).tolist()

@@ -62,12 +62,13 @@ class Stiff(NamedTuple):
 def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> Iterator[Stiff]:
     """Yield the stiff shapes of a scene in a picture of the given size."""
     eye, right, _, forward = camera_numbers(scene.camera, width, height).reshape(4, 3)
-    nearest, size = nearest_points_and_sizes(tables, eye)
+    boxes, extents = tables.primitive_boxes()
+    nearest, size = nearest_points_and_sizes(tables, eye, boxes)
     way = nearest - eye
     distance = np.linalg.norm(way, axis=1)
     # Rounding errors of a point on the surface, in scene units; in float32 relative to the eye.
-    double = ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3])
-    single = ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, tables.boxes))
+    double = ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + extents)
+    single = ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, boxes))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = np.minimum(size, distance)
         double, single = double / scale, np.where(scale < LEAST_IN_SINGLE, np.inf, single / scale)
@@ -113,9 +114,9 @@ def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tu
         yield index, name + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
-def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each of n primitives the point nearest to the eye, (n, 3), and the shortest length of its shape, (n,),
-    infinity if it has none."""
+def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return for each of n primitives, in `boxes`, the point nearest to the eye, (n, 3), and the shortest length of its
+    shape, (n,), infinity if it has none."""
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
         selected = np.flatnonzero(tables.slots[:, 0] == group)
@@ -123,11 +124,11 @@ def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray) -> tuple[np.n
             on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
         nearest[selected] = np.stack([np.broadcast_to(part, len(selected)) for part in (on.x, on.y, on.z)], axis=-1)
         if not tables.is_plane[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
-            nearest[selected] = np.clip(nearest[selected], *tables.boxes[selected].swapaxes(0, 1))
+            nearest[selected] = np.clip(nearest[selected], *boxes[selected].swapaxes(0, 1))
         owners, part_of = np.unique(tables.owner[selected], return_inverse=True)
         size[selected] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
     # At the exact centre no point is nearest.
-    return np.where(np.isfinite(nearest), nearest, tables.boxes.mean(axis=1)), size
+    return np.where(np.isfinite(nearest), nearest, boxes.mean(axis=1)), size
 
 
 # Find coincident surfaces: pairs so close together that rounding decides which of them is seen (z-fighting).
@@ -153,9 +154,10 @@ def coincident(scene: Scene, tables: ShapeArrays, across: int = ACROSS, down: in
         near, far = np.take_along_axis(t, pair, axis=0)
         gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
         points = near * np.stack([ways.x, ways.y, ways.z])
-        reach = extents_from(eye, tables.boxes)
+        boxes, extents = tables.primitive_boxes()
+        reach = extents_from(eye, boxes)
         world = np.abs(points + eye[:, None]).max(axis=0) + np.abs(eye).max()
-        double = gap / (TIE * DOUBLE * (world + tables.colours_and_extents[pair, 3].max(axis=0)))
+        double = gap / (TIE * DOUBLE * (world + extents[pair].max(axis=0)))
         single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))
         close = (double <= CLOSE) | (single <= 1)
     close &= tables.owner[pair[0]] != tables.owner[pair[1]]  # parts of a mesh have edges in common
