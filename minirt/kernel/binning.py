@@ -59,21 +59,24 @@ def project_shapes(next_chunk: Any, seen: Projection) -> None:
 
     Any number of threads may do so at the same time.
     """
-    origin = seen.origin
-    slack = MARGIN * max(abs(origin[0]), abs(origin[1]), abs(origin[2])) + seen.radius
-    chunks, room = seen.used.shape[0] - 1, seen.chunk * seen.grid.frames.shape[0]
     while True:
         number = fetch_add(next_chunk, 1)
-        if number > chunks:
+        if number >= seen.used.shape[0]:
             return
-        end = number * room
-        if number == chunks:
-            end = project_planes(seen, slack, end)
-        else:
-            first = number * seen.chunk
-            for shape in range(first, min(first + seen.chunk, seen.listed.shape[0])):
-                end = project_shape(seen, slack, shape, end)
-        seen.used[number] = end - number * room
+        project_chunk(seen, number)
+
+
+def project_chunk(seen: Projection, number: int) -> None:
+    """Project the shapes of a chunk or, behind the last one, all planes."""
+    origin, start = seen.origin, number * seen.chunk * seen.grid.frames.shape[0]
+    slack, end = MARGIN * max(abs(origin[0]), abs(origin[1]), abs(origin[2])) + seen.radius, start
+    if number + 1 == seen.used.shape[0]:
+        end = project_planes(seen, slack, end)
+    else:
+        first = number * seen.chunk
+        for shape in range(first, min(first + seen.chunk, seen.listed.shape[0])):
+            end = project_shape(seen, slack, shape, end)
+    seen.used[number] = end - start
 
 
 def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
@@ -205,3 +208,84 @@ def sort_by_depth(entries: Any, count: int, digits: Any) -> None:
             value = (entries[source, i] >> shift) & (digits.shape[0] - 1)
             entries[target, digits[value]] = entries[source, i]
             digits[value] += 1
+
+
+# Lists of which one shape changes.
+
+
+def move_shape(shape: int, seen: Projection, starts: Any, members: Any) -> None:
+    """Bin a shape anew that is no plane: the lists become those of `fill_bins`, and `found` their members.
+
+    Where `members` has no room for so many the lists are spoilt.
+    """
+    take_out(seen, shape, starts, members)
+    project_chunk(seen, shape // seen.chunk)
+    first, end = rectangles_of(seen, shape)
+    more, last = 0, starts.shape[0] - 1
+    for at in range(first, end):
+        more += seen.rectangles[at, 2] * seen.rectangles[at, 3]
+    seen.found[0] = starts[last] + more
+    if seen.found[0] <= members.shape[0]:
+        put_in(seen, shape, more, starts, members)
+
+
+def rectangles_of(seen: Projection, shape: int) -> tuple[int, int]:
+    """Return the range of the rectangles of a shape."""
+    number, index = shape // seen.chunk, seen.listed[shape]
+    first = number * seen.chunk * seen.grid.frames.shape[0]
+    stop = first + seen.used[number]
+    while first < stop and seen.rectangles[first, 0] < index:
+        first += 1
+    end = first
+    while end < stop and seen.rectangles[end, 0] == index:
+        end += 1
+    return first, end
+
+
+def take_out(seen: Projection, shape: int, starts: Any, members: Any) -> None:
+    """Take a shape out of the lists of the cells of its rectangles, in ascending order."""
+    index, (first, end) = seen.listed[shape], rectangles_of(seen, shape)
+    last, gone, before, behind = starts.shape[0] - 1, 0, 0, 0
+    for at in range(first, end):
+        _, corner, columns, rows = rectangle_at(seen, at)
+        for i in range(columns * rows):
+            cell = corner + i // columns * seen.grid.across + i % columns
+            place = int(starts[cell])
+            while members[place] != index:
+                place += 1
+            shift(starts, members, before, cell, behind, place, -gone)
+            gone, before, behind = gone + 1, cell, place + 1
+    shift(starts, members, before, last, behind, int(starts[last]), -gone)
+
+
+def put_in(seen: Projection, shape: int, more: int, starts: Any, members: Any) -> None:
+    """Put a shape into the lists of the cells of its rectangles, in descending order: by distance, then by index."""
+    index, (first, end) = seen.listed[shape], rectangles_of(seen, shape)
+    last = starts.shape[0] - 1
+    stop = int(starts[last])
+    for at in range(end - 1, first - 1, -1):
+        _, corner, columns, rows = rectangle_at(seen, at)
+        for i in range(columns * rows - 1, -1, -1):
+            cell = corner + i // columns * seen.grid.across + i % columns
+            place = int(starts[cell + 1])
+            while place > starts[cell] and is_behind(seen, members[place - 1], index):
+                place -= 1
+            shift(starts, members, cell, last, place, stop, more)
+            more, last, stop = more - 1, cell, place
+            members[place + more] = index
+
+
+def is_behind(seen: Projection, index: int, other: int) -> bool:
+    """Whether a primitive follows another one in lists."""
+    depth, nearer = seen.cone_bits[index, 4], seen.cone_bits[other, 4]
+    return bool(depth > nearer or (depth == nearer and index > other))
+
+
+def shift(starts: Any, members: Any, before: int, last: int, first: int, stop: int, by: int) -> None:
+    """Move the members from `first` up to `stop`, and the starts of the cells behind `before` up to `last`."""
+    if by != 0:
+        for cell in range(before + 1, last + 1):
+            starts[cell] += by
+        for i in range(first, stop):
+            at = i if by < 0 else first + stop - 1 - i
+            members[at + by] = members[at]

@@ -190,7 +190,8 @@ def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
-    others = classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
+    move = functions.move_shape.call(0, *recorder.calls["fill_bins"][1][:3])
+    others = move, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
     return [*recorder.calls.values(), *others, functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
 

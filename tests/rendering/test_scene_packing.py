@@ -17,7 +17,7 @@ from minirt.materials import Checker, Specular
 from minirt.rendering.packing import shape_arrays
 from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes, extents_from
 from minirt.rendering.packing.view import Rounding, View
-from minirt.rendering.packing.visibility import Bins
+from minirt.rendering.packing.visibility import BinnedShapes, Bins
 from minirt.rendering.renderer import PRECISIONS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
@@ -188,6 +188,18 @@ def test_lists_in_the_memory_of_those_before_are_those_of_the_new_scene(
     monkeypatch.setattr(Bins, "fit", lambda *_: True)
     with pytest.raises((AssertionError, ValueError)):
         follow_edits(1, precision)
+
+
+def test_a_shape_that_moves_is_binned_without_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    packing, scenes = Packing(), edited(5)
+    packing.pack(next(scenes), 24, 16)
+    bins = [packing.view.bins, *(each.bins for each in packing.cache.values() if isinstance(each, BinnedShapes))]
+    for each in bins:
+        monkeypatch.setattr(each, "project", None)
+    scene = packing.last[0]
+    scene = scene.replace(scene.spheres[3], centre=(0, 1, 2))
+    assert_same(packing.pack(scene, 24, 16), scene)
+    assert len(bins) == 4
 
 
 STEPS = 12

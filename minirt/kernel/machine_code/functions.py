@@ -42,6 +42,7 @@ def bound(function: Callable[..., None], *arguments: Any) -> Callable[[], None]:
 
 
 project_shapes, fill_bins = CompiledFunction(binning.project_shapes), CompiledFunction(binning.fill_bins)
+move_shape = CompiledFunction(binning.move_shape)
 to_single = CompiledFunction(scene_arrays.to_single)
 place_triangles = CompiledFunction(mesh_triangles.place_triangles)
 divide, collapse = CompiledFunction(bvh_build.divide), CompiledFunction(bvh_build.collapse)

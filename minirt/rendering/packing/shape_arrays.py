@@ -82,9 +82,10 @@ FIRST = np.arange(1)  # index of the first primitive
 class ShapeArrays:
     """The n primitives of the last shapes that it was given: a mesh has one for each triangle, other shapes have one.
 
-    `owner` (n,) is the index in `shapes` of each primitive's shape, `first_primitive` the first primitive of each
-    shape, and `listed` those that lists for culling have: a mesh is there by its first triangle. Each kind of shape has
-    a group, numbered by `group_numbers`. `tables` are the rows, `slots` and `colours_and_extents` those of
+    `written` (s,) has for each of s shapes the number of the last of all `updates` that wrote it. `owner` (n,) is the
+    index in `shapes` of each primitive's shape, `first_primitive` the first primitive of each shape, and `listed` those
+    that lists for culling have: a mesh is there by its first triangle. Each kind of shape has a group, numbered by
+    `group_numbers`. `tables` are the rows, `slots` and `colours_and_extents` those of
     `minirt.kernel.scene_arrays`; triangles of meshes have no extent there. `boxes`, (s, 2, 3), are the least and the
     greatest corner of a box around each of s shapes; of an infinite shape, those of its defining points. Shape i is in
     the hull of `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it.
@@ -94,6 +95,7 @@ class ShapeArrays:
 
     runs: tuple[tuple[Shape, ...], ...]
     shapes: list[Shape]
+    updates: int
 
     def __init__(self) -> None:
         self.allocate()
@@ -114,6 +116,7 @@ class ShapeArrays:
         self.__dict__.pop("rows", None)
         for index, shape in changed.items():
             self.shapes[index] = shape
+        self.updates += 1
         indices = np.array([*changed], np.int64) if fits else np.arange(len(self.shapes))
         groups = self.slots[self.listed[indices], 0]
         for group in range(len(self.tables)):
@@ -124,7 +127,7 @@ class ShapeArrays:
 
     def allocate(self, *runs: tuple[Shape, ...]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
-        self.runs, shapes = runs, [*chain.from_iterable(runs)]
+        self.runs, self.updates, shapes = runs, 0, [*chain.from_iterable(runs)]
         kinds = list(map(type, shapes))
         present = set(kinds)
         used = [kind for kind in ALL_KINDS if kind.element in present]
@@ -150,6 +153,7 @@ class ShapeArrays:
         self.listed = self.first_primitive[:-1]
         self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.listed]])])
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(shapes), 2, 3))
+        self.written = np.zeros(len(shapes), np.int32)
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
     def looks(self) -> tuple[Sequence[Shape], np.ndarray]:
@@ -170,6 +174,7 @@ class ShapeArrays:
     def write(self, group: int, shapes: np.ndarray) -> None:
         """Write some shapes of one kind, given by their indices, into the arrays."""
         members, indices = [self.shapes[index] for index in shapes.tolist()], self.listed[shapes]
+        self.written[shapes] = self.updates
         rows, boxes, balls = pack_shapes(members)
         low, high, extents = spans(boxes)
         self.boxes[shapes, 0], self.boxes[shapes, 1] = low.T, high.T

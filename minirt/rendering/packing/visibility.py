@@ -38,6 +38,7 @@ RECTANGLE = 32  # bytes of a rectangle of cells, and of its places in a sorted l
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**28  # bytes of lists that are built within seconds
 MOST_MEMBERS = 2**24  # of all cells that have every shape
+LITTLE = 1 / 64  # of lists to spare, in which shapes may move
 PARALLEL = 4096  # shapes from which on several threads project them
 
 
@@ -143,6 +144,8 @@ class Bins:
     extents are those of `minirt.kernel.binning.Projection`."""
 
     copies, largest = 1, system.UNLIMITED
+    last: tuple[Any, ...] = ()  # the point, the frames and the planes that the lists are for
+    updates = 0  # of the shapes, up to which the lists are theirs
 
     def __init__(
         self,
@@ -157,7 +160,7 @@ class Bins:
         shapes, planes, kinds = len(shape_arrays.listed), len(shape_arrays.planes), len(shape_arrays.tables)
         chunk = max(1, min(CHUNK, shapes))
         chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
-        self.kernel = kernel
+        self.kernel, self.shapes = kernel, shape_arrays
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((len(shape_arrays.slots), 5))
         self.seen = Projection(
@@ -192,24 +195,30 @@ class Bins:
         scratch = self.entries, np.empty(2**RADIX, np.int64)
         return bound(self.kernel.fill_bins, self.seen, self.starts.reshape(-1), self.members, *scratch)
 
-    def see_from(self, point: Any, run: Run | None = None, spare: float = 0.0) -> None:
+    def see_from(self, point: Any, run: Run | None = None, spare: float = LITTLE) -> None:
         """Bin the shapes as seen from a point, many of them on all threads by `run`. New lists leave room for a `spare`
         share of members. `TooLargeError` where there is no room."""
         if not len(self.members):
             self.check(0)
-        self.seen.origin[:] = point
-        self.counter[0] = 0
-        if run and self.is_large:
-            run(self.project)
-        else:
-            self.project()
-        self.fill()
+        view: Any = *point, self.seen.grid.frames.tobytes(), self.seen.shown.tobytes()
+        moved = np.flatnonzero(self.shapes.written > self.updates)
+        same = view == self.last and not self.shapes.is_plane[self.shapes.slots[self.shapes.listed[moved[:2]], 0]].any()
+        self.updates, self.last, self.seen.origin[:], self.counter[0] = self.shapes.updates, (), point, 0
+        if same and len(moved) == 1:
+            self.kernel.move_shape(int(moved[0]), self.seen, self.starts.reshape(-1), self.members)
+        elif not same or len(moved):
+            if run and self.is_large:
+                run(self.project)
+            else:
+                self.project()
+            self.fill()
         count = int(self.seen.found[0])
         if count > len(self.members):
             self.check(count)
             self.members = np.zeros(int(count * (1.0 + spare)), np.int32)
             self.fill = self.bound_fill()
             self.fill()
+        self.last = view
 
     def check(self, members: int) -> None:
         size = self.copies * (self.starts.nbytes + members * self.members.itemsize) + self.bytes_of_planes
