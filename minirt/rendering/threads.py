@@ -18,8 +18,8 @@ Run: TypeAlias = Callable[[Job], object]  # runs a job on all threads
 LONGEST_WAIT = 0.2  # seconds: Python does not see a signal that comes just before it waits until the wait ends
 
 
-Ended = SimpleQueue[BaseException | None]  # the error of each job that has ended, if it had one
-Task = tuple[Job, Ended]
+Results = list[BaseException | None]  # of the jobs that have ended: the error of each, if it had one
+Task = tuple[Job, Results, SimpleQueue[None]]  # and what wakes those who wait for it
 
 
 class ThreadPool:
@@ -43,23 +43,21 @@ class ThreadPool:
         frame of 2 ms. `cancel` makes the jobs end early. It is called when a job fails, and when Ctrl+C interrupts the
         wait.
         """
-        ended: Ended = SimpleQueue()
-        own = jobs[:1] if helps else []
+        results, wake = Results(), SimpleQueue[None]()
+        own, errors = jobs[:1] if helps else [], list[BaseException]()
         for job in jobs[len(own) :]:
-            self.tasks.put((job, ended))
-        left, errors = len(jobs), list[BaseException]()
-        while left:
+            self.tasks.put((job, results, wake))
+        while len(results) < len(jobs):  # an interrupt may come between waking and any count of it
             try:
                 if own:
-                    perform(own.pop(), ended)
+                    perform(own.pop(), results, wake)
                 with suppress(Empty):
-                    error = ended.get(timeout=LONGEST_WAIT)
-                    left -= 1
-                    errors += [error] if error else []
+                    wake.get(timeout=LONGEST_WAIT)
             except BaseException as interrupt:
-                errors.insert(0, interrupt)
-            if errors:
+                errors.append(interrupt)
+            if errors or any(results):
                 cancel()
+        errors += filter(None, results)
         if errors:
             raise errors[0]
 
@@ -72,12 +70,13 @@ def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
     tasks.put(None)
 
 
-def perform(job: Job, ended: Ended) -> None:
+def perform(job: Job, results: Results, wake: SimpleQueue[None]) -> None:
     try:
         job()
-        ended.put(None)
+        results.append(None)
     except BaseException as error:
-        ended.put(error)
+        results.append(error)
+    wake.put(None)
 
 
 # Of a container: microseconds of processor time per period, and the period in microseconds.

@@ -150,8 +150,8 @@ def ball(viewer: ViewerInPage) -> tuple[float, float, int]:
 def test_a_key_and_a_drag_move_the_ball_and_escape_gives_the_keyboard_back(viewer: ViewerInPage) -> None:
     until(lambda: ball(viewer)[2] > 100, "the ball")
     x, y, size = ball(viewer)
-    assert abs(x - WIDTH / 2) < 2
-    assert abs(y - HEIGHT / 2) < 2
+    assert abs(x - WIDTH / 2) < 3
+    assert abs(y - HEIGHT / 2) < 3  # tips cover a part of it
 
     viewer.press("d", "KeyD")  # before a click the notebook has the keyboard
     assert not viewer.has_focus()

@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
+from queue import SimpleQueue
 from threading import Event, Thread, current_thread, main_thread
 from typing import TypeVar
 
@@ -52,6 +53,21 @@ def cancelled(renderer: Renderer, work: Callable[[], Answer]) -> Answer:
 def test_all_threads_copy_the_levels_of_pixels(part: tuple[slice, ...]) -> None:
     pixels = np.random.default_rng(1).integers(0, 256, (50, 37, 4), np.uint8)[part]
     assert np.array_equal(rgb_of(pixels, Renderer(2).runner.run_on_all), pixels[..., 2::-1])
+
+
+def test_an_interrupt_at_the_end_of_a_job_does_not_lose_the_job(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pool would wait for it for ever."""
+
+    class Interrupted(SimpleQueue[None]):
+        def get(self, block: bool = True, timeout: float | None = None) -> None:
+            super().get(block, timeout)
+            monkeypatch.undo()
+            raise KeyboardInterrupt
+
+    pool = ThreadPool(2)
+    monkeypatch.setattr(threads, "SimpleQueue", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        pool.run([lambda: None] * 2, lambda: None)
 
 
 def test_cancelling_ends_a_long_frame_and_the_next_is_right() -> None:

@@ -85,7 +85,7 @@ def square_edge(shape_arrays: ShapeArrays, packet_width: int) -> int:
 
 def spread_of(cells: int) -> float:
     """The share of the mean angle of a cell, so many of which lie along an edge of a cube, by which lists spread."""
-    return SPREAD if cells < CROWD else SPREAD_IN_CROWD
+    return SPREAD if cells < CROWD else SPREAD_IN_CROWD * (CROWD / cells) ** 2
 
 
 @cache

@@ -50,7 +50,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: Sh
     if primitive < 0:
         return None, None
     point = origin + float(distance[primitive]) * direction
-    return shape_arrays.shapes[shape_arrays.owner[primitive]], (float(point.x), float(point.y), float(point.z))
+    return scene.shapes[shape_arrays.owner[primitive]], (float(point.x), float(point.y), float(point.z))
 
 
 def surface_normal(shape: Shape, point: Triple, direction: Triple) -> Triple:
