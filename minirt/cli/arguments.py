@@ -114,7 +114,7 @@ class Arguments(argparse.ArgumentParser):
 
 OPTIONS = Path(__file__).with_name("options.txt").read_text(encoding="utf-8")
 # Defaults of options that are not off or unset without one.
-DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "precision": "double", "camera": 1}
+DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "camera": 1}
 KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text
     **dict.fromkeys(("output", "fallback", "replay", "report"), file_name),
     **dict.fromkeys(("error", "time"), number),

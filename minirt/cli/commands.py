@@ -52,7 +52,7 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.report.bench import measure
 
     with progress(lambda: State("measuring")):
-        measured = measure(options.scene[0], scene, options.size, options.threads, options.precision)
+        measured = measure(options.scene[0], scene, options.size, options.threads, options.precision or "double")
     say(json.dumps(measured) if options.json else ", ".join(f"{name} {value}" for name, value in measured.items()))
     return OK
 
@@ -75,8 +75,8 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     from minirt.rendering.renderer import renderer
     from minirt.viewer.app import desktop
 
-    chosen = renderer(options.threads, options.precision, options.depth, options.dither)
-    chosen.moves_in_single = chosen.precision == "double" and not any("--prec" in each for each in options.command)
+    chosen = renderer(options.threads, options.precision or "double", options.depth, options.dither)
+    chosen.moves_in_single = options.precision is None
     try:
         return desktop.run(
             scene,
@@ -120,7 +120,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     lines = text.replace("\r\n", "\n").split("\n")
     settings: dict[str, Any] = {
         "file": options.replay,
-        "renderer": renderer(options.threads, options.precision, options.depth, options.dither),
+        "renderer": renderer(options.threads, options.precision or "double", options.depth, options.dither),
         "size": (width, height),
         "path": options.scene[0],
         "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine

@@ -33,7 +33,8 @@ PATIENCE = 10  # seconds for a scheduler to answer
 
 def render_output(scene: Scene, options: argparse.Namespace) -> int:
     """Render a picture, or the pictures of a turntable, and write the output."""
-    size, given = options.size or size_of(scene), {name: getattr(options, name) for name in GIVEN}
+    size = options.size or size_of(scene)
+    given: dict[str, Any] = {name: value for name in GIVEN if (value := getattr(options, name)) is not None}
     settings = RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
     region = cut_for(settings.region, *size).region
     render = render_film if options.turntable else render_picture
