@@ -41,10 +41,11 @@ def packed_columns(rows: Any, *extra: int) -> Any:
     )
 
 
-def cast(packed: Any, origin: Vec, direction: Vec) -> np.ndarray:
-    """Return the distances at which rays hit packed shapes, infinite where they do not."""
+def cast(packed: Any, origin: Vec, direction: Vec, limit: float | None = None) -> np.ndarray:
+    """Return the distances at which rays hit packed shapes, infinite where they do not; with an infinite `limit` only
+    which are infinite is right, in half of the time."""
     with np.errstate(all="ignore"):
-        hit, t = kind_of_packed(type(packed)).intersect(packed, origin, direction)
+        hit, t = kind_of_packed(type(packed)).intersect(packed, origin, direction, limit)
         return np.where(hit, t, inf)
 
 

@@ -25,6 +25,7 @@ from minirt.shapes.shape import Bounds
 Picked = tuple[Shape | None, Triple | None]  # a shape and a point on it; None for both where the background is
 COUNT = 33  # rays along a side of a footprint: odd, so that one is in the middle
 COARSE = 9  # where a mesh takes part, whose triangles are all tested
+RAYS = 4096  # at once: their numbers fit a processor's cache, which takes half of the time
 START = 1 / 1024  # of the shape's height: how far above its top the rays begin, so that they meet a surface there
 
 
@@ -82,8 +83,11 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
         covered = covered_pixels(shape, camera, width, height)
         inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
         return inside & (covered is not None and covered[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)])
-    distances = distances_of(shape, *camera_ray(camera, width, height, x + 0.5, y + 0.5))
-    return np.broadcast_to(distances < np.inf, x.shape)
+    x, y = np.broadcast_arrays(x, y)
+    packed, places = shape.pack(), np.stack([x.ravel() + 0.5, y.ravel() + 0.5])
+    chunks = (places[:, start : start + RAYS] for start in range(0, max(x.size, 1), RAYS))
+    parts = [cast(packed, *camera_ray(camera, width, height, *chunk), limit=np.inf) < np.inf for chunk in chunks]
+    return np.concatenate(parts).reshape(x.shape)
 
 
 def enclosing_rectangle(
@@ -191,5 +195,5 @@ def winding_numbers(
     row = np.minimum(first, last)[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(rows) - rows, rows)
     crossing = ax[edge] + (row + 0.5 - ay[edge]) * (bx - ax)[edge] / (by - ay)[edge]
     column = np.clip(np.ceil(crossing - 0.5), 0, width).astype(np.int64)
-    turns = np.bincount(row * (width + 1) + column, np.sign(last - first)[edge], height * (width + 1))
-    return np.cumsum(np.rint(turns).reshape(height, width + 1)[:, :width], axis=1)
+    turns = np.bincount(row * (width + 1) + column, np.sign(last - first)[edge], height * (width + 1)).astype(np.int16)
+    return np.cumsum(turns.reshape(height, width + 1)[:, :width], axis=1, dtype=np.int16)

@@ -230,15 +230,13 @@ def outline_pixels(
         grid = covers(shape, camera, width, height, x, y)
         corners = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
         mixed = np.logical_or.reduce(corners) & ~np.logical_and.reduce(corners)
-        mixed[:, 1:] |= mixed[:, :-1].copy()  # an edge on the border of two cells belongs to both
-        mixed[1:] |= mixed[:-1].copy()
         rows, columns = (step * each[:, None, None] for each in np.nonzero(mixed))
-        reach = np.arange(-1, step + 1)
+        reach = np.arange(-1, step + 2)  # an edge on the border of two cells belongs to both
         y, x = top + rows + reach[:, None], left + columns + reach
-    y, x = np.broadcast_arrays(np.clip(y, 0, height - 1), np.clip(x, 0, width - 1))
+    y, x = np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)
     mask = covers(shape, camera, width, height, x, y)
     around = mask[:, :-2, 1:-1], mask[:, 2:, 1:-1], mask[:, 1:-1, :-2], mask[:, 1:-1, 2:]
     middle = mask[:, 1:-1, 1:-1]
     outside, inside = np.logical_or.reduce(around) & ~middle, middle & ~np.logical_and.reduce(around)
-    y, x = y[:, 1:-1, 1:-1], x[:, 1:-1, 1:-1]
+    y, x = (each[:, 1:-1, 1:-1] for each in np.broadcast_arrays(y, x))
     return (y[outside], x[outside]), (y[inside], x[inside])

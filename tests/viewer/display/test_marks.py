@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from math import cos, hypot, radians, sin
+from typing import Any
 
 import numpy as np
 import pytest
 
 from minirt.fields import Triple
+from minirt.rendering.packing.ray_casting import camera_ray, distances_of
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Light
-from minirt.shapes import Shape
+from minirt.shapes import Shape, Torus
+from minirt.shapes import torus as torus_formulas
 from minirt.viewer.display import marks
 from minirt.viewer.display.marks import (
     AXIS_COLOURS,
     BLACK,
     BORDER,
     GOLD,
+    MOVING_RAYS,
     TOP,
     WHITE,
     Icon,
@@ -41,8 +45,9 @@ VIEW = projection_of(scene().camera, 320, 180)  # from 0,0,10 along -z, field of
 
 
 def edges(shape: Shape, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
-    """Return masks of the pixels just outside and just inside a shape, from its coverage of every pixel."""
-    mask = covers(shape, camera, WIDTH, HEIGHT, *np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
+    """Return masks of the pixels just outside and just inside a shape, from the distance at every pixel."""
+    x, y = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
+    mask = np.isfinite(distances_of(shape, *camera_ray(camera, WIDTH, HEIGHT, x, y)))
     framed = np.pad(mask, 1, mode="edge")
     around = framed[:-2, 1:-1], framed[2:, 1:-1], framed[1:-1, :-2], framed[1:-1, 2:]
     return np.logical_or.reduce(around) & ~mask, mask & ~np.logical_and.reduce(around)
@@ -81,6 +86,20 @@ def test_few_rays_find_most_of_the_outline() -> None:
             known += outside.sum()
             found += (mask_of(outline_pixels(shape, scene.camera, WIDTH, HEIGHT, 300)[0]) & outside).sum()
     assert found > 0.9 * known > 0
+
+
+def test_an_outline_takes_few_rays_and_no_distances(monkeypatch: pytest.MonkeyPatch) -> None:
+    torus, rays = Torus((0, 0, 0), (0, 0.6, 0.8), 4, 1, (9, 9, 9)), list[int]()
+
+    def counted(*args: Any) -> Any:
+        rays.append(np.broadcast(*args[-2:]).size)
+        return covers(*args)
+
+    monkeypatch.setattr(marks, "covers", counted)
+    monkeypatch.setattr(torus_formulas, "crossing", None)
+    outside, _ = outline_pixels(torus, Camera((0, 0, -5), (0, 0, 1), 60), 1920, 1080, MOVING_RAYS)
+    assert len(outside[0]) > 3000
+    assert sum(rays) < 8 * MOVING_RAYS
 
 
 def golden(session) -> np.ndarray:
