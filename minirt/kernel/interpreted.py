@@ -1,4 +1,4 @@
-"""Interpreted functions that pack a scene, under the same names as in `minirt.kernel.machine_code.functions`."""
+"""Interpreted functions that pack a scene, under the same names as in `minirt.kernel.functions`."""
 
 from minirt.kernel.binning import fill_bins, move_shape, project_shapes
 from minirt.kernel.bvh_build import collapse, divide

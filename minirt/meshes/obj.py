@@ -10,14 +10,14 @@ skipped without a word, unknown words with a notice. Polygons are cut into trian
 from __future__ import annotations
 
 from collections.abc import Iterator
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from minirt.meshes import obj_lines
-from minirt.meshes.obj_lines import Block, ObjError
+from minirt.meshes.obj_bytes import ABSENT, NOWHERE
+from minirt.meshes.obj_lines import Block, ObjError, line_of
 from minirt.meshes.polygons import triangulate
 from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit, used_points
 
@@ -32,43 +32,42 @@ def parse(data: bytes, folder: Path | None = None) -> Triangles:
     not a mesh."""
     if (lines_in_all := data.count(b"\n")) > MAX_LINES:
         raise ObjError(f"has {lines_in_all:,} lines, more than {MAX_LINES:,}")
-    data = data.removeprefix(b"\xef\xbb\xbf")
-    file, blocks = BytesIO(data), []
-    first, before, triangles = 1, [0, 0, 0], 0
-    while lines := read_lines(file, first):
-        block = obj_lines.read(lines, first, before)
+    data, blocks = data.removeprefix(b"\xef\xbb\xbf"), []
+    start, before, triangles = 0, [0, 0, 0], 0
+    while start < len(data):
+        end = end_of_block(data, start)
+        block = obj_lines.read(data, start, end, before)
         blocks.append(block)
-        first += len(lines)
-        before = [count + len(new) for count, new in zip(before, block[:3], strict=True)]
+        start, before = end, [count + len(new) for count, new in zip(before, block[:3], strict=True)]
         triangles += int((block.sizes - 2).sum())
         if triangles > MAX_TRIANGLES:
             raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
     return assemble(blocks, data, folder)
 
 
-def read_lines(file: BytesIO, first: int) -> list[bytes]:
-    """Return the next lines of a file, from number `first`, about `BLOCK_BYTES`, and what continues them; ObjError."""
-    lines = file.readlines(BLOCK_BYTES)
-    size = len(lines[-1]) if lines else 0
-    while size <= LONGEST_LINE and lines and lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
-        lines.append(more)
-        size += len(more)
-    if size > LONGEST_LINE:
-        raise ObjError(f"longer than {LONGEST_LINE // 2**20} MiB", first + len(lines) - 1)
-    return lines
+def end_of_block(data: bytes, start: int) -> int:
+    """Return where the lines from a byte of a file on end, about `BLOCK_BYTES`, and what continues them; ObjError."""
+    end = data.find(b"\n", start + BLOCK_BYTES - 1) + 1 or len(data)
+    last = max(start, data.rfind(b"\n", start, end - 1) + 1)
+    while end - last <= LONGEST_LINE and end < len(data) and data.endswith((b"\\\n", b"\\\r\n"), last, end):
+        end = data.find(b"\n", end) + 1 or len(data)
+    if end - last > LONGEST_LINE:
+        raise ObjError(f"longer than {LONGEST_LINE // 2**20} MiB", obj_lines.line_of(data, end - 1))
+    return end
 
 
 def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles:
     """Assemble the blocks of a file into triangles; ObjError."""
-    if not sum(len(block.sizes) for block in blocks):
+    if not any(len(block.sizes) for block in blocks):
         raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_points(whole, data)
-    notices = [*drop_absent(whole)]
+    notices = [*drop_absent(whole, data)]
     if len(whole.unknown):
-        notices.append(f"has lines that begin with no word of .obj: they are skipped (the first is {whole.unknown[0]})")
-    cut = triangulate(whole.points, whole.corners[:, 0], whole.sizes, whole.lines)
-    cut = cut[non_degenerate(whole.points[whole.corners[cut, 0]])]
+        first = line_of(data, whole.unknown[0])
+        notices.append(f"has lines that begin with no word of .obj: they are skipped (the first is {first})")
+    cut = triangulate(whole.points, whole.corners[:, 0], whole.sizes, lambda face: line_of(data, whole.starts[face]))
+    cut = cut[non_degenerate(whole.points, whole.corners[cut, 0])]
     if not len(cut):
         raise ObjError("has no triangle that is more than a line")
     corners, of_uvs, of_normals = (part[cut] for part in whole.corners.T.copy())
@@ -105,19 +104,19 @@ def materials_of(
     if unused:
         notices.append(f"has materials of which this is not used: {', '.join(sorted(unused))}")
     faces = np.searchsorted(np.cumsum(whole.sizes), firsts, side="right")
-    uses = np.searchsorted(whole.material_lines, whole.lines[faces])
+    uses = np.searchsorted(whole.uses, whole.starts[faces])
     own = mtl.MeshMaterial()
     return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index), libraries
 
 
-def drop_absent(whole: Block) -> Iterator[str]:
+def drop_absent(whole: Block, data: bytes) -> Iterator[str]:
     """Mark what corners name though it is not there as not named, and yield a notice about it."""
     for part, items in ((1, whole.uvs), (2, whole.normals)):
         indices = whole.corners[:, part]
-        beyond = (indices >= len(items)) | (indices == obj_lines.NOWHERE)
+        beyond = (indices >= len(items)) | (indices == NOWHERE)
         if beyond.any():
-            indices[beyond] = obj_lines.ABSENT
-            line = int(whole.lines[face_of(whole, int(np.argmax(beyond)))])
+            indices[beyond] = ABSENT
+            line = line_of(data, whole.starts[face_of(whole, int(np.argmax(beyond)))])
             yield f"has corners that name a {obj_lines.CORNER_PARTS[part]} that is not there (the first in line {line})"
 
 
@@ -140,6 +139,6 @@ def check_points(whole: Block, data: bytes) -> None:
     if beyond.any():
         corner = int(np.argmax(beyond))
         face = face_of(whole, corner)
-        line, number = int(whole.lines[face]), corner - int(whole.sizes[:face].sum())
-        words = obj_lines.words_of(obj_lines.plain_lines(BytesIO(data).readlines())[line - 1])
-        raise ObjError(obj_lines.missing_point_message(len(whole.points)), line, words[1 + number].start() + 1)
+        start, number = int(whole.starts[face]), corner - int(whole.sizes[:face].sum())
+        column = obj_lines.words_of(obj_lines.logical_line(data, start))[1 + number].start() + 1
+        raise ObjError(obj_lines.missing_point_message(len(whole.points)), line_of(data, start), column)

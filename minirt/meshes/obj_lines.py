@@ -5,21 +5,28 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Sequence
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
 from minirt.errors import FieldError
-from minirt.fields.scalars import FARTHEST, LONGEST, number, whole
+from minirt.fields.scalars import FARTHEST, number, whole
+from minirt.kernel.machine_code.library import LIBRARY, CompiledFunction
+from minirt.lanes.decimals import LARGEST
+from minirt.meshes import obj_bytes
+from minirt.meshes.obj_bytes import FACE, FEWEST, MOST, OTHER, Lines
 
 COLOURED = 6  # numbers of a point that has a colour: further ones are left out
-NUMBERS = {b"v": (3, 7, "x y z"), b"vt": (1, 3, "u v"), b"vn": (3, 3, "x y z")}  # fewest, most, names of those read
+NUMBERS = {b"v": "x y z", b"vt": "u v", b"vn": "x y z"}  # names of those that are read
+WIDTHS = 3, 2, 3  # and how many these are
 CORNER_PARTS = ("point", "vt", "vn")  # the parts of a corner in messages
 SKIPPED = frozenset(b"g o s mg usemap maplib l p lod bevel c_interp d_interp shadow_obj trace_obj".split())
 MATERIAL, LIBRARIES = b"usemtl", b"mtllib"
-READ = (*NUMBERS, b"f", MATERIAL, LIBRARIES)  # first words of the lines that are read
-ABSENT, NOWHERE = -1, -2  # indices of a vt or vn that a corner does not name, and that is not there
+DECIMAL = re.compile(rb"[-+]?[0-9]*\.?[0-9]*(?:[eE][-+]?[0-9]+)?")
+CONTINUED = re.compile(rb"\\\r*(?:\n|\Z)")
+LOGICAL = re.compile(rb"(?:[^\n]*\\\r*\n)*[^\n]*")  # a line and those in which it goes on
+LARGE = 2**20  # bytes: the interpreter reads them in less time than the compiler takes
+READ = CompiledFunction(obj_bytes.read)
 
 
 class ObjError(Exception):
@@ -41,116 +48,81 @@ class Block(NamedTuple):
     normals: np.ndarray  # (j, 3) of any length
     corners: np.ndarray  # (c, 3) for each corner of all faces the index of its point, uv and normal, or a negative one
     sizes: np.ndarray  # (f,) number of corners of each face
-    lines: np.ndarray  # (f,) line of each face, from 1
+    starts: np.ndarray  # (f,) first byte of the line of each face
     colours: np.ndarray  # (i, 3) of the points that have one, in [0, 1]
     materials: np.ndarray  # (j,) names of materials
-    material_lines: np.ndarray  # (j,) lines from which on they are those of faces
+    uses: np.ndarray  # (j,) first bytes of the lines from which on they are those of faces
     libraries: np.ndarray  # names of files of materials
-    unknown: np.ndarray  # lines that begin with another word
+    unknown: np.ndarray  # first bytes of the lines that begin with another word
 
 
-def read(lines: list[bytes], first: int = 1, before: Sequence[int] = (0, 0, 0)) -> Block:
-    """Parse lines from number `first` on, after so many points, uvs and normals; ObjError for the first wrong line."""
-    lines = plain_lines(lines)
-    rows = [line.split() for line in lines]
-    places: dict[bytes, list[int]] = defaultdict(list)  # indices, by the first word
-    try:
-        for index, row in enumerate(rows):
-            if row:
-                places[row.pop(0)].append(index)
-        points, uvs, normals = (
-            number_table([rows[index] for index in places[key]], least, most, len(names.split()))
-            for key, (least, most, names) in NUMBERS.items()
-        )
-        faces = np.array(places[b"f"], np.int64)
-        sizes = np.array([len(rows[index]) for index in places[b"f"]], np.int64)
-        named = corner_table([word for index in places[b"f"] for word in rows[index]])
-        preceding = [count + np.searchsorted(places[key], faces) for key, count in zip(NUMBERS, before, strict=True)]
-        corners = np.where(named < 0, np.repeat(np.stack(preceding, axis=1), sizes, axis=0) + named, named - 1)
-        if named.min(initial=0) < 0:
-            corners[(named < 0) & (corners < 0)] = NOWHERE
-        if (sizes < 3).any() or (corners[:, 0] < 0).any():
-            raise ValueError
-        with_points = [rows[index] for index in places[b"v"]]
-        colours = number_table([row[3:6] for row in with_points if len(row) >= COLOURED], 3, 3, 3)
-    except (ValueError, OverflowError):
-        explain(lines, first, before)
-        raise
-    materials, libraries = (
-        np.array([b" ".join(rows[index]).decode("utf-8", "replace") for index in places[key]], object)
-        for key in (MATERIAL, LIBRARIES)
+def read(data: bytes, start: int = 0, end: int | None = None, before: Sequence[int] = (0, 0, 0)) -> Block:
+    """Parse the lines of a part of a file, after so many points, uvs and normals; ObjError for the first wrong line."""
+    text = data[start:end]
+    lines = call_for(text, before)
+    read_bytes(lines)
+    *_, row_count, corner_count, inexact, is_wrong = lines.counts.tolist()
+    kinds, firsts, sizes = lines.rows[:row_count].T.copy()
+    for place, at, line in lines.inexact[:inexact].tolist():
+        lines.values[place] = value = float(DECIMAL.match(text, at)[0])  # type: ignore[index]
+        if abs(value) > FARTHEST:
+            explain(data, start + line, 0)
+    if is_wrong:
+        explain(data, start + int(firsts[-1]), int(lines.counts[0]))
+    ends = np.cumsum(np.where(kinds < FACE, sizes, 0))
+    points, uvs, normals = (
+        lines.values[(ends - sizes)[kinds == kind][:, None] + np.arange(width)] for kind, width in enumerate(WIDTHS)
     )
-    unknown = [index for key in places.keys() - SKIPPED.union(READ) for index in places[key]]
-    uses, others = (first + np.array(each, np.int64) for each in (places[MATERIAL], sorted(unknown)))
-    return Block(points, uvs, normals, corners, sizes, first + faces, colours, materials, uses, libraries, others)
+    uvs[sizes[kinds == 1] == 1, 1] = 0.0
+    are_coloured = (kinds == 0) & (sizes >= COLOURED)
+    colours = lines.values[(ends - sizes)[are_coloured][:, None] + np.arange(3, COLOURED)]
+    said: dict[bytes, list[tuple[int, str]]] = defaultdict(list)  # by first word
+    for at in firsts[kinds == OTHER].tolist():
+        word, *words = logical_line(text, at).split()
+        said[word].append((start + at, b" ".join(words).decode("utf-8", "replace")))
+    others = sorted(at for word in said.keys() - SKIPPED - {MATERIAL, LIBRARIES} for at, _ in said[word])
+    materials, libraries = (np.array([name for _, name in said[word]], object) for word in (MATERIAL, LIBRARIES))
+    uses, unknown = (np.array(each, np.int64) for each in ([at for at, _ in said[MATERIAL]], others))
+    of_faces = lines.corners[:corner_count], sizes[kinds == FACE], start + firsts[kinds == FACE]
+    return Block(points, uvs, normals, *of_faces, colours, materials, uses, libraries, unknown)
 
 
-def plain_lines(lines: list[bytes]) -> list[bytes]:
-    """Return lines without comments. One that a backslash continues has all the words, those that continue it none."""
-    text = b"".join(lines)
-    if b"#" not in text and b"\\" not in text:
-        return lines
-    plain: list[bytes] = []
-    parts: list[bytes] = []
-    for line in [*lines, b""]:
-        parts.append(line.rstrip(b"\r\n"))
-        if parts[-1].endswith(b"\\"):
-            parts[-1] = parts[-1][:-1]
-            continue
-        plain += [b" ".join(parts).partition(b"#")[0], *[b""] * (len(parts) - 1)]
-        parts = []
-    return plain
+def call_for(text: bytes, before: Sequence[int] = (0, 0, 0)) -> Lines:
+    """Return the lines of a text, and memory for what is in them."""
+    rows, corners, inexact = (np.empty((len(text) // 2 + 1, 3), np.int64) for _ in range(3))
+    counts = np.array([*before, *[0] * 6], np.int64)
+    read = np.frombuffer(text + b"\n\n", np.int8)
+    return Lines(read, len(text), np.empty(len(text) // 2 + 2), rows, corners, inexact, counts)
 
 
-def number_table(rows: list[list[bytes]], least: int, most: int, width: int) -> np.ndarray:
-    """Return the first `width` numbers of each line; ValueError for a wrong number, or fewer or more than may be."""
-    sizes = np.array(list(map(len, rows)), np.int64)
-    words = list(chain.from_iterable(rows))
-    numbers = np.fromiter(map(float, words), np.float64, len(words))
-    are_in_range = ((least <= sizes) & (sizes <= most)).all() and (np.abs(numbers) <= FARTHEST).all()
-    if not are_in_range or is_foreign(words, b" ".join(words)):
-        raise ValueError
-    return padded(numbers, sizes, width)
+def read_bytes(lines: Lines) -> None:
+    """Read lines by the compiled function, or by the interpreted one where that takes less time than compiling."""
+    if lines.size >= LARGE or LIBRARY.has(LIBRARY.identity(READ.call(lines))):
+        READ(lines)
+    else:
+        obj_bytes.read(lines._replace(text=lines.text.tolist()))
 
 
-def corner_table(words: list[bytes]) -> np.ndarray:
-    """Return the numbers of corners `v`, `v/vt`, `v//vn` or `v/vt/vn`, (c, 3), 0 for a missing one; ValueError."""
-    text = b" ".join([*words, b""])
-    characters = np.frombuffer(text, np.uint8)
-    sizes = np.diff(np.cumsum(characters == ord("/"))[characters == ord(" ")], prepend=0) + 1
-    parts = text.replace(b"//", b"/0/").replace(b"/ ", b"/0 ").replace(b"/", b" ").split() if b"/" in text else words
-    numbers = np.fromiter(map(int, parts), np.int64, len(parts))
-    if len(numbers) != sizes.sum() or (sizes > 3).any() or is_foreign(parts, text):
-        raise ValueError
-    return padded(numbers, sizes, 3)
+def line_of(data: bytes, at: int) -> int:
+    """Return the number of the line of a byte, from 1."""
+    return data.count(b"\n", 0, at) + 1
 
 
-def is_foreign(words: list[bytes], text: bytes) -> bool:
-    """Whether one of the numbers in a text is written as Python alone may: with underscores, or in too many digits."""
-    return b"_" in text or max(map(len, words), default=0) > LONGEST
+def logical_line(data: bytes, start: int) -> bytes:
+    """Return the line that begins at a byte, without comment, and with the words of those in which it goes on."""
+    return CONTINUED.sub(b" ", LOGICAL.match(data, start)[0]).partition(b"#")[0]  # type: ignore[index]
 
 
-def padded(values: np.ndarray, sizes: np.ndarray, width: int) -> np.ndarray:
-    """Return the first `width` values of each row, 0 where it has fewer; one row after the other has `sizes` values."""
-    columns = np.arange(width)
-    places = (np.cumsum(sizes) - sizes)[:, None] + columns
-    return np.where(columns < sizes[:, None], values[np.minimum(places, len(values) - 1)], 0)
-
-
-def explain(lines: list[bytes], first: int, before: Sequence[int]) -> None:
-    """Raise the ObjError of the first wrong line; arguments are those of `read`."""
-    counts = dict(zip(NUMBERS, before, strict=True))
-    for line, text in enumerate(lines, first):
-        words = words_of(text)
-        key, values = words[0][0].encode() if words else b"", words[1:]
-        if key in counts:
-            check_numbers(key, values, line)
-            counts[key] += 1
-        elif key == b"f":
-            if len(values) < 3:
-                raise ObjError(f"a face has at least 3 corners, got {len(values)}", line)
-            for word in values:
-                check_corner(word, counts[b"v"], line)
+def explain(data: bytes, start: int, count: int) -> None:
+    """Raise the ObjError of the wrong line that begins at a byte; `count` points precede it."""
+    key, *words = words_of(logical_line(data, start))
+    line = line_of(data, start)
+    if key[0] != "f":
+        check_numbers(key[0].encode(), words, line)
+    elif len(words) < 3:
+        raise ObjError(f"a face has at least 3 corners, got {len(words)}", line)
+    for word in words:
+        check_corner(word, count, line)
 
 
 def words_of(line: bytes) -> list[re.Match[str]]:
@@ -160,8 +132,8 @@ def words_of(line: bytes) -> list[re.Match[str]]:
 
 def check_numbers(key: bytes, words: list[re.Match[str]], line: int) -> None:
     """Check the numbers of a line `v`, `vt` or `vn`; further numbers, such as colours, are left out."""
-    name, (least, most, names) = key.decode(), NUMBERS[key]
-    if not least <= len(words) <= most:
+    name, names, kind = key.decode(), NUMBERS[key], [*NUMBERS].index(key)
+    if not FEWEST[kind] <= len(words) <= MOST[kind]:
         raise ObjError(f"{name} has {names}, got {len(words)} number{'s' * (len(words) != 1)}", line)
     for word in words:
         try:
@@ -189,7 +161,7 @@ def check_corner(word: re.Match[str], count: int, line: int) -> None:
             named = whole(text)
         except FieldError as error:
             raise ObjError(f"the {CORNER_PARTS[part]} of a corner {expected(error)}", line, column) from None
-        if not -(2**63) <= named < 2**63 or (part == 0 and not (named and named >= -count)):
+        if abs(named) >= LARGEST or (part == 0 and not (named and named >= -count)):
             raise ObjError(missing_point_message(count), line, column)
 
 

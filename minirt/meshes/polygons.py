@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections import deque
+from collections.abc import Callable
 from fractions import Fraction
 from math import inf
 
@@ -25,13 +26,15 @@ Point = tuple[float, float]
 Ears = list[tuple[int, int, int]]
 
 
-def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray, lines: np.ndarray) -> np.ndarray:
+def triangulate(
+    points: np.ndarray, corners: np.ndarray, sizes: np.ndarray, line_of: Callable[[int], int]
+) -> np.ndarray:
     """Cut faces of `sizes` corners into triangles: indices of the triangles' corners among all corners, (m, 3).
 
     `corners` (c,) are the points of all corners. The triangles of a face go round as the face does. They are a fan
     around its first corner where that covers the polygon and nothing else, as it does every convex one. Other polygons
     are cut into ears. A polygon that crosses itself may leave no ear to cut; it becomes a fan. ObjError,
-    with the face's entry of `lines`, for one that takes too long.
+    with the line of the face, for one that takes too long.
     """
     triangles, looks = fan_triangulation(sizes), MOST_LOOKS
     many, first = np.flatnonzero(sizes > 3), np.cumsum(sizes) - sizes
@@ -47,7 +50,7 @@ def triangulate(points: np.ndarray, corners: np.ndarray, sizes: np.ndarray, line
             ears, looks = polygon.cut(), polygon.looks
             if looks < 0:
                 message = f"a face of {sizes[face]:,} corners takes too long to cut into triangles"
-                raise ObjError(message, int(lines[face]))
+                raise ObjError(message, line_of(face))
             if ears:
                 place = first[face] - 2 * face
                 triangles[place : place + len(ears)] = first[face] + np.array(ears)

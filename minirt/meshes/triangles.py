@@ -12,7 +12,9 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import PictureFile
+from minirt.lanes import Vec, cross, dot, max_norm, maximum, where
 
+BLOCK = 8192  # triangles that are looked at together
 FLATNESS = 16 * 2.0**-53  # a triangle lower than this share of its largest coordinate is degenerate
 
 
@@ -74,13 +76,25 @@ class Triangles:
         """Unit normals of the triangles, (m, 3), on the side of the corners' normals, or else on the side from which
         the corners run counter-clockwise. The normal of a sliver is exact to a rounding about its longest edge, as in
         `minirt.shapes.triangle`."""
-        edges, across = edges_of(self.points[self.corners])
-        longest = np.argmax(squared_lengths(edges), axis=1)
-        edge = edges[np.arange(len(edges)), longest]
-        across -= ((across * edge).sum(axis=1) / squared_lengths(edge))[:, None] * edge
-        if self.normals is not None:
-            across[(self.normals.sum(axis=1) * across).sum(axis=1) < 0] *= -1
-        return unit(across)
+        found = [np.zeros((0, 3))]
+        for some, _, (a, b, c), across in blocks(self.points, self.corners):
+            of_a, of_b, of_c = dot(a, a), dot(b, b), dot(c, c)
+            longest = where(of_a >= maximum(of_b, of_c), a, where(of_b >= of_c, b, c))
+            normal = across - (dot(across, longest) / dot(longest, longest)) * longest
+            if self.normals is not None:
+                normal = where(dot(Vec(*self.normals[some].sum(axis=1).T), normal) < 0.0, -normal, normal)
+            found.append(unit(np.stack([normal.x, normal.y, normal.z], axis=1)))
+        return np.concatenate(found)
+
+
+def blocks(points: np.ndarray, corners: np.ndarray) -> Iterator[tuple[slice, list[Vec], list[Vec], Vec]]:
+    """Yield for blocks of triangles, whose numbers stay in the cache of a core, where they are, their corners, the
+    edges from each corner to the next, and the cross products of the first two."""
+    for start in range(0, len(corners), BLOCK):
+        some = slice(start, start + BLOCK)
+        ends = [Vec(*points[each].T.copy()) for each in corners[some].T]
+        edges = [ends[(i + 1) % 3] - ends[i] for i in range(3)]
+        yield some, ends, edges, cross(edges[0], edges[1])
 
 
 def used_points(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -90,18 +104,14 @@ def used_points(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np
     return (points, corners) if is_used.all() else (points[is_used], (np.cumsum(is_used) - 1)[corners])
 
 
-def edges_of(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the edges of triangles (m, 3, 3) from each corner to the next, and the cross products of the first two."""
-    edges = corners[:, [1, 2, 0]] - corners
-    return edges, np.cross(edges[:, 0], edges[:, 1])
-
-
-def non_degenerate(corners: np.ndarray) -> np.ndarray:
-    """Return a mask of the triangles (m, 3, 3) that are more than a line or a point."""
-    edges, across = edges_of(corners)
-    longest = np.sqrt(squared_lengths(edges).max(axis=1))
-    larger: np.ndarray = np.sqrt(squared_lengths(across)) > FLATNESS * np.abs(corners).max(axis=(1, 2)) * longest
-    return larger
+def non_degenerate(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Return a mask of the triangles that are more than a line or a point."""
+    found = []
+    for _, ends, edges, across in blocks(points, corners):
+        longest = np.sqrt(np.max([dot(edge, edge) for edge in edges], axis=0))
+        largest = np.max([max_norm(end) for end in ends], axis=0)
+        found.append(np.sqrt(dot(across, across)) > FLATNESS * largest * longest)
+    return np.concatenate(found)
 
 
 def squared_lengths(vectors: np.ndarray) -> np.ndarray:

@@ -19,7 +19,8 @@ from minirt.errors import RenderError
 from minirt.formats import png
 from minirt.formats.table import FLOAT, check_bits, check_quality, encoding, format_of
 from minirt.helpers import file_io
-from minirt.kernel.machine_code.functions import bound, copy_levels
+from minirt.kernel.functions import copy_levels
+from minirt.kernel.machine_code.library import bound
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray

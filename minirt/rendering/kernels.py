@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.kernel import interpreted
-from minirt.kernel.machine_code import functions
+from minirt.kernel import functions, interpreted
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY, Call, Entry
 from minirt.kernel.scene_arrays import SceneArrays
+from minirt.meshes.obj_lines import READ, call_for
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.packing import generic_kernels
 from minirt.rendering.packing.features import DEPTH, examples, features
@@ -27,6 +27,7 @@ from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.sampling.packets import classify_call
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene, parse
+from minirt.shapes.mesh import Mesh
 
 
 class BackgroundCompiler:
@@ -192,7 +193,8 @@ def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
     move = functions.move_shape.call(0, *recorder.calls["fill_bins"][1][:3])
     others = move, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
-    return [*recorder.calls.values(), *others, functions.frame.call(*frame_arguments(arrays, PIXEL))]
+    reading = [READ.call(call_for(b""))] * any(isinstance(shape, Mesh) for shape in examples(scene).values())
+    return [*recorder.calls.values(), *others, *reading, functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
 
 def generic_call(generic: GenericKernel) -> Call:
@@ -210,7 +212,7 @@ def packing_calls() -> list[Call]:
     numbers, integers, table, corners = np.zeros(0), np.zeros(0, np.int64), np.zeros((0, 0)), np.zeros((0, 0), np.int32)
     rounding = functions.to_single.call(table, integers, numbers, table.astype(np.float32))
     placing = functions.place_triangles.call(integers, numbers, table, table, 0, corners, table, table)
-    return [*packing, rounding, placing]
+    return [*packing, rounding, placing, READ.call(call_for(b""))]
 
 
 def ray_query() -> Call:

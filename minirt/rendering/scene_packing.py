@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from minirt.helpers.system import TooLargeError
+from minirt.kernel import functions
 from minirt.kernel.bvh_build import MARGIN
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import tile_count
-from minirt.kernel.machine_code import functions
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.kernel.shading.lights import LightGrid

@@ -10,7 +10,6 @@ import tempfile
 import warnings
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from functools import cache
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -21,9 +20,10 @@ from PIL import Image
 from minirt.cli import main
 from minirt.errors import FileError, ReplayError
 from minirt.helpers.system import limit_memory
+from minirt.lanes.decimals import LARGEST
 from minirt.materials import pictures
 from minirt.materials.pictures import SIDE
-from minirt.meshes import obj, obj_lines
+from minirt.meshes import obj, obj_bytes, obj_lines
 from minirt.meshes.obj_lines import ObjError
 from minirt.meshes.triangles import Triangles
 from minirt.mlx.events import KEYS
@@ -167,9 +167,9 @@ def grammar_tables(data: bytes) -> list[list[list[float]]] | None:
             for word in parts:
                 named = [int(each or 0) for each in (word + 2 * [b""])[:3]]
                 corner = [n - 1 if n >= 0 else count + n for n, count in zip(named, counts, strict=True)]
-                if max(named) >= 2**63 or min(named) < -(2**63) or corner[0] < 0:
+                if max(map(abs, named)) >= LARGEST or corner[0] < 0:
                     return None
-                nowhere = obj_lines.NOWHERE
+                nowhere = obj_bytes.NOWHERE
                 items[key].append([nowhere if n < 0 > at else at for n, at in zip(named, corner, strict=True)])
         elif key in items:
             if not all(abs(float(word)) <= 1e15 for word in words):
@@ -184,7 +184,7 @@ def check_mesh(data: bytes) -> str:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            found: Any = obj_lines.read(BytesIO(data).readlines())
+            found: Any = obj_lines.read(data)
         except ObjError:
             found = None
         assert (found is None) == (expected is None), "reader or grammar alone accepts it"

@@ -10,7 +10,6 @@ import pytest
 
 from minirt.errors import FileError, MiniRTError, SceneError
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.meshes import obj_lines
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.packing import camera
 from tests.cli.program import program
@@ -51,7 +50,6 @@ def refuse(path: Path, _: bytes) -> None:
     raise FileError(path, "broken data stream")
 
 
-TABLE = obj_lines.corner_table
 LENS = "# --precision single -o out.png\n" + FRAME.replace("60", "60 lens:1 focus:1e-50") + "sp 0,0,5 1 1,2,3"
 FAR = f"# -o out.png\n{FRAME}sp -1e15,0,-9e14 1e15 9,9,9"
 LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
@@ -63,7 +61,7 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
         ("scenes", LONG, "minirt.fields.scalars.LONGEST", 302, AssertionError),
         ("scenes", "", "minirt.scene.dialects.complete", lambda items, *_: items.reverse(), AssertionError),
         ("scenes", "", "minirt.scene.parser.MISSING", "missing: ", AssertionError),  # which is no comment
-        ("meshes", "", "minirt.meshes.obj_lines.corner_table", lambda faces: abs(TABLE(faces)), AssertionError),
+        ("meshes", "", "minirt.meshes.obj_bytes.NOWHERE", 0, AssertionError),
         ("pictures", "", "minirt.materials.pictures.decode_by_pillow", refuse, AssertionError),
         ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),
         ("arguments", "", "minirt.cli.MiniRTError", SceneError, MiniRTError),

@@ -95,7 +95,7 @@ def test_a_file_of_too_many_lines_is_refused_before_they_are_read(monkeypatch: p
     monkeypatch.setattr(obj, "MAX_LINES", 100)
     triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
     assert len(obj.parse((triangle + "#\n" * 96).encode()).corners) == 1
-    monkeypatch.setattr(obj, "BytesIO", None)
+    monkeypatch.setattr(obj, "end_of_block", None)
     with pytest.raises(ObjError, match=r"^has 101 lines, more than 100$"):
         obj.parse((triangle + "#\n" * 97).encode())
 

@@ -44,7 +44,7 @@ def total(polygon: Flat) -> Fraction:
 def cut(polygon: Flat) -> list[list[int]]:
     """Cut a polygon in the plane z = 0 as a file's."""
     points = np.array([(x, y, 0.0) for x, y in polygon])
-    return polygons.triangulate(points, np.arange(len(points)), np.array([len(points)]), np.array([1])).tolist()
+    return polygons.triangulate(points, np.arange(len(points)), np.array([len(points)]), int).tolist()
 
 
 def is_inside(polygon: Flat, x: Fraction, y: Fraction) -> bool:
@@ -107,7 +107,7 @@ def test_convex_polygons_stay_fans(monkeypatch: pytest.MonkeyPatch) -> None:
     for corners in (4, 5, 8, 30):
         turns = 2 * pi * np.sort(random.random(corners))
         points = np.stack([np.cos(turns), np.sin(turns), np.zeros(corners)], axis=1) @ random.normal(size=(3, 3))
-        found = polygons.triangulate(points, np.arange(corners), np.array([corners]), np.array([1]))
+        found = polygons.triangulate(points, np.arange(corners), np.array([corners]), int)
         assert np.array_equal(found, polygons.fan_triangulation(np.array([corners])))
 
 
@@ -117,7 +117,7 @@ def test_the_triangles_go_round_as_the_polygon_does_in_any_plane() -> None:
         frame = np.linalg.qr(random.normal(size=(3, 3)))[0]
         polygon = np.array([(x, y, 0.0) for x, y in DART]) @ frame + random.normal(size=3)
         for corners in (np.arange(4), np.arange(4)[::-1]):
-            found = corners[polygons.triangulate(polygon, corners, np.array([4]), np.array([1]))]
+            found = corners[polygons.triangulate(polygon, corners, np.array([4]), int)]
             a, b, c = polygon[found].swapaxes(0, 1)
             ring = polygon[corners]
             normal = np.cross(ring - ring[0], np.roll(ring, -1, axis=0) - ring[0]).sum(axis=0)

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code import cache, functions
+from minirt.kernel import functions
+from minirt.kernel.machine_code import cache
+from minirt.kernel.machine_code import library as libraries
 from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
@@ -164,7 +166,7 @@ def empty_library(monkeypatch: pytest.MonkeyPatch, folder: Path) -> Library:
     """Let renderers use a library that has the kernels of the package and none of the user's."""
     library = Library()
     library.cache = CodeCache(folder)
-    for module in (functions, kernels, renderers):
+    for module in (libraries, kernels, renderers):
         monkeypatch.setattr(module, "LIBRARY", library)
     if not all(library.find(each) for each in GENERIC.values()):
         skip_incomplete("generic kernels are not compiled: make all")

@@ -9,8 +9,7 @@ import pytest
 
 import minirt
 from minirt.fields import MeshFile
-from minirt.kernel import interpreted
-from minirt.kernel.machine_code import functions
+from minirt.kernel import functions, interpreted
 from minirt.kernel.scene_arrays import read_row
 from minirt.lanes import Vec
 from minirt.materials import Specular

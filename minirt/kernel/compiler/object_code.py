@@ -24,7 +24,7 @@ from minirt import kernel, lanes, shapes
 from minirt.kernel import scene_arrays, shading
 from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
 from minirt.kernel.compiler.by_reference import item_of, item_type
-from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline_functions_of
 from minirt.kernel.machine_code.arguments import Signature, dtype_of, named
 from minirt.kernel.machine_code.cache import ObjectCode
 from minirt.lanes.compiled.memory import ADDRESS, Reference
@@ -79,7 +79,7 @@ def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
 def compiled_entry(called: FunctionType, signatures: list[Signature]) -> Any:
     """Compile a function, which returns nothing, for arguments of these signatures; return numba's C function that
     calls it. It takes tuples and arrays by reference, see `minirt.kernel.compiler.by_reference`."""
-    inline(called)
+    inline_functions_of(import_module(called.__module__))
     kinds = types.Tuple([type_of(each) for each in signatures])
 
     @intrinsic  # type: ignore[untyped-decorator]

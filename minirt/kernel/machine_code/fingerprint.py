@@ -22,7 +22,7 @@ NEEDED = {
 }
 CPUINFO = Path("/proc/cpuinfo")
 PACKAGE = Path(__file__).parents[2]
-SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
+SOURCES = ("kernel", "lanes", "meshes", "shapes")  # folders of all sources of a kernel
 
 
 @cache

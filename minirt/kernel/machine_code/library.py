@@ -9,9 +9,9 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-from collections.abc import Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from contextlib import ExitStack
-from functools import cached_property
+from functools import cached_property, partial
 from threading import Lock
 from typing import Any, TypeAlias
 
@@ -159,3 +159,32 @@ def identity_of(function: str, arguments: tuple[Any, ...], fingerprint: str) -> 
 
 
 LIBRARY = Library()
+
+
+class CompiledFunction:
+    """A function that is loaded or compiled, for the types of its arguments, when it is called."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.name = f"{function.__module__}:{function.__qualname__}"
+
+    def __call__(self, *arguments: Any) -> None:
+        """Call the compiled form. RenderError where it cannot be compiled."""
+        LIBRARY.get((self.name, arguments))(*arguments)
+
+    def bound(self, *arguments: Any) -> Callable[[], None]:
+        """Return the call with some arguments, whose arrays may change but not move. RenderError likewise."""
+        entry, words = LIBRARY.get((self.name, arguments)), words_of(arguments)
+
+        def call(kept: Any = arguments) -> None:
+            entry.run(words)
+
+        return call
+
+    def call(self, *arguments: Any) -> Call:
+        """Return the call with some arguments, to look for its kernel."""
+        return self.name, arguments
+
+
+def bound(function: Callable[..., None], *arguments: Any) -> Callable[[], None]:
+    """Return the call of a function, compiled or interpreted, with some arguments; compiled, it takes 2 us."""
+    return function.bound(*arguments) if isinstance(function, CompiledFunction) else partial(function, *arguments)

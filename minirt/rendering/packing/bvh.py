@@ -11,7 +11,7 @@ import numpy as np
 from minirt.kernel import beams
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, Group, Tree
-from minirt.kernel.machine_code.functions import bound
+from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -172,12 +172,13 @@ def tree_of(triangles: Triangles, kernel: Any) -> np.ndarray:
     """Return the nodes of the tree of a mesh, which is built at the first call."""
     if triangles not in trees:
         middle, size = space_of(triangles)
-        points = ((triangles.points - middle) / size)[triangles.corners]
-        boxes = np.zeros((len(points), 8))
-        np.negative(points.min(axis=1), out=boxes[:, :3])
-        points.max(axis=1, out=boxes[:, 3:6])
-        boxes[:, INDEX] = np.arange(len(points))
-        del points  # a million triangles have 72 MB of them
+        points = (triangles.points - middle) / size
+        boxes = np.zeros((len(triangles), 8))
+        boxes[:, :3], boxes[:, 3:6] = -points[triangles.corners[:, 0]], points[triangles.corners[:, 0]]
+        for corners in triangles.corners.T[1:]:
+            np.maximum(boxes[:, :3], -points[corners], out=boxes[:, :3])
+            np.maximum(boxes[:, 3:6], points[corners], out=boxes[:, 3:6])
+        boxes[:, INDEX] = np.arange(len(boxes))
         nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE)
         names = nodes[:, 6]
         names[names < 0] = len(nodes) - 1 - names[names < 0]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from minirt.kernel.beams import CENTRE
-from minirt.kernel.machine_code.functions import bound
+from minirt.kernel.machine_code.library import bound
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.kernel.scene_arrays import Group, SceneArrays, kind_of, row_axes, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN

@@ -13,7 +13,7 @@ import numpy as np
 from minirt.helpers import system
 from minirt.kernel.binning import CHUNK, RADIX, Projection
 from minirt.kernel.frame import tile_count
-from minirt.kernel.machine_code.functions import bound
+from minirt.kernel.machine_code.library import bound
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import MARGIN, Grid, signed_height
 from minirt.lanes import Vec

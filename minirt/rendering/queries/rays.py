@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from minirt.errors import check_whole
+from minirt.kernel import functions
 from minirt.kernel.bvh_nodes import Tree
-from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised

@@ -23,7 +23,7 @@ from math import ceil, inf, sqrt
 
 import numpy as np
 
-from minirt.kernel.machine_code import functions
+from minirt.kernel import functions
 from minirt.kernel.machine_code.library import Call
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering.frame import COUNTS, random_numbers

@@ -10,7 +10,7 @@ import pytest
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel import bvh_build, bvh_nodes, bvh_single_rays, bvh_traversal
+from minirt.kernel import bvh_build, bvh_nodes, bvh_single_rays, bvh_traversal, functions
 from minirt.kernel.bvh_nodes import (
     GROUPS,
     LEVELS,
@@ -26,7 +26,6 @@ from minirt.kernel.bvh_nodes import (
     Tree,
     reference_of,
 )
-from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import aligned, block_type, build_bvh, wide_nodes
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised

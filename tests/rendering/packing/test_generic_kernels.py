@@ -10,7 +10,7 @@ import pytest
 from numba import typeof
 
 import minirt
-from minirt.kernel.machine_code import functions
+from minirt.kernel import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame import frame_arguments

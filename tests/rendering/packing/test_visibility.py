@@ -12,9 +12,8 @@ import pytest
 import minirt
 from minirt.errors import RenderError
 from minirt.helpers import system
-from minirt.kernel import binning
+from minirt.kernel import binning, functions
 from minirt.kernel.frame import ray_direction, tile_count
-from minirt.kernel.machine_code import functions
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import kind_of, read
 from minirt.kernel.shadow_rays import light_buffer_cell

@@ -1,0 +1,78 @@
+"""Decimal numbers in the bytes of a text: read by compiled code, and rounded as Python's `float` rounds them.
+
+A text is an array of int8, or a list of such numbers. It ends with a byte that is part of no number.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+PLUS, MINUS, POINT, ZERO, NINE, LOWER_E, UPPER_E = b"+-.09eE"
+LARGEST = 10**17  # of whole numbers: larger ones become it
+
+
+def is_digit(byte: int) -> bool:
+    return ZERO <= byte <= NINE
+
+
+def skip_sign(text: Any, at: int) -> int:
+    """Return the place behind the sign of a number, if it has one."""
+    return at + (text[at] == PLUS or text[at] == MINUS)
+
+
+def read_whole(text: Any, start: int) -> tuple[int, int]:
+    """Return the whole number at a place of a text, and the place behind it: `start` where there is none."""
+    value, at = 0, skip_sign(text, start)
+    if not is_digit(text[at]):
+        return 0, start
+    while is_digit(text[at]):
+        value = min(10 * value + (int(text[at]) - ZERO), LARGEST)
+        at += 1
+    return -value if text[start] == MINUS else value, at
+
+
+def read_decimal(text: Any, start: int) -> tuple[float, int, bool]:
+    """Return the number at a place of a text, the place behind it, which is `start` where there is none, and whether
+    it is rounded correctly, as those of at most 18 digits and without large exponents are (after Clinger, How to Read
+    Floating Point Numbers Accurately, 1990)."""
+    at = skip_sign(text, start)
+    mantissa, digits, significant, decimals, step = 0, 0, 0, 0, 0
+    while is_digit(text[at]) or (text[at] == POINT and step == 0):
+        if text[at] == POINT:
+            step = 1
+        else:
+            mantissa = 10 * mantissa + (int(text[at]) - ZERO)
+            significant += mantissa > 0 or significant > 0
+            decimals += step
+            digits += 1
+        at += 1
+    if digits == 0:
+        return 0.0, start, True
+    exponent, end = 0, at
+    if text[at] == LOWER_E or text[at] == UPPER_E:
+        exponent, end = read_whole(text, at + 1)
+        if end > at + 1:
+            at = end
+    exponent -= decimals
+    value, is_exact = scaled(mantissa, exponent) if significant <= 18 and -22 <= exponent <= 22 else (0.0, False)
+    return -value if text[start] == MINUS else value, at, is_exact
+
+
+def scaled(mantissa: int, exponent: int) -> tuple[float, bool]:
+    """Return `mantissa` times 10 to the power of `exponent`, from -22 to 22, and whether it is rounded correctly."""
+    power, five = 1.0, 1
+    for _ in range(abs(exponent)):
+        power *= 10.0
+        five *= 5
+    if mantissa <= 2**53:
+        return mantissa / power if exponent < 0 else mantissa * power, True
+    # A quotient of 53 bits, and its remainder, which is small, and so known from its lower 64 bits.
+    quotient, scale, shift = mantissa / power, 1.0, exponent
+    while quotient < 2.0**52:
+        quotient, scale, shift = 2.0 * quotient, 2.0 * scale, shift + 1
+    if shift < 0 or exponent > 0:
+        return 0.0, False
+    whole = int(quotient)
+    twice = 2 * ((mantissa << shift) - whole * five)
+    whole += (twice + five) // (2 * five)
+    return whole / scale, 2**52 < whole <= 2**53

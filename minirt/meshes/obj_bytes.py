@@ -1,0 +1,115 @@
+"""Reader of the numbers in the lines of an .obj file: a state machine over their bytes, for the compiler."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from minirt.lanes.decimals import LARGEST, read_decimal, read_whole
+
+TAB, NEWLINE, RETURN, BLANK, HASH, SLASH, BACKSLASH = b"\t\n\r #/\\"
+V, T, N, F = b"vtnf"
+FACE, OTHER = 3, 4  # kinds of lines; those before are v, vt and vn
+FIRST_WORDS = 1, 2, 2, 1, 0  # bytes that are skipped in these
+FEWEST, MOST = (3, 1, 3, 3), (7, 3, 3, 2**60)  # words of these lines behind the first
+LONGEST, FARTHEST = 300, 1e15  # characters of a number, and its value, as in `minirt.fields.scalars`
+ABSENT, NOWHERE = -1, -2  # indices of a vt or vn that a corner does not name, and that is not there
+VALUES, ROWS, CORNERS, INEXACT, WRONG = range(4, 9)  # in `Lines.counts`
+
+
+class Lines(NamedTuple):
+    """Lines, and arrays with room for what is in them."""
+
+    text: Any  # (n,) int8 of them, and two more newlines
+    size: int  # bytes of the lines
+    values: Any  # (n / 2,) numbers of lines v, vt and vn
+    rows: Any  # (n / 2, 3) kind, first byte, and number of values or corners of each line that is not blank
+    corners: Any  # (n / 2, 3) for each corner of a face the index of its point, uv and normal, or a negative one
+    inexact: Any  # (n / 2, 3) index in `values`, first byte, and that of the line of numbers not rounded correctly
+    counts: Any  # (9,) of lines of kinds, also before; used items of arrays; whether the last row is of a wrong line
+
+
+def read(lines: Lines) -> None:
+    """Read lines until one is wrong."""
+    text, counts, rows, at = lines.text, lines.counts, lines.rows, 0
+    while at < lines.size and counts[WRONG] == 0:
+        start, at = at, next_word(text, at)
+        if text[at] != NEWLINE and text[at] != HASH:
+            kind, row, size = kind_of(text, at), counts[ROWS], 0
+            at = next_word(text, at + FIRST_WORDS[kind])
+            while kind != OTHER and counts[WRONG] == 0 and text[at] != NEWLINE and text[at] != HASH:
+                end = read_corner(lines, at) if kind == FACE else read_value(lines, start, at)
+                counts[WRONG] = end == at or not ends_word(text, end)
+                at, size = next_word(text, end), size + 1
+            if kind != OTHER:
+                counts[WRONG] |= size < FEWEST[kind] or size > MOST[kind]
+                counts[kind] += 1
+            rows[row, 0], rows[row, 1], rows[row, 2] = kind, start, size
+            counts[ROWS] += 1
+        at = next_line(text, at)
+
+
+def next_word(text: Any, at: int) -> int:
+    """Return the place of the next byte that is no blank. A line that ends with a backslash goes on in the next one."""
+    while True:
+        while text[at] == BLANK or (TAB <= text[at] <= RETURN and text[at] != NEWLINE):
+            at += 1
+        after = at + 1
+        if text[at] != BACKSLASH:
+            return at
+        while text[after] == RETURN:
+            after += 1
+        if text[after] != NEWLINE:
+            return at
+        at = after + 1
+
+
+def next_line(text: Any, at: int) -> int:
+    """Return the first byte of the next line, behind those in which this one goes on."""
+    before = BLANK
+    while text[at] != NEWLINE or before == BACKSLASH:
+        if text[at] != RETURN:
+            before = int(text[at])
+        at += 1
+    return at + 1
+
+
+def ends_word(text: Any, at: int) -> bool:
+    return bool(text[at] == NEWLINE or text[at] == HASH or next_word(text, at) != at)
+
+
+def kind_of(text: Any, at: int) -> int:
+    """Return the kind of a line by the place of its first word."""
+    if text[at] == V and (text[at + 1] == T or text[at + 1] == N) and ends_word(text, at + 2):
+        return 1 if text[at + 1] == T else 2
+    if (text[at] == V or text[at] == F) and ends_word(text, at + 1):
+        return 0 if text[at] == V else FACE
+    return OTHER
+
+
+def read_value(lines: Lines, start: int, at: int) -> int:
+    """Read a number of the line from byte `start` on, and return the place behind it, the same one without a number."""
+    counts = lines.counts
+    place, inexact = counts[VALUES], counts[INEXACT]
+    value, end, is_exact = read_decimal(lines.text, at)
+    lines.inexact[inexact, 0], lines.inexact[inexact, 1], lines.inexact[inexact, 2] = place, at, start
+    counts[INEXACT] += not is_exact
+    lines.values[place] = value
+    counts[VALUES] += 1
+    return end if abs(value) <= FARTHEST and end - at <= LONGEST else at
+
+
+def read_corner(lines: Lines, at: int) -> int:
+    """Read a corner, and return the place behind it, the same one where it is wrong."""
+    text, counts, corner, part, end = lines.text, lines.counts, lines.corners, 0, at - 1
+    row = counts[CORNERS]
+    corner[row, 0], corner[row, 1], corner[row, 2] = ABSENT, ABSENT, ABSENT
+    counts[CORNERS] += 1
+    while part < 3 and (part == 0 or text[end] == SLASH):
+        named, after = read_whole(text, end + 1)
+        if after - end > LONGEST + 1 or abs(named) == LARGEST:
+            return at
+        if after > end + 1:
+            index = named - 1 if named >= 0 else counts[part] + named
+            corner[row, part] = index if named >= 0 or index >= 0 else NOWHERE
+        end, part = after, part + 1
+    return end if corner[row, 0] >= 0 else at
