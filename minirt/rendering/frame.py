@@ -77,6 +77,12 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
     return plan_of(np.arange(rows * columns), columns, drawn.reshape(-1, 3))
 
 
+@lru_cache(4)
+def rays_of(steps: bytes, number: np.dtype[Any], samples: int) -> np.ndarray:
+    """Return the `packet_rays` for the bytes of a camera's steps: the same array while the camera does not turn."""
+    return camera.packet_rays(np.frombuffer(steps, number), sample_positions(samples))
+
+
 def frame_arguments(
     arrays: Any,
     pixels: np.ndarray,
@@ -89,7 +95,7 @@ def frame_arguments(
 
     One sample is that from the centre of a lens, and of the centres of lights.
     """
-    rays, plan = camera.packet_rays(arrays.camera, sample_positions(samples)), ALL_PACKETS
+    rays, plan = rays_of(arrays.camera[6:12].tobytes(), arrays.camera.dtype, samples), ALL_PACKETS
     if camera.has_apertures(arrays):
         lanes, variants = width(rays), camera.variants_of(samples) if samples > 1 else 1
         places = np.zeros((1, lanes, 4)) if samples == 1 else camera.aperture_places(samples, variants, lanes, 0)

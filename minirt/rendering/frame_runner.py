@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 from math import inf
+from operator import is_
 from time import perf_counter
 
 import numpy as np
@@ -36,10 +37,11 @@ class FrameRunner:
         self.next_row = np.zeros(1, np.int64)  # counter of the frame that is being rendered
         self.choice: Choice | None = None  # the kernel of the last frame
         self.arrays: SceneArrays | None = None  # of its scene
-        self.words = b""  # of the form of that scene which the kernel takes
+        self.memories: list[tuple[np.ndarray, np.ndarray]] = []  # of the threads, for that scene, from frame to frame
+        self.words: list[bytes] = []  # of each memory and of the form of that scene which the kernel takes
+        self.of_rays: tuple[tuple[object, ...], bytes] = (None,) * 3, b""  # rays, plan, errors, and their words
         self.pace = inf  # seconds that a sample of a byte of pixels took in the last frame of this kernel
         self.cancellations = 0
-        self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
 
     @cached_property
     def pool(self) -> ThreadPool:
@@ -66,22 +68,25 @@ class FrameRunner:
         if work == frame.pixels.size and height < TILE * FEW_ROWS * self.threads:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
-        memories = [thread_memory(frame.scene) for _ in range(self.threads)]
-        start, shared = perf_counter(), words_of(frame[:-3])
-        jobs: list[Job] = [partial(choice.entry.run, shared + words_of(each) + self.words) for each in memories]
+        start, rays = perf_counter(), frame[3:6]
+        if not all(map(is_, rays, self.of_rays[0])):
+            self.of_rays = rays, words_of(rays)
+        shared = words_of(frame[:3]) + self.of_rays[1]
+        jobs: list[Job] = [partial(choice.entry.run, shared + each) for each in self.words]
         self.pool.run(jobs, self.cancel, helps=self.pace * work < BRIEF)
         seconds = perf_counter() - start
         if work < inf and frame.next_row[0] < CANCELLED:
             self.pace = seconds / work
         self.kernels.count(choice, seconds)
-        self.not_finite += int(sum(memory[-1, 1] for memory, _ in memories))
 
     def choose(self, frame: Frame) -> Choice:
         """Return the kernel for a frame: that of the frame before where its scene has the same arrays."""
         before = self.choice
         if before is None or frame.scene is not self.arrays or self.kernels.has_better(before):
+            if frame.scene is not self.arrays:
+                self.memories = [thread_memory(frame.scene) for _ in range(self.threads)]
             self.choice, self.arrays = self.kernels.choose(frame), frame.scene
-            self.words = words_of(self.choice.scene)
+            self.words = [words_of((*each, self.choice.scene)) for each in self.memories]
             if before is None or self.choice.entry is not before.entry:
                 self.pace = inf
         assert self.choice
@@ -128,7 +133,7 @@ class FrameRunner:
             counter = self.new_counter()
             if self.cancellations != cancellations:
                 raise CancelledError
-            rays = packet_rays(arrays.camera, positions[..., :2])
+            rays = packet_rays(arrays.camera[6:12], positions[..., :2])
             if with_places:
                 rays = with_apertures(rays, positions[..., 2:], arrays.lens)
             self.run(frame._replace(next_row=counter, rays=rays, plan=plan, errors=errors))

@@ -93,6 +93,7 @@ class Kernels:
         self.precision = precision
         self.depth = depth
         self.specialised_after = SPECIALISED_AFTER
+        self.all_are_ready = False  # all of `for_all_scenes`
         # Identities, for each set of features, and whether there are many shapes, for whose shadow rays there is a BVH.
         self.specialised_kernels: dict[Hashable, list[str]] = {}
         self.generic_seconds: dict[str, float] = {}  # of generic kernels, by specialised one
@@ -127,11 +128,8 @@ class Kernels:
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
-        return (
-            not scene.runs
-            or all(map(LIBRARY.has, self.for_all_scenes))
-            or all(map(LIBRARY.has, self.specialised(scene)))
-        )
+        self.all_are_ready |= not self.all_are_ready and all(map(LIBRARY.has, self.for_all_scenes))
+        return self.all_are_ready or not scene.runs or all(map(LIBRARY.has, self.specialised(scene)))
 
     @cached_property
     def for_all_scenes(self) -> list[str]:

@@ -70,7 +70,7 @@ class Renderer:
     @property
     def not_finite(self) -> int:
         """The number of rays of the last picture whose light was infinite or NaN, and is 0 in it."""
-        return self.runner.not_finite
+        return int(sum(memory[-1, 1] for memory, _ in self.runner.memories))
 
     @property
     def about(self) -> list[str]:
@@ -154,7 +154,8 @@ class Renderer:
         """Return the request with an array for its light, and whether it is done, as it shows the background alone.
 
         Otherwise there is a kernel that can draw it."""
-        self.runner.not_finite = 0
+        for memory, _ in self.runner.memories:
+            memory[-1, 1] = 0.0
         has_shapes = bool(request.scene.runs and request.pixels.size)
         if has_shapes and not self.kernels.is_ready(request.scene):
             self.kernels.compile(request.scene)

@@ -150,7 +150,7 @@ class Packing:
         sky = "environment", paint, colours
         environment = cached(sky, materials.pack_environment, scene, paint) if "environment" in used else None
         arrays = SceneArrays(
-            camera=np.append(camera.pixel_rays(numbers, crop.width, crop.height), (crop.left, crop.top)),
+            camera=np.append(camera.pixel_rays(scene.camera, crop.width, crop.height), (crop.left, crop.top)),
             ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
             lights=emitted,
             colours_and_extents=cached(

@@ -154,12 +154,11 @@ def render(
         if settings.get("region") is not None:
             raise RenderError("a picture has a region or rows, not both")
         settings["region"] = (0, rows[0], size[0], rows[1] - rows[0])
-    lit = RenderSettings(linear=linear is not False, **settings)
-    if linear is not None or lit.samples != 1:
-        return rendered(scene, size, lit)
-    return LinearImage.lit_on_demand(
-        rendered(scene, size, lit.replace(linear=False)), partial(rendered, scene, size, lit)
-    )
+    is_lit = settings.get("samples", 1) != 1 if linear is None else linear
+    picture = rendered(scene, size, RenderSettings(linear=is_lit, **settings))
+    if is_lit or linear is not None:
+        return picture
+    return LinearImage.lit_on_demand(picture, partial(render, scene, *size, linear=True, **settings))
 
 
 def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:
@@ -168,8 +167,7 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
     system.check_picture(*shape, PIXEL + LIGHT * (settings.linear or settings.dither))
     pixels = np.empty((*shape, 4), np.uint8)
     light = np.zeros((*shape, 3)) if settings.linear else None
-    chosen = settings.renderer
-    reached = None
+    chosen, reached = settings.renderer, None
     if settings.samples == "auto":
         default = DEFAULT_ERROR if settings.time is None else 0.0
         goal = settings.error or default, inf if settings.time is None else settings.time

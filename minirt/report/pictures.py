@@ -99,7 +99,7 @@ def reference(scene: Scene, width: int, height: int, samples: int, seed: int, st
             step(next(steps))
             some = places[start : start + PASS]
             traced = renderer.packing.pack(scene, width, height)
-            rays = packet_rays(traced.camera, some)
+            rays = packet_rays(traced.camera[6:12], some)
             if has_apertures(traced):
                 discs = aperture_places(len(places), 1, lanes_of(traced.camera), 2 * seed + half)
                 rays = with_apertures(rays, discs[start : start + PASS], traced.lens)

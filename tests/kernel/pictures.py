@@ -81,7 +81,7 @@ def interpreted(
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
     traced = Packing(interpreted_functions, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
-        rays = packet_rays(traced.camera, sample_positions(samples))
+        rays = packet_rays(traced.camera[6:12], sample_positions(samples))
         memory = thread_memory(traced)
         frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, NO_ERRORS, *memory, traced)
     return words.view(np.uint8).reshape(height, width, 4), light

@@ -94,7 +94,8 @@ def test_a_file_is_packed_once_under_all_its_names(tmp_path: Path, decodes: bool
     scene = parse("A 1 255,255,255\nC 0,0,-5 0,0,1 70\nL 0,9,0 1 255,255,255\n", str(tmp_path / "x.rt")).scene
     pool = Reader(scene)
     names = "a.png", "link.png", "same_pixels.png", "hard.png"
-    assert [pool.number(name, Colours(decodes).texture) for name in names] == [1, 1, 2, 1]
+    pool.colours = Colours(decodes)
+    assert [pool.texture(name) for name in names] == [1, 1, 2, 1]
     assert pool.arrays()["texels"].size == 2 * COLOURS.size
 
 

@@ -283,7 +283,7 @@ def test_many_shapes_have_the_numbers_of_each() -> None:
             assert radius + 1e-13 * max(map(abs, centre)) < ball[3] < radius + 1e-11 * (radius + max(map(abs, centre)))
     assert [mixed[i] for i in arrays.plane_indices] == [shape for shape in mixed if isinstance(shape, Plane)]
     assert [arrays.planes[i, :3].tolist() for i in range(10)] == [list(mixed[i].normal) for i in arrays.plane_indices]
-    assert not arrays.update(arrays.shapes)
+    assert not arrays.update(tuple(arrays.shapes))
     assert not arrays.update((*mixed,))
 
 

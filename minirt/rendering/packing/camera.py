@@ -117,25 +117,25 @@ def slopes_at_edges(camera: Camera, width: int, height: int) -> tuple[float, flo
     return half, half * height / width
 
 
-def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
-    """Convert `camera_numbers` to eye, direction through the upper left corner of the picture, and the changes of that
-    direction a pixel to the right and a pixel down, (12,)."""
-    eye, right, up, forward = camera.reshape(4, 3).tolist()
-    corner = (z - x + y for x, y, z in zip(right, up, forward, strict=True))
-    return np.array([*eye, *corner, *(2 / width * part for part in right), *(-2 / height * part for part in up)])
+def pixel_rays(camera: Camera, width: int, height: int) -> np.ndarray:
+    """Eye, direction through the upper left corner of the picture, and the changes of that direction a pixel to the
+    right and a pixel down, (12,)."""
+    across, down = slopes_at_edges(camera, width, height)
+    axes = ((across * x, down * y, z) for x, y, z in zip(*camera_frame(camera), strict=True))
+    columns = ((z - x + y, 2 / width * x, -2 / height * y) for x, y, z in axes)
+    return np.array([camera.position, *zip(*columns, strict=True)]).ravel()
 
 
-def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
+def packet_rays(steps: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """The directions of the rays of a packet for each sample, (k, 3 * width), as differences from the direction through
     the upper left corner of the packet.
 
-    `rays` begin with `pixel_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where each pixel of a
-    packet has its own.
+    `steps` (6,) are the changes in `pixel_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where
+    each pixel of a packet has its own.
     """
-    across_and_down = rays[6:12].reshape(2, 3)
-    positions = packet_pixels(width(rays)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
-    differences: np.ndarray = across_and_down.T @ positions
-    return differences.reshape(len(samples), -1).astype(rays.dtype)
+    positions = packet_pixels(width(steps)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
+    differences: np.ndarray = steps.reshape(2, 3).T @ positions
+    return differences.reshape(len(samples), -1).astype(steps.dtype)
 
 
 @cache

@@ -5,7 +5,6 @@ Light is linear in its sources: an exposure multiplies each source, and so the w
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import cos, radians, sin, tan
 from pathlib import Path
 from typing import NamedTuple
@@ -46,10 +45,9 @@ class Colours(NamedTuple):
             return colours_and_extents
         return np.hstack([decode_srgb(colours_and_extents[:, :3]), colours_and_extents[:, 3:]])
 
-    @property
-    def texture(self) -> Callable[[Path], np.ndarray]:
-        """The function that reads a picture file as shares of light, as bytes where they are in proportion to them."""
-        return decoded_texture if self.decodes else pictures.picture
+    def texture(self, path: Path) -> np.ndarray:
+        """Read a picture file whose bytes are not in proportion to light as shares of light."""
+        return self.of_bytes.take(pictures.picture(path))
 
     def sky(self, path: Path) -> np.ndarray:
         """Read a picture file as the light of a sky, exposed; bytes where they are in proportion to light in [0, 1]."""
@@ -65,11 +63,6 @@ class Colours(NamedTuple):
     def of_bytes(self) -> np.ndarray:
         """The share of light that each byte stands for, float32 (256,)."""
         return self.decoded(np.arange(256) / 255).astype(np.float32) if self.decodes else BYTES
-
-
-def decoded_texture(path: Path) -> np.ndarray:
-    """Read a picture file as shares of light, decoded by the transfer function of sRGB."""
-    return Colours(decodes=True).of_bytes.take(pictures.picture(path))
 
 
 def colours_of(camera: Camera) -> Colours:

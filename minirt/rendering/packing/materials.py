@@ -156,7 +156,7 @@ class Reader:
 
     def texture(self, file: str) -> int:
         """Load colours as shares of light, and return the number of the picture."""
-        return self.number(file, self.colours.texture)
+        return self.number(file, self.colours.texture if self.colours.decodes else pictures.picture)
 
     def heights(self, file: str) -> int:
         return self.number(file, pictures.heights)

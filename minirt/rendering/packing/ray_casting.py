@@ -14,7 +14,7 @@ import numpy as np
 from minirt.kernel.frame import ray_direction
 from minirt.kernel.scene_arrays import kind_of, kind_of_packed
 from minirt.lanes import Vec, unit
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera
 from minirt.shapes import Shape
@@ -25,7 +25,7 @@ CHUNK = 1024  # shapes that are tested at once, so that their numbers fit a proc
 
 def camera_ray(camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Vec, Vec]:
     """Return origin and directions of rays through places of a picture, in pixels from its upper left corner."""
-    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
+    numbers = pixel_rays(camera, width, height)
     with np.errstate(all="ignore"):
         return Vec(*numbers[:3]), unit(ray_direction(numbers, x, y))
 

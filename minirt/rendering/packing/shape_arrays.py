@@ -102,17 +102,17 @@ class ShapeArrays:
 
     def update(self, *runs: tuple[Shape, ...]) -> bool:
         """Bring the arrays up to date with shapes, run by run; return whether anything changed."""
-        fits = [*map(len, runs)] == [*map(len, self.runs)]
-        changed = dict(differing_shapes(self.runs, runs)) if fits else {}
+        before, self.runs = self.runs, runs
+        if runs == before:
+            return False
+        fits = [*map(len, runs)] == [*map(len, before)]
+        changed = dict(differing_shapes(before, runs)) if fits else {}
         pairs = ((self.shapes[i], shape) for i, shape in changed.items())
         fits = fits and all(
             type(a) is type(b) and getattr(a, "triangles", a) is getattr(b, "triangles", a) for a, b in pairs
         )
         if not fits:
             self.allocate(*runs)
-        self.runs = runs
-        if fits and not changed:
-            return False
         self.__dict__.pop("rows", None)
         for index, shape in changed.items():
             self.shapes[index] = shape

@@ -75,7 +75,7 @@ class View:
         """Let the arrays of a scene follow its camera; False where that takes other arrays, and these are spoilt."""
         before = self.seen
         self.look(camera, run)
-        rays = pixel_rays(camera_numbers(camera, *self.size), *self.size)
+        rays = pixel_rays(camera, *self.size)
         if self.rounding:
             self.rounding.move(rays[:3])
             rays[:3] = 0.0

@@ -201,7 +201,7 @@ class Bins:
         if not len(self.members):
             self.check(0)
         view: Any = *point, self.seen.grid.frames.tobytes(), self.seen.shown.tobytes()
-        moved = np.flatnonzero(self.shapes.written > self.updates)
+        moved: Any = np.flatnonzero(self.shapes.written > self.updates) if self.shapes.updates > self.updates else []
         same = view == self.last and not self.shapes.is_plane[self.shapes.slots[self.shapes.listed[moved[:2]], 0]].any()
         self.updates, self.last, self.seen.origin[:], self.counter[0] = self.shapes.updates, (), point, 0
         if same and len(moved) == 1:

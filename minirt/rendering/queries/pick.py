@@ -15,7 +15,7 @@ from minirt.kernel.projection import Grid, projected_rectangle
 from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.trace import COINCIDENT, closer_hit
 from minirt.lanes import Vec
-from minirt.rendering.packing.camera import camera_frame, camera_numbers, pixel_rays, slopes_at_edges
+from minirt.rendering.packing.camera import camera_frame, pixel_rays, slopes_at_edges
 from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera, Scene
@@ -155,8 +155,7 @@ def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.nd
     cancel are drawn, some hundred of a hundred thousand: a row of pixels is a running sum of the edges that cross it.
     """
     triangles = mesh.triangles
-    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
-    eye, corner, across, down = numbers.reshape(4, 3)
+    eye, corner, across, down = pixel_rays(camera, width, height).reshape(4, 3)
     x, y, depth = np.linalg.inv(np.stack([across, down, corner], axis=1)) @ (mesh.placed(triangles.points) - eye).T
     if depth.min() <= 0:
         return None

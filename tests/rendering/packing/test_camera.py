@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 import minirt
 from minirt.kernel.frame import ray_direction
-from minirt.rendering.packing.camera import camera_frame, camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import camera_frame, pixel_rays
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes.sphere import Sphere
 
@@ -31,7 +31,7 @@ CAMERAS = [
 
 def ours(camera: Camera, width: int, height: int) -> Array:
     """The unit directions of the rays that the program traces, (height, width, 3)."""
-    rays = pixel_rays(camera_numbers(camera, width, height), width, height)
+    rays = pixel_rays(camera, width, height)
     directions = [ray_direction(rays, i + 0.5, j + 0.5) for j in range(height) for i in range(width)]
     return normalized(np.array([(v.x, v.y, v.z) for v in directions]).reshape(height, width, 3))
 

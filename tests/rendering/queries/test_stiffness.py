@@ -11,7 +11,7 @@ import minirt
 from minirt.fields import MeshFile
 from minirt.kernel.frame import ray_direction
 from minirt.rendering.notices import notices_about
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.stiffness import ACROSS, DOWN, Stiff, coincident, stiff_shapes
 from minirt.rendering.scene_packing import Packing
@@ -162,7 +162,7 @@ def test_a_cap_on_a_wall_is_found_and_surfaces_that_cross_are_not() -> None:
     (cap,) = close(wall, Cylinder((0, 0, 10), (0, 0, 1), 6, 2, RED))
     assert cap.element == "plane 1 and cylinder 1"
     assert cap.figures["share of the picture"] == pytest.approx(np.pi * 9 / (18 * 18 * DOWN / ACROSS), rel=0.05)
-    camera = pixel_rays(camera_numbers(EYE, ACROSS, DOWN), ACROSS, DOWN)
+    camera = pixel_rays(EYE, ACROSS, DOWN)
     way = ray_direction(camera, 40.5, 10.5)  # one of the rays that are tried, onto the line where both planes cross
     across = Plane((9 * way.x, 9 * way.y, 9 * way.z), (0.3, 0.4711, -0.8), RED)
     assert close(wall, Sphere((0, 0, 9), 6, RED), across) == []
