@@ -94,30 +94,36 @@ def own_share(surface: Surface) -> Number:
 def trace_shadow_rays(scene: SceneArrays, memory: Any, rays: ShadowRays, lit: Mask, glass: bool) -> Mask:
     """Return the `lit` rays to a light source that nothing occludes before their end; `glass` as in `unoccluded`.
 
-    Rays to a parallel light, or to a light source with a size, share no point: they traverse the BVH, if there is one,
-    in place of a light buffer.
+    Rays that share no point traverse the BVH, if there is one, in place of a light buffer.
     """
     if scene.bvh is None or (scene.spots is None and scene.soft is None):
         return unoccluded(scene, memory, rays, lit, glass)
-    if not (has_rows(scene.bvh.nodes) and is_spread(scene, rays.light)):
+    if not traverse_bvh(scene, rays):
         return unoccluded(scene, memory, rays, lit, glass)
-    if has_rows(scene.transparent) and not glass:
-        return lit  # the BVH finds out later, for all shapes at once
     return bvh_traversal.unoccluded(scene.bvh, rays.origin, rays.direction, rays.distance, lit)
+
+
+def traverse_bvh(scene: SceneArrays, rays: ShadowRays) -> bool:
+    """Whether rays go to a parallel light, or to a light source with a size, and there is a BVH."""
+    return has_rows(scene.bvh.nodes) and is_spread(scene, rays.light)
 
 
 def shares_of_light(scene: SceneArrays, memory: Any, rays: ShadowRays, medium: Vec, lit: Mask, seen: Mask) -> Vec:
     """Return the shares of red, green and blue of a light source that reach the origin of `lit` shadow rays.
 
     Most rays meet nothing, or something opaque, and need not be followed through glass; nor need those whose light is
-    not `seen`.
+    not `seen`. Where rays traverse the BVH, to follow them takes no longer than to find out which need it.
     """
     clear = lit
-    for phase in range(2 if has_rows(scene.transparent) else 1):
-        clear = trace_shadow_rays(scene, memory, rays, clear, phase == 1)
-        if phase == 0:
-            lit = clear
-    return light_through_glass(scene, rays, medium, lit & (clear | seen), clear)
+    if has_rows(scene.transparent) and traverse_bvh(scene, rays):
+        clear = lit & ~lit
+    else:
+        for phase in range(2 if has_rows(scene.transparent) else 1):
+            clear = trace_shadow_rays(scene, memory, rays, clear, phase == 1)
+            if phase == 0:
+                lit = clear
+        lit = lit & (clear | seen)
+    return light_through_glass(scene, rays, medium, lit, seen, clear)
 
 
 def smooth_points(scene: SceneArrays, owner: Number, point: Vec, normal: Vec, rays: Mask) -> Vec:
@@ -163,26 +169,27 @@ def has_bumps(scene: SceneArrays) -> bool:
     return has_rows(scene.surface_maps.bumps) or has_rows(scene.surface_maps.normals)
 
 
-def light_through_glass(scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: Mask, clear: Mask) -> Vec:
+def light_through_glass(scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: Mask, seen: Mask, clear: Mask) -> Vec:
     """Return the shares of red, green and blue of a light source that reach the origin of shadow rays.
 
-    Of the `lit` rays those that are `clear` meet nothing. Rays start in a `medium`.
+    Of the `lit` rays those that are `clear` meet nothing; glass is opaque to those that are not `seen`. Rays start in a
+    `medium`.
     """
     share = where(clear, splat(1.0, rays.distance), 0.0)
     light = Vec(share, share, share)
     reach = rays.distance
     occluded = lit & ~clear
     if has_rows(scene.transparent) and any(occluded):
-        light, medium, reach = follow_shadow_rays(scene, rays, medium, light, occluded)
+        light, medium, reach = follow_shadow_rays(scene, rays, medium, light, occluded, seen)
     if has_rows(scene.media):
         light = absorbed(light, medium, reach)
     return light
 
 
 def follow_shadow_rays(
-    scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, occluded: Mask
+    scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, occluded: Mask, seen: Mask
 ) -> tuple[Vec, Vec, Number]:
-    """Follow `occluded` shadow rays from surface to surface.
+    """Follow `occluded` shadow rays from surface to surface, those that are not `seen` to the first one.
 
     Returns the shares that are left behind the last one, and the medium and the distance to the light source there.
     """
@@ -192,6 +199,8 @@ def follow_shadow_rays(
     for _ in range(MOST_SURFACES):
         t, owner, extent, _ = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
         active = active & (t < reach)
+        light = where(active & ~seen, Vec(0.0, 0.0, 0.0), light)
+        active = active & seen
         if not any(active):
             break
         if has_rows(scene.media):
