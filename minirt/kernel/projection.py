@@ -73,9 +73,18 @@ def projected_rectangle(
     if beside and end - start > 1:  # parts of the hull may project beyond all spheres
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
     middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
-    column, columns = cell_interval(low_x, high_x, grid.scale_x, middle_x, grid.margin, grid.across)
-    row, rows = cell_interval(low_y, high_y, grid.scale_y, middle_y, grid.margin, grid.down)
+    margin_x, margin_y = margin_around(grid, low_x, high_x), margin_around(grid, low_y, high_y)
+    column, columns = cell_interval(low_x, high_x, grid.scale_x, middle_x, margin_x, grid.across)
+    row, rows = cell_interval(low_y, high_y, grid.scale_y, middle_y, margin_y, grid.down)
     return column, row, columns, rows
+
+
+def margin_around(grid: Grid, low: float, high: float) -> float:
+    """Return by how many cells an interval of slopes grows: on a cube so far that it takes in the middles of the cells
+    whose circles it meets. An angle e at direction v changes the slope x by e |v| sqrt(1 + x^2) at most, and circles
+    shrink by |v|."""
+    steep = min(max(-low, high), 1.0)
+    return grid.margin * sqrt(1.0 + steep * steep) - 0.5 if grid.frames.shape[0] > 1 else grid.margin
 
 
 def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:

@@ -67,7 +67,6 @@ class SceneArrays(NamedTuple):
     cones: Any  # (n, 5) bounding cones as seen from the eye
     square: int  # pixels along an edge of the squares of the screen that have lists: a tile, or less in a crowd
     light_buffer_cells: int  # cells along an edge of a light buffer's cube; 1 if light buffers are not used
-    light_tolerances: Any  # (m,) how far around their cells the lists of light buffers hold, squared
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance
     light_cones: Any  # (m, n, 5) bounding cones as seen from each light
     groups: Any  # a tuple of Group: one for each kind of shape in the scene

@@ -2,8 +2,7 @@
 
 They are tested against the shapes that culling left for their light-buffer cell, in order of distance, each first by
 its bounding cone (Haines and Greenberg 1986). The cells of a light cover the faces of a cube around it. Each cell has a
-list of the shapes that can be hit in it, which holds for all unit vectors near to one that falls into the cell, too:
-`tolerance` is the square of their distance.
+list of the shapes that can be hit in the circle around it; in the middle of a face, its radius is `CIRCLE`.
 """
 
 from __future__ import annotations
@@ -14,24 +13,30 @@ from typing import Any, NamedTuple
 from minirt.kernel.beams import fold_over_mesh, vec_of
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read_row, vector
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, where, width
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, unit, where, width
+
+CIRCLE = 1.1 * 2.0**0.5  # in half edges of a cell: with 16 of them or more on an edge it takes in all corners
+CACHED = 5  # numbers that `remember_cell` writes
 
 
-def is_close(cached: Any, tolerance: Any, direction: Vec) -> Mask:
-    """Whether directions are so close to the cached one that its cell's list holds for them."""
+def is_close(cached: Any, direction: Vec) -> Mask:
+    """Whether directions are in the circle around the cached cell."""
     difference = direction - vector(cached, 0)
-    return dot(difference, difference) <= tolerance
+    return dot(difference, difference) <= cached[4]
 
 
 def remember_cell(cached: Any, cells: int, direction: Vec, ray: int) -> None:
-    """Cache one ray's direction towards the light, and the cell that the ray arrives through."""
-    one = vec_of(direction, ray)
-    cached[0], cached[1], cached[2] = one.x, one.y, one.z
-    cached[3] = light_buffer_cell(-one, cells)
+    """Cache the cell that a ray arrives through: the direction of its middle, towards the light, its number, and the
+    square of the radius of the circle around it."""
+    cell, middle = light_buffer_cell(-vec_of(direction, ray), cells)
+    towards, radius = -unit(middle), CIRCLE / cells
+    cached[0], cached[1], cached[2], cached[3] = towards.x, towards.y, towards.z, cell
+    cached[4] = radius * radius / dot(middle, middle)  # a face shrinks towards its edges as the light sees it
 
 
-def light_buffer_cell(direction: Vec, cells: int) -> Number:
-    """Return the cell that a direction from the light falls into: (face * cells + row) * cells + column.
+def light_buffer_cell(direction: Vec, cells: int) -> tuple[Number, Vec]:
+    """Return the cell that a direction from the light falls into, (face * cells + row) * cells + column, and its middle
+    on the cube from -1 to 1.
 
     Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along
     the one after it, both from -1 to 1.
@@ -42,12 +47,15 @@ def light_buffer_cell(direction: Vec, cells: int) -> Number:
     major = where(along_x, direction.x, where(along_y, direction.y, direction.z))
     across = where(along_x, direction.y, where(along_y, direction.z, direction.x))
     down = where(along_x, direction.z, where(along_y, direction.x, direction.y))
-    face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + where(major > 0.0, 0.0, 1.0)
+    side = where(major > 0.0, 0.0, 1.0)
+    face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + side
     half = 0.5 * cells
     scale = half / fabs(major)
     column = minimum(floor(across * scale + half), cells - 1.0)
     row = minimum(floor(down * scale + half), cells - 1.0)
-    return (face * cells + row) * cells + column
+    x, y, z = (column + 0.5) / half - 1.0, (row + 0.5) / half - 1.0, 1.0 - 2.0 * side
+    middle = where(along_x, Vec(z, x, y), where(along_y, Vec(y, z, x), Vec(x, y, z)))
+    return (face * cells + row) * cells + column, middle
 
 
 class ShadowRays(NamedTuple):
@@ -65,23 +73,22 @@ def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, 
     """Trace shadow rays: the `active` rays that hit nothing nearer than their end.
 
     Only opaque shapes count, or with `glass` only transparent ones; in kernels without glass all shapes.
-    Only shapes in the light-buffer cell of a ray are tested (Haines and Greenberg 1986). The shapes of a cell hold for
-    directions close around it too, and `memory` (m, 4) caches for each light the direction that was last looked up and
-    its cell: most rays of a packet, and of the next packet, need no other lookup. Cells and cones are those of the
-    directions `towards` the centre of the light source.
+    Only shapes in the light-buffer cell of a ray are tested (Haines and Greenberg 1986). `memory` (m, `CACHED`) caches
+    for each light the cell that was last looked up: most rays of a packet, and of the next packet, are in the circle
+    around it and need no other lookup. Cells and cones are those of the directions `towards` the centre of the light
+    source.
     """
     if scene.light_buffer_cells == 1:
         return for_each_kind(unoccluded_by_kind, scene.groups, active, (scene, rays, 0, active, glass))
     visible = active
     remaining = active
-    tolerance = scene.light_tolerances[rays.light]
     for _ in range(width(rays.distance)):  # at most one lookup for each ray
         if not any(remaining):
             break
-        in_cell = remaining & is_close(memory[rays.light], tolerance, rays.towards)
+        in_cell = remaining & is_close(memory[rays.light], rays.towards)
         if rarely(not any(in_cell)):
             remember_cell(memory[rays.light], scene.light_buffer_cells, rays.towards, first(remaining))
-            in_cell = remaining & is_close(memory[rays.light], tolerance, rays.towards)
+            in_cell = remaining & is_close(memory[rays.light], rays.towards)
         arguments = (scene, rays, int(memory[rays.light, 3]), in_cell, glass)
         visible = for_each_kind(unoccluded_by_kind, scene.groups, visible, arguments)
         remaining = remaining & ~in_cell

@@ -15,6 +15,7 @@ import numpy as np
 
 from minirt.kernel.pixels import PACKET_HEIGHT, SUMS
 from minirt.kernel.shading.patterns import SPACING
+from minirt.kernel.shadow_rays import CACHED
 from minirt.lanes import width
 from minirt.rendering.packing import camera
 from minirt.rendering.packing.camera import GOLDEN_RATIO, Crop
@@ -119,7 +120,7 @@ def thread_memory(arrays: Any) -> tuple[np.ndarray, np.ndarray]:
     """Allocate what a thread remembers from one packet to the next, still empty (see `minirt.kernel.trace`), and the
     buffer in which it sums the light of a tile."""
     kept = 2 * width(arrays.camera) if arrays.soft is not None else 0
-    memory = np.zeros((len(arrays.lights) + 1, 4 + kept), arrays.lights.dtype)
+    memory = np.zeros((len(arrays.lights) + 1, CACHED + kept), arrays.lights.dtype)
     memory[-1, SPACING] = 1.0
     return memory, np.empty(SUMS, arrays.camera.dtype)
 

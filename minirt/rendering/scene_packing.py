@@ -246,5 +246,4 @@ def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tup
         starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
         cones = np.stack([each.cones for each in binned])
         members = np.concatenate([each.members for each in binned])
-    tolerances = np.array([each.tolerance for each in binned])
-    return starts, {"light_shapes": members, "light_cones": cones, "light_tolerances": tolerances}
+    return starts, {"light_shapes": members, "light_cones": cones}

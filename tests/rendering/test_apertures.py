@@ -104,7 +104,7 @@ def test_culling_leaves_out_nothing_that_a_moved_eye_or_light_sees() -> None:
     every = Packing(interpreted, without=(TILES, LIGHT_BUFFERS, BVH)).pack(soft_scene(), *size)
     expected = light_of(every, *size)
     assert np.array_equal(light_of(arrays, *size), expected)
-    fields = ("tile_shapes", "cones", "light_tolerances", "light_shapes", "light_cones", "groups")
+    fields = ("tile_shapes", "cones", "light_shapes", "light_cones", "groups")
     narrow = arrays._replace(**{name: getattr(hard, name) for name in fields})
     assert not np.array_equal(light_of(narrow, *size), expected)  # lists for a pinhole and points would not do
 

@@ -73,7 +73,6 @@ def test_a_scene_may_have_no_ambient_light_and_no_lights() -> None:
     arrays = Packing().pack(Scene((EYE, *SHAPES)), 24, 16)
     assert arrays.ambient.tolist() == [0, 0, 0]
     assert arrays.lights.shape == (0, 6)
-    assert arrays.light_tolerances.shape == (0,)
     assert arrays.light_cones.shape == (0, len(SHAPES), 5)
     assert len(arrays.light_shapes) == 0
     assert all(group.light_starts.shape == (0, 1) for group in arrays.groups)

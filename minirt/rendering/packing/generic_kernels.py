@@ -98,7 +98,6 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         cones=numbers((0, 5)),
         square=TILE,
         light_buffer_cells=1,
-        light_tolerances=numbers(0),
         light_shapes=indices,
         light_cones=numbers((0, 0, 5)),
         groups=tuple(

@@ -158,8 +158,6 @@ def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> S
             lights=rounding.rounded(arrays.lights, (*POINT, OTHER, OTHER, OTHER)),
             colours_and_extents=extents,
             cones=rounding.rounded(arrays.cones, CONE),
-            # Narrowed by rounding errors, so that fewer directions count as close to another.
-            light_tolerances=np.maximum(np.sqrt(arrays.light_tolerances) - MARGIN, 0.0) ** 2,
             light_cones=light_cones.reshape(arrays.light_cones.shape),
             groups=tuple(map(rounding.group, arrays.groups)),
         )

@@ -16,17 +16,14 @@ from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import MARGIN, Grid, signed_height
+from minirt.kernel.shadow_rays import CIRCLE
 from minirt.lanes import Vec
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
-# Vectors across, down and forward of the six faces of a cube, in the order of `cell_of_cube` in
+# Vectors across, down and forward of the six faces of a cube, in the order of `light_buffer_cell` in
 # `minirt.kernel.shadow_rays`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-# Of the mean angle of a cell: its list holds for all directions so close to one in it. Neighbouring rays often share a
-# cell, but seldom in a crowd, where the lists are best kept short.
-SPREAD, SPREAD_IN_CROWD = 0.5, 0.1
-CROWD = 256  # cells along an edge of a cube, or more
 # The most shapes, and the cells along an edge of a light's cube with which building and using the lists was measured to
 # take least. A mesh, which has a tree of its own, is one shape.
 SMALL = 8
@@ -54,7 +51,6 @@ class BinnedShapes(NamedTuple):
     starts: np.ndarray  # int32 (kinds, cells + 1)
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
-    tolerance: float = 0.0  # of the lists of a light: see `minirt.kernel.shadow_rays`
     bins: Bins | None = None  # which binned them, if any
 
 
@@ -83,19 +79,14 @@ def square_edge(shape_arrays: ShapeArrays, packet_width: int) -> int:
     return max(packet_width, next(edge for most, edge in SQUARES_BY_SHAPES if count <= most))
 
 
-def spread_of(cells: int) -> float:
-    """The share of the mean angle of a cell, so many of which lie along an edge of a cube, by which lists spread."""
-    return SPREAD if cells < CROWD else SPREAD_IN_CROWD * (CROWD / cells) ** 2
-
-
 @cache
 def cube_grid(cells: int) -> Grid:
     """The six faces of the cube around a light as a grid, so many cells along an edge.
 
-    Intervals grow so that a list holds for directions up to its spread away: at the corner of a face, where slopes
-    change most with the angle, an angle e changes them by less than 3 e.
+    Intervals grow by the radius of the circle around a cell. On the way from its middle to its rim |v| sqrt(1 + x^2),
+    see `minirt.kernel.projection.margin_around`, grows by less than 5 / cells; 0.01 cells are for rounding to float32.
     """
-    half, margin = cells / 2, 3 * spread_of(cells) * np.pi / 4
+    half, margin = cells / 2, CIRCLE / 2 * (1 + 5 / cells) + 0.01
     return Grid(FACES, cells, cells, half, half, half, half, margin, 6 * cells * cells)
 
 
@@ -124,9 +115,7 @@ def seen_by_light(
     bins.see_from(light, run)
     if cells == 1:
         return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
-    spread = 2 * np.sin(spread_of(cells) * np.pi / 4 / cells)  # distance up to which lists hold around a cell
-    members = bins.members[: bins.starts[-1, -1]]
-    return BinnedShapes(bins.starts, members, bins.seen.cones, float(spread * spread), bins)
+    return BinnedShapes(bins.starts, bins.members[: bins.starts[-1, -1]], bins.seen.cones, bins)
 
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:

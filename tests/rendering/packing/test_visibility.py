@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import SystemRandom
 from typing import Any, NamedTuple
 
@@ -15,8 +14,9 @@ from minirt.helpers import system
 from minirt.kernel import binning, functions
 from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.pixels import TILE
+from minirt.kernel.projection import projected_rectangle
 from minirt.kernel.scene_arrays import kind_of, read
-from minirt.kernel.shadow_rays import light_buffer_cell
+from minirt.kernel.shadow_rays import CACHED, CIRCLE, is_close, light_buffer_cell, remember_cell
 from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing import visibility
@@ -104,14 +104,11 @@ KERNELS = pytest.mark.parametrize("kernel", [binning, functions], ids=["interpre
 
 
 @pytest.fixture(params=[False, True], ids=["few", "crowd"])
-def crowd(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The lists as usual, and those that crowds have, of smaller squares and with a smaller spread, for all scenes."""
-    visibility.cube_grid.cache_clear()
+def crowd(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The lists as usual, and those that crowds have, of smaller squares and cells, for all scenes."""
     if request.param:
         monkeypatch.setattr(visibility, "SQUARES_BY_SHAPES", ((np.inf, TILE // 4),))
-        monkeypatch.setattr(visibility, "CROWD", 1)
-    yield
-    visibility.cube_grid.cache_clear()
+        monkeypatch.setattr(visibility, "CELLS_BY_SHAPES", ((visibility.SMALL, 1), (np.inf, 256)))
 
 
 @KERNELS
@@ -155,14 +152,10 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any,
     directions /= np.linalg.norm(directions, axis=0)
     planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
     for light, row in enumerate(arrays.lights):
-        edge, tolerance = arrays.light_buffer_cells, arrays.light_tolerances[light]
+        edge = arrays.light_buffer_cells
         count = 6 * edge**2 if edge > 1 else 1
-        # The list of a cell holds for close directions, too.
-        nearby = directions + 0.99 * np.sqrt(tolerance) * random_directions(random, 2000).T
-        nearby /= np.linalg.norm(nearby, axis=0)
-        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= tolerance, nearby, directions)
         with np.errstate(all="ignore"):
-            cells = light_buffer_cell(Vec(*nearby), edge) if edge > 1 else np.zeros(2000)
+            cells = light_buffer_cell(Vec(*directions), edge)[0] if edge > 1 else np.zeros(2000)
         in_cell = members(arrays, "light_starts", arrays.light_shapes, light)
         assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
         left_out = {shape for shape in planes if not in_cell[:, shape].any()}
@@ -170,6 +163,25 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any,
             assert (t[hit] >= arrays.light_cones[light, shape, 4]).all()
             assert (in_cone(arrays.light_cones[light, shape], Vec(*directions)) | ~hit).all()
             assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
+
+
+@pytest.mark.parametrize("edge", [16, 32, 512])
+def test_cells_list_what_is_in_the_circles_around_them(edge: int) -> None:
+    random, grid, cached, met = np.random.default_rng(edge), visibility.cube_grid(edge), np.zeros(CACHED), 0
+    for way in random_directions(random, 1000):
+        ball = np.array([[*way, 1e-9]])
+        listed = [projected_rectangle(np.zeros(3), grid, face, ball, 0, 1, 0.0) for face in range(6)]
+        for reach in random.uniform(0, [0, *[2 * CIRCLE / edge] * 8]):
+            nearby = unit(Vec(*way + reach * unit_direction(random)))
+            remember_cell(cached, edge, -Vec(*(np.array([each]) for each in (nearby.x, nearby.y, nearby.z))), 0)
+            assert reach > 0 or is_close(cached, -Vec(*way))
+            if is_close(cached, -Vec(*way)):
+                face, row, column = int(cached[3]) // edge**2, int(cached[3]) // edge % edge, int(cached[3]) % edge
+                left, top, columns, rows = listed[face]
+                assert left <= column < left + columns
+                assert top <= row < top + rows
+                met += 1
+    assert met > 3000
 
 
 @pytest.mark.parametrize("precision", PRECISIONS)
