@@ -17,8 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.bvh_build import LEVELS
-from minirt.kernel.scene_arrays import Group, vector
+from minirt.kernel.scene_arrays import LEVELS, Group, vector
 from minirt.lanes import (
     Mask,
     Number,

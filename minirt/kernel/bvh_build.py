@@ -9,12 +9,20 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
+from minirt.kernel.bvh_nodes import packet_memory
+from minirt.kernel.pixels import fetch_add
+from minirt.kernel.scene_arrays import LEVELS
 from minirt.lanes import maximum
 
 BINS = 16  # bins along an axis
-LEVELS = 32  # levels of the binary tree, at most, down to leaves
-MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together
 INDEX, GROUP = 6, 7  # columns of `boxes`, behind the bounds
+BIN = 7  # numbers of a bin: bounds and number of the boxes in it
+# Offsets in the memory of a thread: the bins, of which the last is several together; the SAH cost of the boxes above
+# each bin; bounds of the centres, times two, of a node's boxes; nodes still to divide, and their levels.
+SEVERAL = BINS * BIN
+COSTS = SEVERAL + BIN
+CENTRES = COSTS + BINS
+STACK = CENTRES + 6
 
 
 class BinaryTree(NamedTuple):
@@ -22,37 +30,43 @@ class BinaryTree(NamedTuple):
 
     boxes: Any  # (n, 8) bounds, index and group of each shape, in the order of the leaves
     bounds: Any  # (m, 6) bounds of each node
-    links: Any  # (m, 3) first box of a node, the box behind its last, and the first of its two children, or 0: a leaf
-    bins: Any  # (BINS + 1, 7) bounds and number of the boxes in each bin; in the last row, of several bins together
-    costs: Any  # (BINS,) SAH cost of the boxes above each bin
-    centres: Any  # (6,) bounds of the centres, times two, of a node's boxes
-    stack: Any  # (m, 2) nodes still to divide, and their levels
-    found: Any  # (2,) what `divide` and `collapse` find
+    links: Any  # (m, 3) first box of a node, the box behind its last, and the first of its two children; 0: a leaf
+    found: Any  # (2,) the number of nodes, and what `collapse` finds
     width: int  # children of a wide node, and boxes in a leaf, at most
 
 
-def divide(tree: BinaryTree) -> None:
-    """Divide all boxes until each leaf has one group and at most `tree.width` boxes, and find the number of nodes."""
-    links = tree.links
-    links[0, 0], links[0, 1] = 0, tree.boxes.shape[0]
-    tree.stack[0, 0], tree.stack[0, 1] = 0, 0
-    used, waiting = 1, 1
-    while waiting > 0:
-        waiting -= 1
-        node, level = tree.stack[waiting, 0], tree.stack[waiting, 1]
-        start, stop = links[node, 0], links[node, 1]
-        fit_bounds(tree, node)
-        links[node, 2] = 0
-        if stop - start > tree.width or has_mixed_groups(tree.boxes, start, stop):
-            middle = partition(tree, start, stop, level)
-            links[node, 2] = used
-            links[used, 0], links[used, 1] = start, middle
-            links[used + 1, 0], links[used + 1, 1] = middle, stop
-            for child in range(2):
-                tree.stack[waiting + child, 0], tree.stack[waiting + child, 1] = used + child, level + 1
-            waiting += 2
-            used += 2
-    tree.found[0] = used
+def divide(next_root: Any, tree: BinaryTree, roots: Any, most: int) -> None:
+    """Divide nodes, taking them from the counter `next_root` until none is left, until each leaf has one group and at
+    most `tree.width` boxes.
+
+    Any number of threads may do so at the same time. `roots` (r, 2) are nodes and their levels. Of nodes below them
+    those with at most `most` boxes are left, marked by -1 - level in place of a child. The tree is the same whatever is
+    left and whoever divides it, but for the numbers of its nodes.
+    """
+    memory, links = packet_memory(), tree.links
+    while True:
+        root = fetch_add(next_root, 1)
+        if root >= roots.shape[0]:
+            return
+        memory[STACK], memory[STACK + 1] = roots[root, 0], roots[root, 1]
+        top = STACK + 2
+        while top > STACK:
+            top -= 2
+            node, level = int(memory[top]), int(memory[top + 1])
+            start, stop = links[node, 0], links[node, 1]
+            if stop - start <= most and level > roots[root, 1]:
+                links[node, 2] = -1 - level
+                continue
+            fit_bounds(tree, node, memory)
+            links[node, 2] = 0
+            if stop - start > tree.width or has_mixed_groups(tree.boxes, start, stop):
+                middle, child = partition(tree, start, stop, level, memory), fetch_add(tree.found, 2)
+                links[node, 2] = child
+                links[child, 0], links[child, 1] = start, middle
+                links[child + 1, 0], links[child + 1, 1] = middle, stop
+                for i in range(2):
+                    memory[top], memory[top + 1] = child + i, level + 1
+                    top += 2
 
 
 def has_mixed_groups(boxes: Any, start: int, stop: int) -> bool:
@@ -63,30 +77,30 @@ def has_mixed_groups(boxes: Any, start: int, stop: int) -> bool:
     return i < stop
 
 
-def fit_bounds(tree: BinaryTree, node: int) -> None:
+def fit_bounds(tree: BinaryTree, node: int, memory: Any) -> None:
     """Compute the bounds of a node's boxes, and the bounds of their centres."""
-    boxes, bounds, centres = tree.boxes, tree.bounds, tree.centres
+    boxes, bounds = tree.boxes, tree.bounds
     for k in range(6):
         bounds[node, k] = -inf
-        centres[k] = -inf
+        memory[CENTRES + k] = -inf
     for i in range(tree.links[node, 0], tree.links[node, 1]):
         for k in range(6):
             bounds[node, k] = maximum(boxes[i, k], bounds[node, k])
         for k in range(3):
             centre = boxes[i, 3 + k] - boxes[i, k]
-            centres[k] = maximum(-centre, centres[k])
-            centres[3 + k] = maximum(centre, centres[3 + k])
+            memory[CENTRES + k] = maximum(-centre, memory[CENTRES + k])
+            memory[CENTRES + 3 + k] = maximum(centre, memory[CENTRES + 3 + k])
 
 
-def partition(tree: BinaryTree, start: int, stop: int, level: int) -> int:
+def partition(tree: BinaryTree, start: int, stop: int, level: int, memory: Any) -> int:
     """Partition the boxes of a range at the best split, and return the first box of the second part."""
     boxes = tree.boxes
     if stop - start <= tree.width:
         return partition_by_group(boxes, start, stop)
-    axis, last = best_split(tree, start, stop)
+    axis, last = best_split(tree, start, stop, memory)
     if axis < 0 or stop - start > tree.width << (LEVELS - 1 - level):  # all centres coincide, or too deep: halves
         return (start + stop) // 2
-    low, scale = bin_scale(tree.centres, axis)
+    low, scale = bin_scale(memory, axis)
     while start < stop:
         if bin_index(boxes, start, axis, low, scale) <= last:
             start += 1
@@ -112,22 +126,22 @@ def swap(boxes: Any, i: int, j: int) -> None:
         boxes[i, k], boxes[j, k] = boxes[j, k], boxes[i, k]
 
 
-def best_split(tree: BinaryTree, start: int, stop: int) -> tuple[int, int]:
+def best_split(tree: BinaryTree, start: int, stop: int, memory: Any) -> tuple[int, int]:
     """Find the axis of the best split, and the last bin of its first part; axis -1 if no split divides the boxes."""
     least, best_axis, last = inf, -1, 0
     for axis in range(3):
-        low, scale = bin_scale(tree.centres, axis)
+        low, scale = bin_scale(memory, axis)
         if scale < inf:
-            fill_bins(tree, start, stop, axis, low, scale)
-            cost, bin_below = best_bin(tree)
+            fill_bins(tree.boxes, start, stop, axis, low, scale, memory)
+            cost, bin_below = best_bin(tree.width, memory)
             if cost < least:
                 least, best_axis, last = cost, axis, bin_below
     return best_axis, last
 
 
-def bin_scale(centres: Any, axis: int) -> tuple[float, float]:
+def bin_scale(memory: Any, axis: int) -> tuple[float, float]:
     """Return the coordinate, times two, at which the first bin begins, and the number of bins per unit of it."""
-    low, high = -centres[axis], centres[3 + axis]
+    low, high = -memory[CENTRES + axis], memory[CENTRES + 3 + axis]
     return low, BINS / (high - low)
 
 
@@ -136,58 +150,56 @@ def bin_index(boxes: Any, i: int, axis: int, low: float, scale: float) -> int:
     return min(int((boxes[i, 3 + axis] - boxes[i, axis] - low) * scale), BINS - 1)
 
 
-def fill_bins(tree: BinaryTree, start: int, stop: int, axis: int, low: float, scale: float) -> None:
+def fill_bins(boxes: Any, start: int, stop: int, axis: int, low: float, scale: float, memory: Any) -> None:
     """Gather the bounds and numbers of the boxes of a range in bins, by their centres."""
-    boxes, bins = tree.boxes, tree.bins
     for b in range(BINS):
-        clear_bin(bins, b)
+        clear_bin(memory, BIN * b)
     for i in range(start, stop):
-        b = bin_index(boxes, i, axis, low, scale)
+        at = BIN * bin_index(boxes, i, axis, low, scale)
         for k in range(6):
-            bins[b, k] = maximum(boxes[i, k], bins[b, k])
-        bins[b, 6] += 1.0
+            memory[at + k] = maximum(boxes[i, k], memory[at + k])
+        memory[at + 6] += 1.0
 
 
-def best_bin(tree: BinaryTree) -> tuple[float, int]:
+def best_bin(width: int, memory: Any) -> tuple[float, int]:
     """Find the least cost of a split between two bins, and the bin below that split."""
-    bins, costs = tree.bins, tree.costs
-    clear_bin(bins, BINS)
+    clear_bin(memory, SEVERAL)
     for b in range(BINS - 1, 0, -1):
-        merge_bin(bins, b)
-        costs[b - 1] = sah_cost(bins, tree.width)
-    clear_bin(bins, BINS)
+        merge_bin(memory, BIN * b)
+        memory[COSTS + b - 1] = sah_cost(memory, width)
+    clear_bin(memory, SEVERAL)
     least, last = inf, 0
     for b in range(BINS - 1):
-        merge_bin(bins, b)
-        cost = sah_cost(bins, tree.width) + costs[b]
+        merge_bin(memory, BIN * b)
+        cost = sah_cost(memory, width) + memory[COSTS + b]
         if cost < least:
             least, last = cost, b
     return least, last
 
 
-def clear_bin(bins: Any, b: int) -> None:
+def clear_bin(memory: Any, at: int) -> None:
     """Empty a bin."""
     for k in range(6):
-        bins[b, k] = -inf
-    bins[b, 6] = 0.0
+        memory[at + k] = -inf
+    memory[at + 6] = 0.0
 
 
-def merge_bin(bins: Any, b: int) -> None:
-    """Merge a bin into the last row."""
+def merge_bin(memory: Any, at: int) -> None:
+    """Merge a bin into the last one."""
     for k in range(6):
-        bins[BINS, k] = maximum(bins[b, k], bins[BINS, k])
-    bins[BINS, 6] += bins[b, 6]
+        memory[SEVERAL + k] = maximum(memory[at + k], memory[SEVERAL + k])
+    memory[SEVERAL + 6] += memory[at + 6]
 
 
-def sah_cost(bins: Any, width: int) -> float:
-    """Return the SAH cost of the boxes in the last row: half of their surface area times the leaves that they fill."""
-    leaves = (int(bins[BINS, 6]) + width - 1) // width
-    return half_area(bins, BINS) * leaves if leaves > 0 else inf
+def sah_cost(memory: Any, width: int) -> float:
+    """Return the SAH cost of the boxes in the last bin: half of their surface area times the leaves that they fill."""
+    leaves = (int(memory[SEVERAL + 6]) + width - 1) // width
+    return half_area(memory, SEVERAL) * leaves if leaves > 0 else inf
 
 
-def half_area(bounds: Any, i: int) -> float:
-    """Return half of the surface area of a box."""
-    x, y, z = bounds[i, 0] + bounds[i, 3], bounds[i, 1] + bounds[i, 4], bounds[i, 2] + bounds[i, 5]
+def half_area(bounds: Any, at: int) -> float:
+    """Return half of the surface area of a box, whose bounds begin at an index."""
+    x, y, z = bounds[at] + bounds[at + 3], bounds[at + 1] + bounds[at + 4], bounds[at + 2] + bounds[at + 5]
     return x * y + y * z + z * x
 
 
@@ -203,11 +215,11 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
     (m, width) and `shares` (m, width + 1) are overwritten.
     """
     share_places(tree, areas, shares)
-    node_count, leaf_count, waiting = 1, 0, 1
-    tree.stack[0, 0], tree.stack[0, 1] = 0, 0
-    while waiting > 0:
-        waiting -= 1
-        binary, node = tree.stack[waiting, 0], tree.stack[waiting, 1]
+    node_count, leaf_count, top, memory = 1, 0, 2, packet_memory()
+    memory[0], memory[1] = 0, 0
+    while top > 0:
+        top -= 2
+        binary, node = int(memory[top]), int(memory[top + 1])
         count = collect_children(tree, shares, binary, children[node], references[node])
         for place in range(tree.width):
             child = children[node, place]
@@ -218,8 +230,8 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
                 leaf_count += 1
             else:
                 references[node, place] = node_count
-                tree.stack[waiting, 0], tree.stack[waiting, 1] = child, node_count
-                waiting += 1
+                memory[top], memory[top + 1] = child, node_count
+                top += 2
                 node_count += 1
     tree.found[0], tree.found[1] = node_count, leaf_count
 
@@ -237,7 +249,7 @@ def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
                 if area < least:
                     least, share = area, i + 1
             if k == tree.width - 1:
-                whole = least + half_area(tree.bounds, node) if first > 0 else 0.0
+                whole = least + half_area(tree.bounds[node], 0) if first > 0 else 0.0
                 shares[node, tree.width] = share
             if k == 0 or whole < least:
                 least, share = whole, 0

@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.bvh_build import LEVELS, MARGIN
+from minirt.kernel.scene_arrays import LEVELS
 from minirt.kernel.trace import COINCIDENT
 from minirt.lanes import Mask, Number, Vec, copysign, load, load_vec, max_norm, maximum, minimum, save_vec, where, width
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
+MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together
 TINY = 2.0**-500  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
 NODE = 7 * WIDTH  # numbers in a node: the low x, y, z and high x, y, z of its children, and references to them
 REFERENCES = 6 * WIDTH  # offset of the references in a node

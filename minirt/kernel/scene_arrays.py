@@ -19,6 +19,7 @@ from minirt.shapes.shape import Position
 
 Rows = Any  # an array of dtype `row_type(kind)`
 TRIANGLE_ROW = np.dtype([("mesh.corners", np.int32, (3,))])
+LEVELS = 32  # levels of a binary tree of boxes, at most, down to leaves
 
 
 class Group(NamedTuple):

@@ -90,9 +90,10 @@ class Triangles:
 def blocks(points: np.ndarray, corners: np.ndarray) -> Iterator[tuple[slice, list[Vec], list[Vec], Vec]]:
     """Yield for blocks of triangles, whose numbers stay in the cache of a core, where they are, their corners, the
     edges from each corner to the next, and the cross products of the first two."""
+    columns = points.T.copy()
     for start in range(0, len(corners), BLOCK):
         some = slice(start, start + BLOCK)
-        ends = [Vec(*points[each].T.copy()) for each in corners[some].T]
+        ends = [Vec(*(numbers[each] for numbers in columns)) for each in corners[some].T]
         edges = [ends[(i + 1) % 3] - ends[i] for i in range(3)]
         yield some, ends, edges, cross(edges[0], edges[1])
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from minirt.helpers.system import TooLargeError
 from minirt.kernel import functions
-from minirt.kernel.bvh_build import MARGIN
-from minirt.kernel.bvh_nodes import Tree
+from minirt.kernel.bvh_nodes import MARGIN, Tree
 from minirt.kernel.frame import tile_count
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays
@@ -78,7 +77,7 @@ class Packing:
         """Return the BVH over the shapes of some runs, which is kept until other ones are packed."""
         arrays = self.shape_arrays_for(*runs)
         if not self.bvh:
-            self.bvh = build_bvh(arrays, self.kernel, inf if BOXES in self.without else MARGIN)
+            self.bvh = build_bvh(arrays, self.kernel, inf if BOXES in self.without else MARGIN, self.run)
         return self.bvh
 
     def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:
@@ -143,7 +142,7 @@ class Packing:
         emitted = lights.positions_and_intensities(sources, colours)
         shining = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
         needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
-        trees = cached("trees", pack_trees, shapes, self.kernel)
+        trees = cached("trees", pack_trees, shapes, self.kernel, self.run)
         triangles = cached("triangles", place_meshes, shapes, self.kernel, self.run)
         of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
         paint: Any = scene.background and scene.background.paint

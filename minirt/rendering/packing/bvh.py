@@ -9,16 +9,18 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from minirt.kernel import beams
-from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
+from minirt.kernel.bvh_build import GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, Group, Tree
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
 from minirt.meshes import Triangles
+from minirt.meshes.triangles import BLOCK
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes import Kind
 from minirt.shapes.mesh import BARYCENTRIC, Mesh
 
+PARTS = 4  # into about so many a thread divides a tree before all threads divide these
 CACHE_LINE = 64  # bytes
 NO_LEAF = -GROUPS  # a reference for the lanes to spare of a node, which rays of NaN hit, too: to a leaf of no group
 
@@ -29,7 +31,7 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN) -> Tree:
+def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN, run: Run | None = None) -> Tree:
     """Build the BVH over the shapes with the functions of `kernel`, compiled or interpreted.
 
     All boxes are grown by a margin, a share of their coordinates. Where it is infinite each ray visits every leaf.
@@ -40,7 +42,7 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN) ->
     boxes, (bounds, extents) = np.empty((len(bounded), 8)), shape_arrays.primitive_boxes()
     boxes[:, :3], boxes[:, 3:6] = -bounds[bounded, 0], bounds[bounded, 1]
     boxes[:, INDEX], boxes[:, GROUP] = bounded, shape_arrays.slots[bounded, 0]
-    nodes, leaves = wide_nodes(boxes, kernel, margin=margin)
+    nodes, leaves = wide_nodes(boxes, kernel, margin=margin, run=run)
     # The blocks of each kind are in the order of the leaves.
     kinds, (places, spare) = boxes[leaves[:, 0], GROUP], lanes_of(leaves, WIDTH)
     blocks = np.zeros(len(leaves), np.int64)
@@ -83,20 +85,27 @@ def boxes_of(bounds: np.ndarray, places: np.ndarray, spare: np.ndarray, margin: 
 
 
 def wide_nodes(
-    boxes: np.ndarray, kernel: Any, width: int = WIDTH, margin: float = MARGIN
+    boxes: np.ndarray, kernel: Any, width: int = WIDTH, margin: float = MARGIN, run: Run | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Build a binary tree over boxes, sorting them, and collapse it into nodes of some width; see
-    `minirt.kernel.bvh_build`.
+    """Build a binary tree over boxes, sorting them, on all threads by `run`, and collapse it into nodes of some width;
+    see `minirt.kernel.bvh_build`.
 
     Returns the nodes, (n, 7, width): the boxes of their children and the references to these; and for each leaf its
     first box and the box behind its last.
     """
-    most = max(1, 2 * len(boxes) - 1)
-    links, bounds = np.empty((most, 3), np.int64), np.empty((most, 6))
-    stack = np.empty((most + 1, 2), np.int64)
-    found, scratch = np.empty(2, np.int64), (np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack)
-    tree = BinaryTree(boxes, bounds, links, *scratch, found, width)
-    kernel.divide(tree)
+    room = max(1, 2 * len(boxes) - 1)
+    links, bounds, found = np.empty((room, 3), np.int64), np.empty((room, 6)), np.array([1, 0])
+    tree = BinaryTree(boxes, bounds, links, found, width)
+    links[0, :2], roots, most = (0, len(boxes)), np.zeros((1, 2), np.int64), len(boxes)
+    while len(roots):
+        most = most // PARTS if run and most >= PARALLEL * PARTS else 0
+        job = bound(kernel.divide, np.zeros(1, np.int64), tree, roots, most)
+        if run and len(roots) > 1:
+            run(job)
+        else:
+            job()
+        left = np.flatnonzero(links[: found[0], 2] < 0)
+        roots = np.stack([left, -1 - links[left, 2]], axis=1)
     children, references = np.empty((2, found[0] // 2 + 1, width), np.int64)
     leaves, areas = np.empty(found[0], np.int64), np.empty((found[0], width))
     kernel.collapse(tree, areas, np.empty((found[0], width + 1), np.int8), children, references, leaves)
@@ -135,16 +144,16 @@ def aligned_copy(numbers: np.ndarray) -> np.ndarray:
 trees: WeakKeyDictionary[Triangles, np.ndarray] = WeakKeyDictionary()  # float32 nodes
 
 
-def pack_trees(shapes: ShapeArrays, kernel: Any) -> list[beams.MeshTrees | None]:
+def pack_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> list[beams.MeshTrees | None]:
     """Return for each kind of shape of a scene the trees of its meshes, or None for a kind that is no mesh."""
-    return [mesh_trees(shapes, kernel) if kind is Mesh else None for kind in shapes.group_numbers]
+    return [mesh_trees(shapes, kernel, run) if kind is Mesh else None for kind in shapes.group_numbers]
 
 
-def mesh_trees(shapes: ShapeArrays, kernel: Any) -> beams.MeshTrees:
+def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> beams.MeshTrees:
     """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet."""
     owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
     meshes: Any = [shapes.shapes[index] for index in owners]
-    nodes = [tree_of(mesh.triangles, kernel) for mesh in meshes]
+    nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
     roots = np.cumsum([0, *map(len, nodes[:-1])]) // beams.NODE
     first = shapes.first_primitive[owners]
     rows = shapes.slots[first, 1]
@@ -168,18 +177,19 @@ def space_of(triangles: Triangles) -> tuple[np.ndarray, float]:
     return (low + high) / 2, float((high - low).max() / 2)
 
 
-def tree_of(triangles: Triangles, kernel: Any) -> np.ndarray:
+def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.ndarray:
     """Return the nodes of the tree of a mesh, which is built at the first call."""
     if triangles not in trees:
         middle, size = space_of(triangles)
-        points = (triangles.points - middle) / size
         boxes = np.zeros((len(triangles), 8))
-        boxes[:, :3], boxes[:, 3:6] = -points[triangles.corners[:, 0]], points[triangles.corners[:, 0]]
-        for corners in triangles.corners.T[1:]:
-            np.maximum(boxes[:, :3], -points[corners], out=boxes[:, :3])
-            np.maximum(boxes[:, 3:6], points[corners], out=boxes[:, 3:6])
+        columns = [(triangles.points[:, axis] - middle[axis]) / size for axis in range(3)]
+        for start in range(0, len(boxes), BLOCK):
+            corners = triangles.corners[start : start + BLOCK].T
+            for axis, (a, b, c) in enumerate([numbers[each] for each in corners] for numbers in columns):
+                boxes[start : start + BLOCK, axis] = -np.minimum(np.minimum(a, b), c)
+                boxes[start : start + BLOCK, 3 + axis] = np.maximum(np.maximum(a, b), c)
         boxes[:, INDEX] = np.arange(len(boxes))
-        nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE)
+        nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE, run=run)
         names = nodes[:, 6]
         names[names < 0] = len(nodes) - 1 - names[names < 0]
         boxes = boxes[:, : INDEX + 1].astype(np.float32)

@@ -27,9 +27,11 @@ from minirt.kernel.bvh_nodes import (
     reference_of,
 )
 from minirt.lanes import Vec
+from minirt.rendering.packing import bvh
 from minirt.rendering.packing.bvh import aligned, block_type, build_bvh, wide_nodes
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised
 from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.threads import Job, ThreadPool
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -224,6 +226,25 @@ def test_the_traversal_stack_holds_the_deepest_tree() -> None:
     assert leaves[:, 1].max() == 900 * WIDTH
     assert STACK + deepest[0] * STACK_LEVEL <= PACKET
     assert PACKET + (1 + deepest[0]) * PACKET_LEVEL <= MEMORY
+
+
+def test_any_number_of_threads_builds_the_same_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bvh, "PARALLEL", 8)
+    corners = np.random.default_rng(3).normal(size=(20_000, 3)) ** 3
+    groups = np.repeat([0, 1], [15_000, 5_000])
+    boxes = np.column_stack([-corners, corners + 0.01, np.arange(len(corners)), groups])
+    trees, jobs = [], []
+    for threads in (0, 1, 3):
+        pool = ThreadPool(threads)
+
+        def run(job: Job, pool: ThreadPool = pool, threads: int = threads) -> None:
+            jobs.append(job)
+            pool.run([job] * threads, lambda: None)
+
+        sorted_boxes = boxes.copy()
+        trees.append([*wide_nodes(sorted_boxes, functions, run=run if threads else None), sorted_boxes])
+    assert len(jobs) > 6
+    assert all(np.array_equal(one, other) for tree in trees[1:] for one, other in zip(trees[0], tree, strict=True))
 
 
 def test_a_ray_visits_few_leaves() -> None:
