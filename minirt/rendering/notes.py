@@ -19,7 +19,7 @@ NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for thes
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
     """Describe the decisions. Lights, and the shapes of each kind, are numbered in the order of the file."""
-    shapes = f"{len(shape_arrays.shapes)} shape{'s' * (len(shape_arrays.shapes) != 1)}"
+    shapes = f"{len(shape_arrays.listed)} shape{'s' * (len(shape_arrays.listed) != 1)}"
     sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if arrays.light_buffer_cells == 1:

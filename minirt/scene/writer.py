@@ -91,7 +91,8 @@ def text_of(pages: tuple[Page, ...]) -> str:
         sources = [item if isinstance(item, str) else item.source for item in page.items]
         for item, source, read in zip(page.items, sources, fast.read(sources, length), strict=True):
             lines.append(source if isinstance(item, str) or item == read else line_of(item))
-    return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
+    text = "\n".join(lines)
+    return text if text.find(BOM, 1) < 0 else "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
 
 
 def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:

@@ -21,6 +21,7 @@ from minirt.rendering.packing.visibility import BinnedShapes, Bins
 from minirt.rendering.renderer import PRECISIONS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -109,6 +110,22 @@ def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_o
         assert np.array_equal(balls, shape_arrays.bounding_balls(shapes)), seed
 
 
+def test_adding_and_removing_pack_only_the_page_that_they_change(packed: list[Any]) -> None:
+    balls = [Sphere((i, 1, 2), 1, (i % 256, 0, 0)) for i in range(PAGE_LENGTH)]
+    tubes = [Cylinder((i, 0, 0), (0, 1, 0), 1, 1, (0, i % 256, 0)) for i in range(PAGE_LENGTH)]
+    scene = Scene((*balls, EYE, *SHAPES, *tubes, *SHAPES))
+    arrays, anew, fewer = ShapeArrays(), ShapeArrays(), scene.edit(PAGE_LENGTH + 1)
+    arrays.update(*scene.runs)
+    for edited in (fewer, scene.edit(PAGE_LENGTH + 1, *SHAPES), fewer.edit(len(fewer.elements) - 1), scene):
+        packed.clear()
+        arrays.update(*edited.runs)
+        assert set(packed) <= {*SHAPES, *tubes}
+        anew.allocate()
+        anew.update(*edited.runs)
+        for name in ("boxes", "balls", "colours_and_extents", "planes", "tables"):
+            assert all(map(np.array_equal, getattr(arrays, name), getattr(anew, name))), name
+
+
 @pytest.mark.parametrize(
     "edit",
     [
@@ -138,7 +155,7 @@ def test_using_the_arrays_of_another_scene_does_no_harm() -> None:
     packing = Packing()
     for scene, other in ((ALL, edited), (edited, ALL), (ALL, edited)):
         packing.pack(scene, 24, 16)
-        assert packing.shape_arrays_for(other.shapes).shapes == [*other.shapes]
+        assert packing.shape_arrays_for(other.shapes).shapes == other.shapes
         assert packing.notes == []
         assert_same(packing.pack(other, 24, 16), other)
         packing.shape_arrays_for(scene.shapes)
@@ -255,16 +272,16 @@ def test_single_precision_draws_checkers_but_no_pictures(tmp_path: Path) -> None
 # Shapes as structure of arrays: differences are found, and an edit writes only the shapes that it changes.
 
 
-MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(3 * shape_arrays.CHUNK))
+MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(99))
 
 
-@pytest.mark.parametrize("indices", [(), (0,), (shape_arrays.CHUNK,), (7, shape_arrays.CHUNK - 1, len(MANY) - 1)])
+@pytest.mark.parametrize("indices", [(), (0,), (9,), (7, 8, len(MANY) - 1)])
 def test_differing_shapes_are_found(indices: tuple[int, ...]) -> None:
     new = list(MANY)
     for index in indices:
         new[index] = replace(new[index], diameter=9e9)
     old, changed = ([tuple(each[:9]), tuple(each[9:])] for each in (MANY, new))
-    assert [index for index, _ in differing_shapes(old, changed)] == list(indices)
+    assert [*differing_shapes(old, changed)] == [(index, MANY[index], new[index]) for index in indices]
 
 
 def test_many_shapes_have_the_numbers_of_each() -> None:

@@ -206,9 +206,9 @@ def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.nda
 def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTriangles | None:
     """Return the triangles of all meshes of a scene, or None without any. They are those of the last call where the
     files are the same; meshes that were edited are placed anew, on all threads by `run`."""
-    meshes = [shape for shape in shapes.shapes if isinstance(shape, Mesh)]
-    if not meshes:
+    if Mesh not in shapes.group_numbers:
         return None
+    meshes = [shape for shape in shapes.shapes if isinstance(shape, Mesh)]
     files, sizes = [mesh.triangles for mesh in meshes], [mesh.parts for mesh in meshes]
     points, rows = np.cumsum([0, *(len(file.points) for file in files)]), np.cumsum([0, *sizes])
     if shapes.triangles is None:

@@ -1,5 +1,5 @@
 """Shapes of a scene as structure of arrays (SoA), of which an edit rewrites only what it changes. Where it adds or
-removes shapes all are written.
+removes shapes those of the same page are written, and the others are copied.
 
 Primitives are what rays are tested against: one for most shapes, and one for each triangle of a mesh.
 """
@@ -7,8 +7,9 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from functools import cached_property
-from itertools import chain
+from itertools import accumulate, chain, takewhile
 from operator import attrgetter
 from typing import Any
 
@@ -25,7 +26,7 @@ from minirt.shapes.mesh import Mesh
 EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # of an infinite shape that is no plane
 
 
-def pack_shapes(shapes: list[Shape]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def pack_shapes(shapes: Sequence[Shape]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pack k shapes of one kind: the numbers of their packed form, (k, r), but for meshes; corners of their boxes,
     (k, c, 3), of an infinite shape its defining points; and balls (k, b, 4) as of `bounding_balls`."""
     if shapes[0].columnar:
@@ -38,21 +39,21 @@ def pack_shapes(shapes: list[Shape]) -> tuple[np.ndarray, np.ndarray, np.ndarray
     return packed_rows([shape.pack() for shape in shapes]), bounding_boxes(shapes), balls
 
 
-def in_columns(shapes: list[Shape]) -> Any:
+def in_columns(shapes: Sequence[Shape]) -> Any:
     """One shape, of a kind that is `columnar`, that stands for n of them: its numbers are arrays (n,)."""
     kind = type(shapes[0])
     columns: Any = {field.name: [column(shapes, field.name, field.width).T] for field in positional_fields(kind)}
     return kind.checked(1, columns)[0]
 
 
-def column(shapes: list[Shape], name: str, width: int) -> np.ndarray:
+def column(shapes: Sequence[Shape], name: str, width: int) -> np.ndarray:
     """A field of n shapes, one number or several: (n,) or (n, width)."""
     values = map(attrgetter(name), shapes)
     flat: Iterable[Any] = values if width == 1 else chain.from_iterable(values)
     return np.fromiter(flat, np.float64, width * len(shapes)).reshape((len(shapes), width)[: 1 + (width > 1)])
 
 
-def bounding_balls(shapes: list[Shape]) -> np.ndarray:
+def bounding_balls(shapes: Sequence[Shape]) -> np.ndarray:
     """Return balls (n, b, 4), centre and radius, in the hull of which shapes of one kind lie; planes have none."""
     hulls = [() if shape.flat() else shape.balls() or EVERYWHERE for shape in shapes]
     return np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
@@ -69,13 +70,12 @@ def packed_rows(packed: list[Any]) -> np.ndarray:
     return np.array(columns).reshape(len(columns), -1).T
 
 
-def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
+def bounding_boxes(shapes: Sequence[Shape]) -> np.ndarray:
     """Corners of the bounding boxes of shapes of one kind, (n, 2, 3); of an infinite shape, its defining points."""
     points = [each.name for each in fields_of(type(shapes[0])) if isinstance(each, Point)]
     return np.array([shape.bounds() or [getattr(shape, name) for name in points] for shape in shapes])
 
 
-CHUNK = 4096  # shapes that are compared or written at once, so that their Python objects stay in the processor's cache
 FIRST = np.arange(1)  # index of the first primitive
 
 
@@ -93,48 +93,58 @@ class ShapeArrays:
     of that, whose primitives are `plane_indices`.
     """
 
-    runs: tuple[tuple[Shape, ...], ...]
-    shapes: list[Shape]
+    runs: tuple[Sequence[Shape], ...]
     updates: int
 
     def __init__(self) -> None:
         self.allocate()
 
-    def update(self, *runs: tuple[Shape, ...]) -> bool:
+    def update(self, *runs: Sequence[Shape]) -> bool:
         """Bring the arrays up to date with shapes, run by run; return whether anything changed."""
-        before, self.runs = self.runs, runs
-        if runs == before:
+        before = copy(self)
+        self.runs = runs
+        if runs == before.runs:
             return False
-        fits = [*map(len, runs)] == [*map(len, before)]
-        changed = dict(differing_shapes(before, runs)) if fits else {}
-        pairs = ((self.shapes[i], shape) for i, shape in changed.items())
+        fits = [*map(len, runs)] == [*map(len, before.runs)]
+        changed = [*differing_shapes(before.runs, runs)] if fits else []
         fits = fits and all(
-            type(a) is type(b) and getattr(a, "triangles", a) is getattr(b, "triangles", a) for a, b in pairs
+            type(a) is type(b) and getattr(a, "triangles", a) is getattr(b, "triangles", a) for _, a, b in changed
         )
-        if not fits:
+        for name in ("shapes", "rows"):
+            vars(self).pop(name, None)
+        if fits:
+            parts: Any = [([index for index, _, _ in changed], [shape for _, _, shape in changed])]
+        else:
             self.allocate(*runs)
-        self.__dict__.pop("rows", None)
-        for index, shape in changed.items():
-            self.shapes[index] = shape
+            starts = [*accumulate(map(len, runs), initial=0)]
+            parts = [(range(*starts[at : at + 2]), runs[at]) for at in range(*self.take_ends(before))]
         self.updates += 1
-        indices = np.array([*changed], np.int64) if fits else np.arange(len(self.shapes))
-        groups = self.slots[self.listed[indices], 0]
-        for group in range(len(self.tables)):
-            of_group = indices[groups == group]
-            for start in range(0, len(of_group), CHUNK):
-                self.write(group, of_group[start : start + CHUNK])
+        for part, members in parts:
+            indices = np.array(part, np.int64)
+            groups = self.slots[self.listed[indices], 0]
+            for group in set(groups.tolist()):
+                at = np.flatnonzero(groups == group)
+                self.write(group, indices[at], members if len(at) == len(members) else [members[i] for i in at])
         return True
 
-    def allocate(self, *runs: tuple[Shape, ...]) -> None:
+    @cached_property
+    def shapes(self) -> tuple[Shape, ...]:
+        return tuple(chain.from_iterable(self.runs))
+
+    def allocate(self, *runs: Sequence[Shape]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
-        self.runs, self.updates, shapes = runs, 0, [*chain.from_iterable(runs)]
-        kinds = list(map(type, shapes))
+        self.runs, self.updates = runs, 0
+        kinds: list[type[Shape]] = []
+        for run in runs:
+            kinds += map(type, run)
         present = set(kinds)
         used = [kind for kind in ALL_KINDS if kind.element in present]
-        examples = [shapes[kinds.index(kind.element)].some(FIRST) for kind in used]
-        self.shapes, self.group_numbers = shapes, {kind.element: group for group, kind in enumerate(used)}
+        examples = [self.shapes[kinds.index(kind.element)].some(FIRST) for kind in used]
+        self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.flat() is not None for each in examples], bool)
-        sizes = np.fromiter(map(attrgetter("parts"), shapes), np.int64, len(shapes))
+        sizes = np.ones(len(kinds), np.int64)
+        if Mesh in present:
+            sizes[:] = [shape.parts for shape in self.shapes]
         groups = np.repeat(np.fromiter(map(self.group_numbers.__getitem__, kinds), np.int64, len(kinds)), sizes)
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
@@ -152,9 +162,27 @@ class ShapeArrays:
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
         self.listed = self.first_primitive[:-1]
         self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.listed]])])
-        self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(shapes), 2, 3))
-        self.written = np.zeros(len(shapes), np.int32)
+        self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(kinds), 2, 3))
+        self.written = np.zeros(len(kinds), np.int32)
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
+
+    def take_ends(self, before: ShapeArrays) -> tuple[int, int]:
+        """Copy the rows of the first and the last runs that other arrays have, too; return the number of the first run
+        without a copy, and of the one behind the last."""
+        first = common(self.runs, before.runs)
+        last = len(self.runs) - common(self.runs[first:][::-1], before.runs[first:][::-1])
+        ends = [sum(map(len, self.runs[:number])) for number in (first, last)]
+        primitives = self.first_primitive[ends]
+        pairs: list[Any] = [(self.boxes, before.boxes, ends), (self.balls, before.balls, self.first_ball[ends])]
+        pairs.append((self.colours_and_extents, before.colours_and_extents, primitives))
+        pairs.append((self.planes, before.planes, np.searchsorted(self.plane_indices, primitives)))
+        for kind, group in self.group_numbers.items():
+            if kind in before.group_numbers:
+                counts = np.cumsum(np.append(0, self.slots[:, 0] == group))[primitives]
+                pairs.append((self.tables[group], before.tables[before.group_numbers[kind]], counts))
+        for into, rows, (start, stop) in pairs:
+            into[:start], into[stop:] = rows[:start], rows[len(rows) - len(into) + stop :]
+        return first, last
 
     def looks(self) -> tuple[Sequence[Shape], np.ndarray]:
         """Return shapes of one material each, meshes once for each of theirs, and that of each primitive, (n,)."""
@@ -171,16 +199,16 @@ class ShapeArrays:
         """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""
         return np.array([shape.smooth for shape in self.shapes], np.int64)[self.owner]
 
-    def write(self, group: int, shapes: np.ndarray) -> None:
-        """Write some shapes of one kind, given by their indices, into the arrays."""
-        members, indices = [self.shapes[index] for index in shapes.tolist()], self.listed[shapes]
+    def write(self, group: int, shapes: np.ndarray, members: Sequence[Shape]) -> None:
+        """Write some shapes of one kind, given by their indices, too, into the arrays."""
+        indices = self.listed[shapes]
         self.written[shapes] = self.updates
         rows, boxes, balls = pack_shapes(members)
         low, high, extents = spans(boxes)
         self.boxes[shapes, 0], self.boxes[shapes, 1] = low.T, high.T
-        if isinstance(members[0], Mesh):
-            for index in shapes.tolist():
-                self.tint(index, self.shapes[index])
+        if group == self.group_numbers.get(Mesh):
+            for index, mesh in zip(shapes.tolist(), members, strict=True):
+                self.tint(index, mesh)
         else:
             self.tables[group].view(np.float64).reshape(len(self.tables[group]), -1)[self.slots[indices, 1]] = rows
             self.colours_and_extents[indices, :3] = column(members, "colour", 3) / 255
@@ -205,9 +233,9 @@ class ShapeArrays:
     @cached_property
     def rows(self) -> tuple[np.ndarray, ...]:
         """The rows of all groups, those of meshes with the numbers of each triangle, made when they are asked for."""
-        packed = [shape.rows() for shape in self.shapes if isinstance(shape, Mesh)]
+        meshes = (shape.rows() for shape in self.shapes if isinstance(shape, Mesh))
         return tuple(
-            np.concatenate(packed).view(row_type(MESH))[:, 0] if kind is Mesh else table
+            np.concatenate([*meshes]).view(row_type(MESH))[:, 0] if kind is Mesh else table
             for kind, table in zip(self.group_numbers, self.tables, strict=True)
         )
 
@@ -236,10 +264,17 @@ def extents_from(eye: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     return extents
 
 
-def differing_shapes(old: Iterable[Sequence[Shape]], new: Iterable[Sequence[Shape]]) -> Iterator[tuple[int, Shape]]:
-    """Yield the indices at which runs of the same lengths hold different objects, and the new ones."""
+def common(runs: Sequence[Sequence[Shape]], others: Sequence[Sequence[Shape]]) -> int:
+    """Count the runs, from the first one on, that are the same objects."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(runs, others, strict=False)))
+
+
+def differing_shapes(
+    old: Iterable[Sequence[Shape]], new: Iterable[Sequence[Shape]]
+) -> Iterator[tuple[int, Shape, Shape]]:
+    """Yield the indices at which runs of the same lengths hold different objects, the old ones and the new ones."""
     start = 0
     for before, after in zip(old, new, strict=True):
         if before is not after and before != after:  # identical objects compare equal at the speed of C
-            yield from ((at, b) for at, (a, b) in enumerate(zip(before, after, strict=True), start) if a is not b)
+            yield from ((at, a, b) for at, (a, b) in enumerate(zip(before, after, strict=True), start) if a is not b)
         start += len(after)

@@ -56,7 +56,7 @@ class BinnedShapes(NamedTuple):
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
     """Choose the cells along an edge of the cube around a light; 1 where trying all shapes is faster than a lookup."""
-    return next(cells for most, cells in CELLS_BY_SHAPES if len(shape_arrays.shapes) <= most)
+    return next(cells for most, cells in CELLS_BY_SHAPES if len(shape_arrays.listed) <= most)
 
 
 def screen_grid(half_width: float, half_height: float, place: Place, square: int = TILE) -> Grid:

@@ -7,7 +7,7 @@ for each shape, which takes longer the more rays there are.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
+from itertools import chain, islice, product
 from math import atan2, ceil, cos, dist, floor, log10, pi, radians, sin, tan
 from typing import Any
 
@@ -144,7 +144,7 @@ def hidden_shapes(scene: Scene) -> Iterator[str]:
 
     Only what is certain counts: the corners of the bounding box, grown, are inside the other one.
     """
-    eye, shapes = np.array(scene.camera.position), scene.shapes[:MOST_COMPARED]
+    eye, shapes = np.array(scene.camera.position), [*islice(chain.from_iterable(scene.runs), MOST_COMPARED)]
     boxes = np.array([shape.bounds() or UNBOUNDED for shape in shapes]).reshape(-1, 2, 3)
     starts, ends = boxes[:, 0], boxes[:, 1]
     grown = CERTAIN * (ends - starts)
