@@ -204,6 +204,8 @@ class Packing:
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
                 at = position, cells, skipped, size, reach, alike, self.run, self.spare.pop(len(binned), None)
                 binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at))
+            if len(binned) > FEW:  # scratch memory, of twice the size of the lists
+                self.cache[keys[-1]] = binned[-1] = binned[-1]._replace(bins=None)
         self.spare = {}
         return binned, tuple(keys)
 

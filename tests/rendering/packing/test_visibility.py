@@ -22,8 +22,8 @@ from minirt.lanes import Vec, unit
 from minirt.rendering.packing import visibility
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import PRECISIONS, Renderer
-from minirt.rendering.scene_packing import Packing
-from minirt.scene import Camera, Light, Scene, parse
+from minirt.rendering.scene_packing import FEW, Packing
+from minirt.scene import Camera, FurtherLight, Light, Scene, parse
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -303,3 +303,10 @@ def test_lists_that_no_cells_make_small_enough_are_refused(monkeypatch: pytest.M
     monkeypatch.setattr(system, "room", lambda: 64 * 48 * 7)  # enough for the picture
     with pytest.raises(RenderError, match=r"the lists of shapes in view need about 0 MiB of memory"):
         minirt.render(scene(9), 64, 48, linear=False)
+
+
+def test_few_lights_keep_scratch_memory() -> None:
+    packing, lights = Packing(), (FurtherLight((0, 5, 0.1 * i), 1) for i in range(2 * FEW))
+    packing.pack(scene().add(*lights), 64, 48)
+    bins = [each.bins for each in packing.cache.values() if isinstance(each, visibility.BinnedShapes)]
+    assert [each is not None for each in bins] == [True] * FEW + [False] * (FEW + 1)
