@@ -40,7 +40,7 @@ class FrameRunner:
         self.memories: list[tuple[np.ndarray, np.ndarray]] = []  # of the threads, for that scene, from frame to frame
         self.words: list[bytes] = []  # of each memory and of the form of that scene which the kernel takes
         self.of_rays: tuple[tuple[object, ...], bytes] = (None,) * 3, b""  # rays, plan, errors, and their words
-        self.pace = inf  # seconds that a sample of a byte of pixels took in the last frame of this kernel
+        self.pace = inf  # seconds that a sample of a pixel took in the last frame without a plan of this kernel
         self.cancellations = 0
 
     @cached_property
@@ -63,9 +63,11 @@ class FrameRunner:
         reaches it.
         """
         choice = self.choose(frame)
-        work = inf if len(frame.plan) else len(frame.rays) * frame.pixels.size
+        work, is_planned = len(frame.rays) * frame.pixels.size, len(frame.plan) > 0
         height, across = frame.pixels.shape
-        if work == frame.pixels.size and height < TILE * FEW_ROWS * self.threads:
+        if is_planned:
+            work = int(frame.plan[:, 3] @ np.where(frame.plan[:, 4], 3, 1)) * width(frame.scene.camera)
+        elif work == frame.pixels.size and height < TILE * FEW_ROWS * self.threads:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
         start, rays = perf_counter(), frame[3:6]
@@ -75,7 +77,7 @@ class FrameRunner:
         jobs: list[Job] = [partial(choice.entry.run, shared + each) for each in self.words]
         self.pool.run(jobs, self.cancel, helps=self.pace * work < BRIEF)
         seconds = perf_counter() - start
-        if work < inf and frame.next_row[0] < CANCELLED:
+        if not is_planned and frame.next_row[0] < CANCELLED:
             self.pace = seconds / work
         self.kernels.count(choice, seconds)
 

@@ -107,6 +107,8 @@ def test_the_caller_draws_only_frames_that_are_expected_to_be_brief(monkeypatch:
     for samples in (1, 1, 9, 1, 2):
         assert renderer.render(ALL, np.zeros((48, 64, 4), np.uint8), samples)
     assert helped == [False, True, False, True, True]
+    assert renderer.reach(ALL, np.zeros((48, 64, 4), np.uint8), 0.01)
+    assert helped[5], "a few packets"
 
 
 def test_an_error_in_one_thread_reaches_the_caller() -> None:

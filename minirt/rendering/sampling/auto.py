@@ -27,7 +27,7 @@ from minirt.rendering.outcome import Outcome
 from minirt.rendering.sampling.packets import Packets, cost
 
 PROBES = 0.1  # share of samples that probes take
-LEAST_PROBES, MOST_PROBES = 4, 400  # in a sweep
+LEAST_PROBES, MOST_PROBES = 4, 400  # in a sweep; half of the most in the first
 REFERENCES = 2  # samples of a probe beside those that are drawn, as a multiple of them
 FAR = 2.0  # ratio of planned samples to those of the last probes from which on there is another pilot
 PILOTS = 4  # at most
@@ -64,16 +64,18 @@ class AutoSampler:
         start = perf_counter()
         goal = error * error * self.numbers  # infinite for a huge error
         packets = self.packets
-        probes = packets.choose(min(max(PROBES / (1 + REFERENCES) * packets.count, LEAST_PROBES), MOST_PROBES))
+        probes = packets.choose(min(max(PROBES / (1 + REFERENCES) * packets.count, LEAST_PROBES), MOST_PROBES / 2))
         errors = self.sweep(probes, np.zeros(len(probes), np.uint8), is_probed=True)
-        if seconds < inf or not packets.learn_evenly(errors, goal):
-            self.is_begun = True
+        uniform = packets.learn_evenly(errors, goal) if seconds == inf else 0
+        self.is_begun = uniform <= 1
+        if self.is_begun:
             self.carry_out(self.positions[:1], ALL_PACKETS, NO_ERRORS, packets.count)
+        if not uniform:
             packets.learn(self.classify(), probes, errors)
         if (samples := packets.plan(goal)).max() > 1 and perf_counter() < start + seconds:
             self.refine(samples, goal, start + seconds)
-        rms = sqrt(packets.total() / self.numbers)
-        return Outcome(*packets.samples, rms, perf_counter() - start)
+        mean, most, total = packets.outcome()
+        return Outcome(mean, most, sqrt(total / self.numbers), perf_counter() - start)
 
     def refine(self, samples: np.ndarray, goal: float, end: float) -> None:
         """Draw packets with more samples, first of all as many as `samples` for each class, until the sum of squared

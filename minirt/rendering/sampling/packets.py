@@ -107,8 +107,9 @@ CERTAINTY = 3.0  # standard errors of the estimate that are added to it
 EVENLY = 0.6  # share of the pilot that is chosen evenly
 LEAST_SHARE = 1 / 16  # of what uniform samples would be, for each packet
 WORTH = 0.8  # time of samples by class, as a share of that of uniform ones, from which on they are not worth it
-BEGIN = 2.0  # samples of all packets, whose time the first sweep, classes and dearer samples of contrast take
-GAIN = 0.7  # least time of numbers by contrast that ideal ones take, as a share of that of uniform ones
+PILOT = 900  # samples of packets, whose time the classes and the pilot of contrast take
+LOSS = 2.5  # samples by contrast, as a multiple of those that ideal numbers for each packet take
+GAIN = 0.75  # least time of numbers by contrast, as a share of that of uniform ones
 MOST_CHANGE = 4.0  # factor by which a pilot changes c of one class beside the others
 LEAST = 1e-12  # of a class as a share of the greatest
 NEAR = 2  # classes by which a packet may be below its neighbours
@@ -182,23 +183,29 @@ class Packets:
         packets whose chances have the same sum."""
         number = max(1, min(round(number), self.count))
         places = (np.arange(number) + self.random[:number]) / number
-        ends = np.arange(1.0, self.count + 1) if chances is None else np.cumsum(chances[self.classes])
+        if chances is None:
+            return (places * self.count).astype(np.int64)
+        ends = np.cumsum(chances[self.classes])
         return np.unique(np.searchsorted(ends, places * ends[-1], "right"))
 
-    def learn_evenly(self, errors: np.ndarray, goal: float) -> bool:
-        """Whether as many samples for all packets are likely to cost less than one for all and more by contrast: by
-        probes with one sample. Then all packets are one class."""
-        each, number = float(errors.mean()), len(errors)
-        if each <= 0:
-            return False
-        doubt = max(SPREAD / sqrt(number + PRIOR), float(errors.std()) / each / sqrt(number))
-        needed = (each * self.count * (1 + CERTAINTY * doubt) / goal) ** (1 / ERROR_EXPONENT)
-        ideal = float((np.maximum(errors / each, 0.0) ** (1 / (ERROR_EXPONENT + 1))).mean()) ** (1 + 1 / ERROR_EXPONENT)
-        if needed < 2 or BEGIN + ideal * needed < GAIN * needed:
-            return False
+    def learn_evenly(self, errors: np.ndarray, goal: float) -> int:
+        """The number of samples for all packets, by probes with one sample, if it is one or likely to cost less than
+        one for all and more by contrast; then all packets are one class. 0 if it is not."""
+        number, mean = len(errors), max(float(errors.mean()), LEAST)
+        deviation, share = float(errors.std()) / sqrt(number), goal / self.count
+        each = (number * mean + PRIOR * self.c[-1]) / (number + PRIOR)  # as if some more probes had met edges
+        doubt, uniform = max(SPREAD / sqrt(number + PRIOR), deviation / each), 1
+        if each * (1 + CERTAINTY * doubt) > share:
+            each, doubt = mean, max(SPREAD / sqrt(number + PRIOR), deviation / mean)
+            needed = (each * (1 + CERTAINTY * doubt) / share) ** (1 / ERROR_EXPONENT)
+            ideal = float((np.maximum(errors / each, 0.0) ** (1 / (ERROR_EXPONENT + 1))).mean())
+            ideal **= 1 + 1 / ERROR_EXPONENT
+            uniform, by_contrast = ceil(needed), 1 + PILOT / self.count + LOSS * ideal * needed
+            if uniform <= 2 or by_contrast < GAIN * uniform:
+                return 0
         self.sizes = np.bincount(self.classes, minlength=CLASSES)
         self.work, self.c, self.doubt = self.sizes.astype(float), np.full(CLASSES, each), doubt
-        return True
+        return uniform
 
     def learn(self, contrasts: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
         """Sort the packets, of which all have one sample, into classes by their contrasts (rows, columns) and those of
@@ -219,10 +226,13 @@ class Packets:
         if needed <= 1:
             return np.ones(CLASSES)
         uniform = max(min(needed, COUNTS[-1], budget / self.count), 1.0)
+        even = np.full(CLASSES, uniform if budget < inf else ceil(uniform))
+        if self.sizes.max() == self.count:
+            return even
         least = max(LEAST_SHARE * uniform, 1.0)
         samples = allocate(self.c, self.sizes, whole * uniform**-ERROR_EXPONENT, inf, least, self.work)
         if cost(samples, self.work) > WORTH * uniform * self.count:
-            return np.full(CLASSES, uniform if budget < inf else ceil(uniform))
+            return even
         return samples if needed <= uniform else allocate(self.c, self.sizes, goal, budget, least, self.work)
 
     def bound(self, samples: np.ndarray) -> float:
@@ -255,11 +265,9 @@ class Packets:
         """The levels of all packets that have so many samples for each class on average."""
         return (places_of(samples)[self.classes] + self.random).astype(np.uint8)
 
-    def total(self) -> float:
-        return float((self.c[self.classes] * (COUNTS**-ERROR_EXPONENT)[self.levels]).sum())
-
-    @property
-    def samples(self) -> tuple[float, int]:
-        """The average number of samples of a packet, and the greatest."""
-        counts = COUNTS[self.levels]
-        return float(counts.mean()), int(counts.max())
+    def outcome(self) -> tuple[float, int, float]:
+        """The average number of samples of a packet, the greatest, and the sum of squared errors."""
+        found = np.bincount(self.levels * np.int64(CLASSES) + self.classes, minlength=len(COUNTS) * CLASSES)
+        found = found.reshape(-1, CLASSES)  # packets of each level and class
+        mean = float(COUNTS @ found.sum(axis=1)) / self.count
+        return mean, int(COUNTS[self.levels.max()]), float(COUNTS**-ERROR_EXPONENT @ found @ self.c)

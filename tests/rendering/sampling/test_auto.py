@@ -235,9 +235,9 @@ def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytes
     assert (excesses(seed) <= 1).mean() < 0.85, seed
 
 
-@pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (5.0, 0.01, 1), (0.2, 1.5, 1)])
+@pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (12.0, 0.01, 1), (0.2, 3.0, 1)])
 def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: float, sweeps: int) -> None:
-    """A picture whose packets all need several samples is drawn at once, as a uniform one."""
+    """A picture whose packets all need several samples is drawn at once, and so is one whose packets need one."""
     grid, plans = Packets(80, 200, 4), []
     c = np.random.default_rng().lognormal(0, spread, grid.count)
 
@@ -245,8 +245,13 @@ def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: flo
         plans.append(plan)
         errors[:] = c[plan[:, 1] * grid.columns + plan[:, 0]] * plan[:, 3] ** -1.5
 
-    reached = AutoSampler(draw, lambda: np.full((20, 50), 8), grid, grid.count, 16).reach(goal, np.inf)
+    def classify() -> np.ndarray:
+        plans.append(c)
+        return np.full((20, 50), 8)
+
+    reached = AutoSampler(draw, classify, grid, grid.count, 16).reach(goal, np.inf)
     assert sum(not len(plan) for plan in plans) == sweeps
+    assert any(plan is c for plan in plans) == (spread > 1), "only contrast needs classes"
     assert sweeps or reached.most <= 1.5 * reached.samples
 
 
