@@ -28,7 +28,7 @@ MAY: dict[str, set[str]] = {
     "meshes": {"errors", "lanes", "machine_code", "records", "fields", "element", "helpers", "materials"},
     "shapes": {"lanes", "records", "fields", "element", "materials", "meshes"},
     "formats": {"errors", "helpers"},
-    "scene": LOW - {"lanes"} | {"meshes", "helpers", "formats"},
+    "scene": LOW - {"lanes"} | {"meshes", "helpers", "formats", "kernel", "machine_code"},
     "kernel": {"errors", "lanes", "shapes", "helpers", "machine_code"},
     "rendering": LOW | {"helpers", "formats", "kernel", "machine_code", "meshes", "scene"},
     "cluster": LOW - {"lanes", "shapes", "materials", "records", "fields"}

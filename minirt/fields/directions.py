@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from contextlib import suppress
 from itertools import product
 from math import cos, hypot, radians, sin
+from typing import Any
 
 from minirt.errors import FieldError
 from minirt.fields.field import Repair
@@ -35,8 +35,11 @@ class Direction(Three):
             raise FieldError("must not be 0,0,0: it points nowhere")
         return unit(checked)
 
-    def column(self, texts: Sequence[str]) -> Sequence[Triple | None]:
-        return [None if each is None or self.remark(each) else unit(each) for each in super().column(texts)]
+    def fits(self, numbers: Any) -> Any:
+        return super().fits(numbers) & [not self.remark(each) for each in numbers.tolist()]
+
+    def values(self, numbers: Any) -> list[Triple]:
+        return list(map(unit, super().values(numbers)))
 
     def remark(self, value: Triple) -> str:
         length = math.hypot(*value)

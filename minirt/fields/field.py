@@ -3,15 +3,15 @@
 An element declares a field by `declare`. It is positional, or it is an attribute: attributes follow the other fields
 with a key, `mirror:0.3`, and may be left out; then they have their default or are absent (None).
 
-A field defines how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), its range
-(`check`), which wrong spellings have one meaning only (`repair`) and how a key press changes it (`nudge`). Errors
-are `FieldError`s that say what was expected, without the name of the field.
+A field defines how its value is spelled in a scene file (`parse`, `format`), its range (`check`, and for arrays of
+numbers `fits` and `values`), which wrong spellings have one meaning only (`repair`) and how a key press changes it
+(`nudge`). Errors are `FieldError`s that say what was expected, without the name of the field.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -42,7 +42,7 @@ class Field(Immutable):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
 
     width: ClassVar[int] = 1  # components, with commas between them
-    plain: ClassVar[str] = ""  # regular expression of the spellings that `column` reads; empty if it reads none
+    kind: ClassVar[type[float] | None] = None  # of number that a component is; None if it is another value
 
     doc: str
     unit: str = ""
@@ -74,19 +74,6 @@ class Field(Immutable):
     def remark(self, value: Any) -> str:
         """A notice about a value that is in range but unusual; empty if there is none."""
         return ""
-
-    def column(self, texts: Sequence[str]) -> Sequence[Any]:
-        """The checked values of many spellings that match `plain`; None for a value that is wrong or has a remark."""
-        return list(map(self.quiet, texts))
-
-    def quiet(self, text: str) -> Any:
-        """The checked value spelled by `text`; None if it is wrong or has a remark."""
-        try:
-            value = self.parse(text)
-            checked = self.check(value)
-        except FieldError:
-            return None
-        return None if self.remark(value) else checked
 
     def repair(self, text: str) -> Repair | None:
         """The checked value that the wrong `text` certainly means; None if there is none."""

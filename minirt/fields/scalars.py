@@ -7,7 +7,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 from math import copysign
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
@@ -19,7 +19,6 @@ LONGEST = 300  # characters: many more than `repr` writes, few enough for a whol
 FARTHEST = 1e15  # scene units; beyond it neighbouring float64 numbers are an eighth of a unit apart
 SMALLEST = 1e-50  # of a length; formulas square squares of lengths, and of coordinates in lengths
 LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
-PLAIN = rf"[-+.0-9eE]{{1,{LONGEST}}}"  # among these `float` and `int` accept exactly those that match NUMBER and WHOLE
 
 
 def number(text: str) -> float:
@@ -77,8 +76,7 @@ def scaled(sizes: Sequence[float], factor: float) -> list[float]:
 class Scalar(Field):
     """A number in [low, high]."""
 
-    plain = PLAIN
-    kind: ClassVar[type[float]] = float  # reads each number that matches PLAIN
+    kind: ClassVar[type[float]] = float
 
     low: float = -FARTHEST
     high: float = FARTHEST
@@ -98,16 +96,17 @@ class Scalar(Field):
     def remark(self, value: float) -> str:
         return f"{spelled(value)} {self.ends}" if self.ends and value in (self.low, self.high) else ""
 
-    def column(self, texts: Sequence[str]) -> Sequence[float | None]:
-        try:
-            values = list(map(self.kind, texts))
-            if 0 in values:
-                values = [value + 0 for value in values]  # -0 becomes 0
-            if not any(self.remark(self.check(end)) for end in (min(values), max(values))):
-                return values  # if the least and the greatest are in range, all are
-        except ValueError:
-            pass
-        return super().column(texts)
+    def fits(self, numbers: Any) -> Any:
+        """Which rows of numbers, (n, width), are in range and need no remark: (n,)."""
+        are_inside = (self.low <= numbers) & (numbers <= self.high)
+        if self.ends:
+            are_inside &= (numbers != self.low) & (numbers != self.high)
+        return are_inside.all(axis=1)
+
+    def values(self, numbers: Any) -> list[Any]:
+        """The values of rows of numbers that fit."""
+        values: list[Any] = numbers[:, 0].astype(self.kind).tolist()
+        return values
 
     @property
     def range(self) -> str:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field, PictureFile, file_name, in_quotes, unquoted
-from minirt.fields.scalars import PLAIN, Length, Scalar, Whole, clamp, scaled
+from minirt.fields.scalars import Length, Scalar, Whole, clamp, scaled
 from minirt.records import record
 
 Triple = tuple[float, float, float]
@@ -19,7 +19,7 @@ class Three(Field):
     """Three components with commas between them, called `names` in messages, each a number of its own."""
 
     width = 3
-    plain = ",".join([PLAIN] * width)
+    kind: ClassVar[type[float]] = float
     component: ClassVar[Scalar] = Scalar(doc="a component")
 
     names: str = "x,y,z"
@@ -48,10 +48,11 @@ class Three(Field):
                 return self.of_each(self.component.check, value)
         raise FieldError(f"must be {self.names}, three numbers, got {value!r}")
 
-    def column(self, texts: Sequence[str]) -> Sequence[Triple | None]:
-        numbers: Sequence[Any] = self.component.column(",".join(texts).split(","))
-        triples = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
-        return [None if None in triple else triple for triple in triples] if None in numbers else triples
+    def fits(self, numbers: Any) -> Any:
+        return self.component.fits(numbers)
+
+    def values(self, numbers: Any) -> list[Triple]:
+        return list(map(tuple, numbers.astype(self.kind).tolist()))
 
     def format(self, value: Triple) -> str:
         return ",".join(map(self.component.format, value))
@@ -90,7 +91,7 @@ class Lengths(Three):
 class Colour(Three):
     """Red, green and blue, whole numbers from 0 to 255; a key press changes all three."""
 
-    component = Whole(doc="a channel", low=0, high=255)
+    kind, component = int, Whole(doc="a channel", low=0, high=255)
 
     names: str = "R,G,B"
     step: float = 8.0

@@ -26,7 +26,7 @@ from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.sampling.packets import classify_call
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Camera, Scene, parse
+from minirt.scene import Camera, Scene, fast, parse
 from minirt.shapes.mesh import Mesh
 
 
@@ -210,7 +210,7 @@ def packing_calls() -> list[Call]:
     numbers, integers, table, corners = np.zeros(0), np.zeros(0, np.int64), np.zeros((0, 0)), np.zeros((0, 0), np.int32)
     rounding = functions.to_single.call(table, integers, numbers, table.astype(np.float32))
     placing = functions.place_triangles.call(integers, numbers, table, table, 0, corners, table, table)
-    return [*packing, rounding, placing, READ.call(call_for(b""))]
+    return [*packing, rounding, placing, READ.call(call_for(b"")), fast.call_for(b"", 0)]
 
 
 def ray_query() -> Call:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Hashable
+from collections.abc import Callable, Collection, Hashable, Sequence
 from itertools import count, islice
 from math import inf
 from typing import Any
@@ -64,7 +64,7 @@ class Packing:
         self.view: View | None = None  # of the last scene
         self.spare: dict[int, Bins] = {}  # of the first lights, after a change of shapes
 
-    def shape_arrays_for(self, *runs: tuple[Shape, ...]) -> ShapeArrays:
+    def shape_arrays_for(self, *runs: Sequence[Shape]) -> ShapeArrays:
         """Return the arrays of these shapes, run by run. Where the last scene had others its results are dropped."""
         if self.shape_arrays.update(*runs):
             bins = (each.bins for each in self.cache.values() if isinstance(each, BinnedShapes))
@@ -73,7 +73,7 @@ class Packing:
             self.cache, self.last, self.cells_that_fit, self.bvh = kept, None, {}, None
         return self.shape_arrays
 
-    def bvh_of(self, *runs: tuple[Shape, ...]) -> Tree:
+    def bvh_of(self, *runs: Sequence[Shape]) -> Tree:
         """Return the BVH over the shapes of some runs, which is kept until other ones are packed."""
         arrays = self.shape_arrays_for(*runs)
         if not self.bvh:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import FileError, Problem, SceneError, nearest
@@ -16,13 +17,12 @@ from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Camera, FurtherCamera
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
-from minirt.scene.pages import Item
+from minirt.scene.pages import PAGE_LENGTH, Crowd, Item, kinds_of, pages_of
 from minirt.scene.registry import ELEMENTS, nearest_element
 from minirt.scene.scene import MISSING, Scene
 from minirt.shapes.mesh import Mesh
 
 NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
-BLOCK = 4096  # lines that the fast path reads at once
 
 
 class Reading(NamedTuple):
@@ -81,13 +81,14 @@ def parse(
         text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
     log = Log(name, lenient, folder)
     with gc_paused(freeze=False):  # a reader makes no cycles, and the search for them takes a quarter of its time
-        items = read_lines(files.decode(text, name).split("\n"), log)
+        runs = read_lines(files.decode(text, name).split("\n"), log)
     if lenient:
         log.tell_changes()
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
     place = Path(file) if file else None
-    return Reading(Scene(items, folder / place.name if folder and place else place), tuple(log.notices))
+    scene = Scene.of_pages(tuple(pages_of(runs)), folder / place.name if folder and place else place)
+    return Reading(scene, tuple(log.notices))
 
 
 def loads(text: str | bytes, lenient: bool | str = False) -> Scene:
@@ -100,29 +101,34 @@ def loads(text: str | bytes, lenient: bool | str = False) -> Scene:
     return parse(text, lenient=lenient).scene
 
 
-def read_lines(sources: list[str], log: Log) -> list[Item]:
-    """Read all lines of a file: elements, comments and blank lines."""
-    items: list[Item] = []
+def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
+    """Read all lines of a file, run by run: elements, comments and blank lines."""
+    runs: list[Sequence[Item]] = []
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
     if log.lenient:
         from minirt.scene import dialects
 
         colours = dialects.colours_of_materials(sources)
-    for start in range(0, len(sources), BLOCK):
-        block = fast.read(sources[start : start + BLOCK], len(sources))
-        seen.update((kind.code, start + 1) for kind in set(map(type, block)) if issubclass(kind, Element))
+    for start in range(0, len(sources), PAGE_LENGTH):
+        block: Any = fast.read(sources[start : start + PAGE_LENGTH], len(sources))
+        seen.update((kind.code, start + 1) for kind in kinds_of(block) if issubclass(kind, Element))
+        if isinstance(block, Crowd):
+            runs.append(block)
+            continue
         for at in [at for at, item in enumerate(block) if item is None]:
             line = line_from(start + at + 1, sources[start + at])
             block[at] = read_leniently(line, seen, log, colours) if log.lenient else read_line(line, seen, log)
             if block[at] is None and len(log.errors) >= MAX_ERRORS:
                 log.error(line, "too many errors: the rest of the file is not read", 1)
-                return items
-        items += [item for item in block if item is not None]
+                return runs
+        runs.append([item for item in block if item is not None])
     if log.lenient:
+        items = [*chain.from_iterable(runs)]
         dialects.complete(items, seen, log)
+        runs = [items]
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
     check_required(seen, line_from(last, sources[last - 1]), log)
-    return items
+    return runs
 
 
 def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[str, str]) -> Item | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
@@ -13,6 +13,7 @@ from minirt import shapes as kinds
 from minirt.element import Element
 from minirt.errors import check_whole
 from minirt.helpers import file_io
+from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
 from minirt.scene import writer
 from minirt.scene.elements import (
@@ -27,7 +28,7 @@ from minirt.scene.elements import (
     Resolution,
     SpotLight,
 )
-from minirt.scene.pages import Answer, Item, Page, replace_item, span_of_ids, split_into_pages
+from minirt.scene.pages import Answer, Item, Page, pages_of, replace_item, span_of_ids
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
@@ -66,7 +67,14 @@ class Scene(Immutable):
     shown: int = 0  # index in `cameras` of the one that pictures show
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
-        self._set_pages(tuple(split_into_pages(tuple(items))), file)
+        self._set_pages(tuple(pages_of([tuple(items)])), file)
+
+    @classmethod
+    def of_pages(cls, pages: tuple[Page, ...], file: Path | None) -> Scene:
+        """Return the scene with some pages."""
+        scene = object.__new__(cls)
+        scene._set_pages(pages, file)
+        return scene
 
     def _set_pages(self, pages: tuple[Page, ...], file: Path | None) -> None:
         """Set the contents; ValueError for a wrong number of a unique element."""
@@ -90,9 +98,9 @@ class Scene(Immutable):
     )
     elements = every(Element, "All elements, without comments and blank lines, in the order of the file.")
     shapes = every(Shape, "All shapes, in the order of the file.")  # type: ignore[type-abstract]
-    runs: cached_property[tuple[tuple[Shape, ...], ...]] = cached(
+    runs: cached_property[tuple[Sequence[Shape], ...]] = cached(
         lambda scene: tuple(filter(None, (page.of(Shape) for page in scene.pages))),
-        "All shapes page by page: scenes that share pages share these tuples.",
+        "All shapes page by page: scenes that share pages share these sequences.",
     )
     lights = every(Lamp, "All light sources, in the order of the file.")
     cameras: cached_property[tuple[Camera, ...]] = cached(
@@ -114,7 +122,8 @@ class Scene(Immutable):
 
     def of(self, sort: type[Any]) -> tuple[Any, ...]:
         """Return the elements that are instances of a type, subclasses included, in the order of the file."""
-        return tuple(chain.from_iterable(page.of(sort) for page in self.pages))
+        with gc_paused(freeze=False):
+            return tuple(chain.from_iterable(page.of(sort) for page in self.pages))
 
     def indices_of(self, sort: type[Any]) -> Iterator[int]:
         """Yield the indices in `elements` of the instances of a type; pages without one are skipped."""
@@ -218,7 +227,8 @@ class Scene(Immutable):
         """Return the index in `items` of the element itself, else of the first equal one; ValueError without one."""
         start = 0
         for page in self.pages:
-            if id(element) in page.cached(span_of_ids) and id(element) in (ids := list(map(id, page.items))):
+            is_near = page.is_made and id(element) in page.cached(span_of_ids)
+            if is_near and id(element) in (ids := list(map(id, page.items))):
                 return start + ids.index(id(element))
             start += len(page.items)
         return self.items.index(element)
@@ -234,8 +244,9 @@ class Scene(Immutable):
             index, number = index - length, number + 1
         page = self.pages[number]
         index = [place for place, item in enumerate(page.items) if isinstance(item, sort)][index]
-        scene = object.__new__(Scene)
-        scene._set_pages((*self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]), self.file)
+        scene = Scene.of_pages(
+            (*self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]), self.file
+        )
         if self.shown:  # the same camera, or what replaces it, or the first one
             kept = [number for number, camera in enumerate(scene.cameras, 1) if camera is self.camera]
             replaced = self.shown + 1 if len(scene.cameras) == len(self.cameras) else 1

@@ -13,7 +13,7 @@ from minirt.helpers import file_io
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
-from minirt.scene.pages import Page
+from minirt.scene.pages import Crowd, Page
 
 
 def describe(element: Element) -> str:
@@ -88,6 +88,9 @@ def text_of(pages: tuple[Page, ...]) -> str:
     length = sum(len(page.items) for page in pages)
     lines: list[str] = []
     for page in pages:
+        if isinstance(page.items, Crowd):
+            lines += page.items.sources
+            continue
         sources = [item if isinstance(item, str) else item.source for item in page.items]
         for item, source, read in zip(page.items, sources, fast.read(sources, length), strict=True):
             lines.append(source if isinstance(item, str) or item == read else line_of(item))

@@ -18,9 +18,9 @@ from minirt.rendering.packing import shape_arrays
 from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes, extents_from
 from minirt.rendering.packing.view import Rounding, View
 from minirt.rendering.packing.visibility import BinnedShapes, Bins
-from minirt.rendering.renderer import PRECISIONS
+from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene, fast, parse
 from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.cylinder import Cylinder
@@ -124,6 +124,21 @@ def test_adding_and_removing_pack_only_the_page_that_they_change(packed: list[An
         anew.update(*edited.runs)
         for name in ("boxes", "balls", "colours_and_extents", "planes", "tables"):
             assert all(map(np.array_equal, getattr(arrays, name), getattr(anew, name))), name
+
+
+def test_shapes_that_nobody_asks_for_are_packed_without_being_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fast, "MANY_LINES", 0)
+    lines = [f"sp {i},0,9 1 {i % 256},0,255" for i in range(2 * PAGE_LENGTH)]
+    scene = parse("\n".join(["A 1 1,1,1", "C 0,0,0 0,0,1 70", *["#"] * (PAGE_LENGTH - 2), *lines])).scene
+    _, crowd = scene.runs
+    Renderer(1).render(scene, np.zeros((8, 8, 4), np.uint8))
+    assert "elements" not in vars(crowd)
+    arrays, others = ShapeArrays(), ShapeArrays()
+    arrays.update(*scene.runs)
+    others.update(scene.shapes)
+    assert "elements" in vars(crowd)
+    assert np.array_equal(arrays.tables[0], others.tables[0])
+    assert np.array_equal(arrays.colours_and_extents, others.colours_and_extents)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ same errors, and the same elements to the last bit.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from unittest.mock import patch
 
 import pytest
@@ -27,25 +28,25 @@ def exact(item: Item) -> object:
     return item if isinstance(item, str) else (type(item), repr(vars(item)))
 
 
-def outcome(sources: list[str], log: Log) -> tuple[list[Item], Outcome]:
-    """Return the items of `read_lines`, and everything by which two readers are compared."""
+def outcome(sources: list[str], log: Log) -> tuple[list[Sequence[Item]], Outcome]:
+    """Return the runs of items of `read_lines`, and everything by which two readers are compared."""
     try:
-        items = read_lines(sources, log)
+        runs = read_lines(sources, log)
     except SceneError as error:
         return [], (log.errors, log.notices, error.problems)
-    return items, (log.errors, log.notices, list(map(exact, items)))
+    return runs, (log.errors, log.notices, list(map(exact, chain.from_iterable(runs))))
 
 
-def read_by_both(sources: list[str], log: Log) -> list[Item]:
+def read_by_both(sources: list[str], log: Log) -> list[Sequence[Item]]:
     """Read lines as `read_lines` does; AssertionError when the diagnosing reader alone gives another outcome."""
     with patch.object(fast, "read", no_plain_lines):
         diagnosed = outcome(sources, Log(log.file, log.lenient))[1]
-    with patch.object(fast, "FEW_LINES", 0):
-        items, both = outcome(sources, log)
+    with patch.object(fast, "FEW_LINES", 0), patch.object(fast, "MANY_LINES", 0):
+        runs, both = outcome(sources, log)
     assert both == diagnosed
     if isinstance(both[2], tuple):
         raise SceneError(both[2])
-    return items
+    return runs
 
 
 @pytest.fixture(autouse=True, scope="package")

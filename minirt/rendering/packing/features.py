@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Sequence
 from itertools import chain
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ from minirt.element import Element, fields_of
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
 from minirt.scene import Background, Lamp, Scene
+from minirt.scene.pages import Crowd
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
@@ -87,18 +88,19 @@ def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
     return found
 
 
-def examples_among(items: Iterable[Element | str]) -> dict[tuple[Any, ...], Shape]:
-    shapes = [item for item in items if isinstance(item, Shape)]
-    values = zip(shapes, map(ATTRIBUTES, shapes), strict=True)
-    plain = [shape for shape, value in values if value == PLAIN and not shape.batched]  # most shapes of a crowd
-    if len(plain) == len(shapes):
-        return {(kind,): shape for kind, shape in dict(zip(map(type, plain), plain, strict=True)).items()}
+def examined(items: Sequence[Element | str]) -> Sequence[Element | str]:
+    """Return the items that have the features of all: of a crowd, whose shapes have no materials, the first one."""
+    return items.some([0]) if isinstance(items, Crowd) else items
+
+
+def examples_among(items: Sequence[Element | str]) -> dict[tuple[Any, ...], Shape]:
+    shapes = [item for item in examined(items) if isinstance(item, Shape)]
     looks = chain.from_iterable(item.looks if isinstance(item, Mesh) else (item,) for item in shapes)
     return {(type(item), *shape_features(item)): item for item in looks}
 
 
-def features_among(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    beside_shapes = (features_of(item) for item in items if not isinstance(item, Shape))
+def features_among(items: Sequence[Element | str]) -> frozenset[Hashable]:
+    beside_shapes = (features_of(item) for item in examined(items) if not isinstance(item, Shape))
     return frozenset().union(*examples_among(items), *beside_shapes)
 
 

@@ -20,6 +20,8 @@ from minirt.fields import Point, Triple
 from minirt.kernel.projection import MARGIN
 from minirt.kernel.scene_arrays import TRIANGLE_ROW, row_type
 from minirt.lanes import Vec
+from minirt.rendering.packing.features import examined
+from minirt.scene.pages import Crowd
 from minirt.shapes import ALL_KINDS, MESH, Ball, Shape
 from minirt.shapes.mesh import Mesh
 
@@ -29,7 +31,7 @@ EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # of an infinite sh
 def pack_shapes(shapes: Sequence[Shape]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pack k shapes of one kind: the numbers of their packed form, (k, r), but for meshes; corners of their boxes,
     (k, c, 3), of an infinite shape its defining points; and balls (k, b, 4) as of `bounding_balls`."""
-    if shapes[0].columnar:
+    if (shapes.kind if isinstance(shapes, Crowd) else shapes[0]).columnar:
         crowd = in_columns(shapes)
         corners, centres = np.array(crowd.bounds()), np.array([(*centre, radius) for centre, radius in crowd.balls()])
         return packed_rows([crowd.pack()]), np.moveaxis(corners, -1, 0), np.moveaxis(centres, -1, 0)
@@ -41,13 +43,15 @@ def pack_shapes(shapes: Sequence[Shape]) -> tuple[np.ndarray, np.ndarray, np.nda
 
 def in_columns(shapes: Sequence[Shape]) -> Any:
     """One shape, of a kind that is `columnar`, that stands for n of them: its numbers are arrays (n,)."""
-    kind = type(shapes[0])
+    kind = shapes.kind if isinstance(shapes, Crowd) else type(shapes[0])
     columns: Any = {field.name: [column(shapes, field.name, field.width).T] for field in positional_fields(kind)}
     return kind.checked(1, columns)[0]
 
 
 def column(shapes: Sequence[Shape], name: str, width: int) -> np.ndarray:
     """A field of n shapes, one number or several: (n,) or (n, width)."""
+    if isinstance(shapes, Crowd):
+        return shapes.columns[name][:, 0] if width == 1 else shapes.columns[name]
     values = map(attrgetter(name), shapes)
     flat: Iterable[Any] = values if width == 1 else chain.from_iterable(values)
     return np.fromiter(flat, np.float64, width * len(shapes)).reshape((len(shapes), width)[: 1 + (width > 1)])
@@ -136,10 +140,10 @@ class ShapeArrays:
         self.runs, self.updates = runs, 0
         kinds: list[type[Shape]] = []
         for run in runs:
-            kinds += map(type, run)
-        present = set(kinds)
+            kinds += [run.kind] * len(run) if isinstance(run, Crowd) else map(type, run)
+        present: Any = {type(each): each for run in runs for each in examined(run)}
         used = [kind for kind in ALL_KINDS if kind.element in present]
-        examples = [self.shapes[kinds.index(kind.element)].some(FIRST) for kind in used]
+        examples = [present[kind.element].some(FIRST) for kind in used]
         self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.flat() is not None for each in examples], bool)
         sizes = np.ones(len(kinds), np.int64)
