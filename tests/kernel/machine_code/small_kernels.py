@@ -49,7 +49,9 @@ def as_kernel(function: Any) -> Callable[..., Any]:
 
     def call_compiled(*arguments: Any) -> Any:
         from minirt.kernel.compiler.object_code import compiled_entry
+        from minirt.kernel.compiler.pipeline import inline
 
+        inline(function)
         signatures = [signature_of(each) for each in arguments]
         key = json.dumps(signatures)
         if key not in entries:
