@@ -176,5 +176,5 @@ def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radi
         slopes = planes[:, :3] @ -np.array(light.cone()[:3])
         harmless = (heights * slopes > 0) & (np.abs(slopes) > MARGIN + tangent_of(light))
     owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
-    glass = [shape_arrays.shapes[owner].glass for owner in owners]
+    glass = [shape_arrays.shape(owner).glass for owner in owners]
     return harmless & np.array([each is None or each.share <= 0 for each in glass], bool)

@@ -6,6 +6,7 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from functools import cached_property
@@ -134,6 +135,13 @@ class ShapeArrays:
     @cached_property
     def shapes(self) -> tuple[Shape, ...]:
         return tuple(chain.from_iterable(self.runs))
+
+    def shape(self, index: int) -> Shape:
+        """Return one shape, where the elements of other crowds need not be made."""
+        starts = [*accumulate(map(len, self.runs), initial=0)]
+        run = bisect(starts, index) - 1
+        shape: Shape = self.runs[run][index - starts[run]]
+        return shape
 
     def allocate(self, *runs: Sequence[Shape]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
