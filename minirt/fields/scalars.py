@@ -97,7 +97,7 @@ class Scalar(Field):
         return f"{spelled(value)} {self.ends}" if self.ends and value in (self.low, self.high) else ""
 
     def fits(self, numbers: Any) -> Any:
-        """Which rows of numbers, (n, width), are in range and need no remark: (n,)."""
+        """Return (n,) whether each row of numbers, (n, width), is in range and needs no remark."""
         are_inside = (self.low <= numbers) & (numbers <= self.high)
         if self.ends:
             are_inside &= (numbers != self.low) & (numbers != self.high)

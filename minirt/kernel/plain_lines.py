@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes.decimals import read_decimal, read_whole
+from minirt.lanes.decimals import LONGEST, read_decimal, read_whole
 
 OTHER, NOTHING = -1, -2  # a line that is not plain; one that is blank or a comment
 NAME, MOST = 6, 24  # bytes of an identifier, and at least one more; numbers of a line, and at least one more
 NUMBER, BEHIND_COMMA, WHOLE = 1, 2, 4  # bits of a form: a number; not behind blanks; a whole number
-LONGEST = 300  # bytes of a number
 TAB, LINE_FEED, RETURN, BLANK, HASH, COMMA = b"\t\n\r #,"
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 PLUS, MINUS, POINT, ZERO, NINE, LOWER_E, UPPER_E = b"+-.09eE"
 LARGEST = 10**17  # of whole numbers: larger ones become it
+LONGEST = 300  # bytes of a number that a file may have, as in `minirt.fields.scalars`
 
 
 def is_digit(byte: int) -> bool:

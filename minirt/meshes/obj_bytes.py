@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.lanes.decimals import LARGEST, read_decimal, read_whole
+from minirt.lanes.decimals import LARGEST, LONGEST, read_decimal, read_whole
 
 TAB, NEWLINE, RETURN, BLANK, HASH, SLASH, BACKSLASH = b"\t\n\r #/\\"
 V, T, N, F = b"vtnf"
 FACE, OTHER = 3, 4  # kinds of lines; those before are v, vt and vn
 FIRST_WORDS = 1, 2, 2, 1, 0  # bytes that are skipped in these
 FEWEST, MOST = (3, 1, 3, 3), (7, 3, 3, 2**60)  # words of these lines behind the first
-LONGEST, FARTHEST = 300, 1e15  # characters of a number, and its value, as in `minirt.fields.scalars`
+FARTHEST = 1e15  # of the value of a number, as in `minirt.fields.scalars`
 ABSENT, NOWHERE = -1, -2  # indices of a vt or vn that a corner does not name, and that is not there
 VALUES, ROWS, CORNERS, INEXACT, WRONG = range(4, 9)  # in `Lines.counts`
 

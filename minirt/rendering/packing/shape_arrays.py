@@ -137,7 +137,7 @@ class ShapeArrays:
         return tuple(chain.from_iterable(self.runs))
 
     def shape(self, index: int) -> Shape:
-        """Return one shape, where the elements of other crowds need not be made."""
+        """Return the shape with an index, without making the elements of other crowds."""
         starts = [*accumulate(map(len, self.runs), initial=0)]
         run = bisect(starts, index) - 1
         shape: Shape = self.runs[run][index - starts[run]]

@@ -189,8 +189,8 @@ class Packets:
         return np.unique(np.searchsorted(ends, places * ends[-1], "right"))
 
     def learn_evenly(self, errors: np.ndarray, goal: float) -> int:
-        """The number of samples for all packets, by probes with one sample, if it is one or likely to cost less than
-        one for all and more by contrast; then all packets are one class. 0 if it is not."""
+        """Return how many samples all packets get, judged by probes with one sample: one where that suffices, more
+        where they are likely to cost less than samples by contrast, and all packets are one class; else 0."""
         number, mean = len(errors), max(float(errors.mean()), LEAST)
         deviation, share = float(errors.std()) / sqrt(number), goal / self.count
         each = (number * mean + PRIOR * self.c[-1]) / (number + PRIOR)  # as if some more probes had met edges
