@@ -134,9 +134,14 @@ SAME = {
 }
 
 
+# Black as the background, below all that is seen: with them each scene has the kernel that other tests compile.
+BLACK = (0, 0, 0)
+UNSEEN = Plane((0, -90, 0), (0, 1, 0), BLACK), Sphere((0, -95, 0), 1, BLACK), Cylinder((0, -95, 0), N, 1, 1, BLACK)
+
+
 def scene(*shapes: Shape, camera: Camera = ABOVE) -> Scene:
     """A scene of some shapes with a light and ambient light."""
-    return Scene((DIM, camera, HIGH, *shapes))
+    return Scene((DIM, camera, HIGH, *shapes, *UNSEEN))
 
 
 @pytest.mark.parametrize("camera", [ABOVE, FLAT], ids=["above", "flat"])
