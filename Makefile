@@ -93,10 +93,10 @@ processors: $(DEV)  ## run the tests of compiled formulas as on processors witho
 LOWEST := $(VENV)/lowest
 
 # With kernels of its own, which the lowest version of numba compiles.
-lowest: $(NAME)  ## run a short part of the tests with the lowest versions of the dependencies
+lowest:  ## run a short part of the tests with the lowest versions of the dependencies
 	$(PYTHON) -m venv $(LOWEST)
 	$(LOWEST)/bin/python -m pip --disable-pip-version-check install --quiet pytest pytest-xdist hypothesis mpmath gmpy2 \
-	    $$($(VENV)/bin/python -m tests.pythons lowest)
+	    $$($(PYTHON) -m tests.pythons lowest)
 	mkdir -p $(LOWEST)/cache
 	MINIRT_REQUIRE_WINDOW= XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
 	    -m "not window" tests/materials tests/formats tests/kernel/test_compiler.py tests/mlx
