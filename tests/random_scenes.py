@@ -6,10 +6,7 @@ import numpy as np
 
 from minirt.element import Element
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes import Shape
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Shape, Sphere
 
 AXES = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1)]
 

@@ -11,9 +11,7 @@ from numpy.testing import assert_allclose
 import minirt
 from minirt.fields import Triple
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Sphere
 from tests.reference import render
 
 Render = Callable[[Scene, int, int], np.ndarray]

@@ -9,10 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.fields import Triple
 from minirt.scene import Ambient, Light
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.plane import Plane
-from minirt.shapes.shape import Shape
+from minirt.shapes import Cylinder, Mesh, Plane, Shape
 
 SIDES = 64  # of a cylinder
 ENDLESS = 1e5  # half of an edge of a plane

@@ -15,8 +15,7 @@ from minirt.lanes import Vec
 from minirt.meshes import Triangles
 from minirt.rendering.packing.bvh import mesh_trees
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.shapes import MESH
-from minirt.shapes.mesh import Mesh
+from minirt.shapes import MESH, Mesh
 from tests.meshes.examples import GREY, ball, soup
 from tests.shapes.regimes import random_directions
 

@@ -28,8 +28,7 @@ from minirt.rendering import ahead_of_time
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Sphere
 from tests.kernel.machine_code.small_kernels import Inner, Outer, as_kernel, call, object_code_of
 from tests.kernel.pictures import AMBIENT, EYE, LAMP, SHAPES
 from tests.skipping import skip_incomplete

@@ -19,9 +19,7 @@ from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Sphere
 from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, ONE, RED, WHITE, interpreted, linear, picture
 from tests.kernel.test_invariances import changed, interior, scaled
 from tests.random_scenes import random_scene

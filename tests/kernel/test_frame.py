@@ -14,10 +14,7 @@ from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing import lights
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes import Shape, plane
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Shape, Sphere, plane
 from tests import reference
 from tests.compare import edges
 from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, TWO, interpreted, linear, picture

@@ -12,12 +12,7 @@ from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, Point
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Camera, FurtherLight, Light, Scene
-from minirt.shapes.box import Box
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
+from minirt.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere, Square
 from tests import reference
 from tests.kernel.pictures import ALL, AMBIENT, BLUE, EVERY, EYE, GREEN, LAMP, RED, SHAPES, WHITE, linear
 

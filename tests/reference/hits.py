@@ -8,8 +8,7 @@ from functools import lru_cache, singledispatch
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.shape import Shape
+from minirt.shapes import Mesh, Shape
 from tests.oracle.body import body
 from tests.reference.uv_mapping import normals, shading, smooth_points
 from tests.reference.vectors import Along, Array, dot, first_point, length, own_x_and_z

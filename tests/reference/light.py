@@ -8,12 +8,7 @@ import numpy as np
 
 from minirt.materials import Mirror
 from minirt.scene import Lamp, Light, ParallelLight, Scene, SpotLight
-from minirt.shapes.disc import Disc
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.plane import Plane
-from minirt.shapes.shape import Shape
-from minirt.shapes.square import Square
-from minirt.shapes.triangle import Triangle
+from minirt.shapes import Disc, Mesh, Plane, Shape, Square, Triangle
 from tests.reference.hits import SAME_SURFACE, crossings, first_in_front
 from tests.reference.texturing import patterns_of
 from tests.reference.uv_mapping import normals, shading, smooth_points

@@ -16,11 +16,7 @@ from minirt.fields import Point
 from minirt.materials import Clouds, Marble, Wood
 from minirt.materials.maps import Pattern
 from minirt.scene import Camera, Scene
-from minirt.shapes.disc import Disc
-from minirt.shapes.plane import Plane
-from minirt.shapes.shape import Shape
-from minirt.shapes.square import Square
-from minirt.shapes.triangle import Triangle
+from minirt.shapes import Disc, Plane, Shape, Square, Triangle
 from tests.reference.uv_mapping import placed, right_and_up_on, shading, surface_point
 from tests.reference.vectors import Array, dot, length, own_x_and_z, rgb, unit
 

@@ -15,9 +15,7 @@ from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
 from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, parse
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
+from minirt.shapes import Plane, Sphere, Square
 from tests.kernel.pictures import EVERY, linear
 from tests.reference import render_sampled
 

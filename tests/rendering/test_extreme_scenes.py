@@ -23,8 +23,7 @@ from minirt.rendering.queries.preview import render_interpreted
 from minirt.rendering.queries.stiffness import lost_in_single
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
-from minirt.shapes import ALL_KINDS, Shape
-from minirt.shapes.mesh import Mesh
+from minirt.shapes import ALL_KINDS, Mesh, Shape
 from tests.fuzz.mutations import seeded
 from tests.fuzz.scenes import make_extreme, read
 from tests.kernel.pictures import LAMP

@@ -37,9 +37,7 @@ from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKer
 from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Light, ParallelLight, Scene, parse
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Mesh, Sphere
 from tests.kernel.pictures import EYE
 from tests.meshes.examples import GREY, named
 from tests.skipping import skip_incomplete

@@ -18,9 +18,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import covers, pick
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Mesh, Plane, Sphere
 from tests.meshes.examples import GREY, ball, first_hits, named, soup
 from tests.rendering.test_scene_packing import assert_same
 from tests.shapes.regimes import random_directions, unit

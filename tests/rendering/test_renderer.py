@@ -16,9 +16,7 @@ from minirt.rendering.packing.features import WORDS
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes import ALL_KINDS
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import ALL_KINDS, Plane, Sphere
 from tests.cli.program import SCENE, environment
 from tests.kernel.pictures import ALL, TWO
 from tests.processes import run

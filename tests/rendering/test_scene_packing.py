@@ -22,10 +22,7 @@ from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene, fast, parse
 from minirt.scene.pages import PAGE_LENGTH
-from minirt.shapes import ALL_KINDS
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import ALL_KINDS, Cylinder, Plane, Sphere
 from tests.kernel.pictures import ALL, EYE, SHAPES
 from tests.random_scenes import random_scene
 from tests.shapes.examples import example

@@ -22,10 +22,7 @@ from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
 from minirt.report.settings import CULLING
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import FurtherLight, ParallelLight, Scene
-from minirt.shapes import ALL_KINDS
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.torus import Torus
+from minirt.shapes import ALL_KINDS, Plane, Sphere, Torus
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES, interpreted, linear
 from tests.random_scenes import random_scene
 from tests.simulated_clock import Clock, packets, simulate_clock

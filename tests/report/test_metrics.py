@@ -28,9 +28,7 @@ from minirt.report.metrics import (
 )
 from minirt.report.precision import summarised
 from minirt.scene import Scene
-from minirt.shapes import KINDS
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import KINDS, Plane, Sphere
 from tests.kernel.pictures import AMBIENT, EYE, RED
 
 

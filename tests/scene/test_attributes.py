@@ -13,9 +13,7 @@ from PIL import Image
 from minirt.errors import SceneError
 from minirt.materials import Bump, Checker, Clouds, Glass, Marble, Mirror, Specular, Tint, Wood
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, SpotLight, describe, dump, load, parse
-from minirt.shapes import KINDS, Kind
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import KINDS, Kind, Plane, Sphere
 from tests.scene.examples import CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
 from tests.shapes.examples import example
 

@@ -14,9 +14,7 @@ from minirt.element import Element
 from minirt.rendering.packing.features import features
 from minirt.scene import Ambient, Camera, FurtherCamera, FurtherLight, Item, Light, Scene, dump, pages, parse, writer
 from minirt.scene.pages import PAGE_LENGTH, Page
-from minirt.shapes import Shape
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Shape, Sphere
 from tests.scene.examples import SPHERE, scene_with
 
 CAMERA = Camera((0, 0, 0), (0, 0, 1), 70)

@@ -13,8 +13,7 @@ import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is comp
 from minirt.kernel import scene_arrays
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, load, save, splat, width
-from minirt.shapes import Kind, Shape
-from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes import Kind, Paraboloid, Shape
 from tests.reference import uv_mapping
 from tests.reference.uv_mapping import SurfacePoint, surface_point
 from tests.shapes import execution_modes

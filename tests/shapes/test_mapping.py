@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.shapes import KINDS, Kind, Shape
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.torus import Torus
+from minirt.shapes import KINDS, Cone, Cylinder, Ellipsoid, Hyperboloid, Kind, Paraboloid, Shape, Sphere, Torus
 from tests.shapes.examples import example
 from tests.shapes.mapping_checks import (
     MODES,

@@ -14,9 +14,7 @@ from minirt.kernel.scene_arrays import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.shapes import MESH, mesh
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.triangle import Triangle
+from minirt.shapes import MESH, Mesh, Triangle, mesh
 from tests.meshes.examples import GREY, ball, named, soup
 from tests.shapes.execution_modes import U
 from tests.shapes.regimes import random_directions, unit

@@ -11,13 +11,8 @@ from gmpy2 import const_pi, cos, mpfr, sin
 
 from minirt.element import fields_of
 from minirt.fields import Colour, cos_and_sin
-from minirt.shapes import KINDS, Kind
-from minirt.shapes.box import Box
-from minirt.shapes.disc import Disc
+from minirt.shapes import KINDS, Box, Disc, Kind, Sphere, Square, Triangle
 from minirt.shapes.shape import Oriented
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
-from minirt.shapes.triangle import Triangle
 from tests.meshes.examples import named
 from tests.reference.hits import own_axes
 from tests.reference.vectors import turned

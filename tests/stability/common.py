@@ -19,14 +19,7 @@ from minirt.errors import ElementError
 from minirt.fields import FARTHEST, Length, Lengths
 from minirt.fields.scalars import SMALLEST
 from minirt.scene import Camera, Scene
-from minirt.shapes import Kind, Shape
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.torus import Torus
+from minirt.shapes import Cone, Cylinder, Ellipsoid, Hyperboloid, Kind, Paraboloid, Shape, Sphere, Torus
 from tests.oracle.body import body, dot, exact, gradient
 from tests.shapes.examples import example, on_surface, place
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from minirt.lanes import Vec
-from minirt.shapes import KINDS, Shape, compensated, torus
+from minirt.shapes import KINDS, Shape, Sphere, compensated, torus
 from minirt.shapes.quadrics import exact_ends
-from minirt.shapes.sphere import Sphere
 from tests.shapes.execution_modes import Intersect, kind_of, on_arrays, vec
 from tests.shapes.regimes import Array
 from tests.stability.common import QUADRICS

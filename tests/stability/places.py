@@ -20,9 +20,8 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import FARTHEST, Direction, Field, Length, Lengths, Point
-from minirt.shapes import Kind, Shape
+from minirt.shapes import Kind, Shape, Torus
 from minirt.shapes.frames import basis
-from minirt.shapes.torus import Torus
 from tests.shapes.examples import random_value
 from tests.shapes.execution_modes import kind_of, surfaces
 from tests.shapes.regimes import Array, Random, random_directions, unit

@@ -7,11 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from minirt.shapes import Shape
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes import Cone, Cylinder, Hyperboloid, Paraboloid, Shape
 from tests.shapes.examples import place
 from tests.shapes.regimes import (
     GREY,

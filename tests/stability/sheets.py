@@ -7,11 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from minirt.shapes import Shape
-from minirt.shapes.disc import Disc
-from minirt.shapes.plane import Plane
-from minirt.shapes.square import Square
-from minirt.shapes.triangle import Triangle
+from minirt.shapes import Disc, Plane, Shape, Square, Triangle
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, random_perpendiculars, unit
 from tests.stability.common import COUNT, at, pose_of, shots, sign
 from tests.stability.places import Place, flat, frame, line, ring, special, spot

@@ -6,11 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from minirt.shapes import Shape
-from minirt.shapes.box import Box
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.torus import Torus
+from minirt.shapes import Box, Ellipsoid, Shape, Sphere, Torus
 from tests.shapes.regimes import (
     GREY,
     RAYS,

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.shapes import KINDS, Kind
-from minirt.shapes.torus import Torus
+from minirt.shapes import KINDS, Kind, Torus
 from tests.stability.common import common, is_solid, stretched_regimes
 from tests.stability.places import files
 from tests.stability.regime import Regime

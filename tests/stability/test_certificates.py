@@ -15,13 +15,8 @@ from minirt.lanes import Vec, dot, sqrt
 from minirt.rendering.queries import certificates
 from minirt.rendering.queries.certificates import Certificate
 from minirt.scene import Scene
-from minirt.shapes import KINDS, Kind, Shape
+from minirt.shapes import KINDS, Cone, Cylinder, Kind, Mesh, Shape, Torus, Triangle
 from minirt.shapes.boundary import Boundary
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.torus import Torus
-from minirt.shapes.triangle import Triangle
 from tests.paths import SCENES
 from tests.shapes.execution_modes import on_arrays
 from tests.shapes.regimes import GREY, RAYS, Array, random_directions

@@ -11,13 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from minirt.shapes import KINDS, Shape, quadrics
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.disc import Disc
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes import KINDS, Cone, Cylinder, Disc, Ellipsoid, Hyperboloid, Paraboloid, Shape, quadrics
 from tests.oracle.body import body, crossings
 from tests.shapes.examples import example, place
 from tests.shapes.execution_modes import Intersect, on_arrays

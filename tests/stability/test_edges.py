@@ -9,8 +9,7 @@ import minirt
 from minirt.fields import MeshFile
 from minirt.meshes import Triangles
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.triangle import Triangle
+from minirt.shapes import Mesh, Triangle
 from tests.kernel.pictures import linear
 from tests.shapes.examples import shadow_offsets
 from tests.shapes.execution_modes import Intersect, compiled, surfaces

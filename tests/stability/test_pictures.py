@@ -11,8 +11,7 @@ import minirt
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Sphere
 from tests import reference
 from tests.compare import edges
 from tests.kernel.pictures import linear

@@ -20,8 +20,7 @@ from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.shape_arrays import bounding_boxes
 from minirt.scene import Scene
-from minirt.shapes import KINDS, Kind, Shape
-from minirt.shapes.ellipsoid import Ellipsoid
+from minirt.shapes import KINDS, Ellipsoid, Kind, Shape
 from tests.oracle.body import body, normals
 from tests.oracle.many import crossed
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays

@@ -11,12 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from minirt.shapes import KINDS, Kind, Shape
-from minirt.shapes.box import Box
-from minirt.shapes.disc import Disc
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
-from minirt.shapes.torus import Torus
+from minirt.shapes import KINDS, Box, Disc, Kind, Shape, Sphere, Square, Torus
 from tests import oracle
 from tests.oracle.body import body
 from tests.shapes.examples import example, hits, place, shadow_offsets

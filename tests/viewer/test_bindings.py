@@ -14,8 +14,7 @@ from PIL import Image
 from minirt.mlx import Button, Key, Modifier
 from minirt.mlx.memory import Memory
 from minirt.scene import Camera, describe, dump, load
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Sphere
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.events import PANEL
 from minirt.viewer.app.panels import LISTS, TYPE

@@ -18,8 +18,7 @@ from PIL import Image
 from minirt import load
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.report.bench import runs
-from minirt.shapes.shape import Shape
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Shape, Sphere
 from tests.bench.measure import GLASS, INSTALL, MIRROR, MissingError, Setting, System
 from tests.bench.triangles import light, triangulated
 

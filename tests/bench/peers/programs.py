@@ -17,11 +17,7 @@ from minirt.rendering.packing.camera import camera_frame, camera_numbers
 from minirt.rendering.packing.features import DEPTH
 from minirt.report import povray
 from minirt.scene import Scene
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.plane import Plane
-from minirt.shapes.shape import Shape
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Mesh, Plane, Shape, Sphere
 from tests.bench.measure import GLASS, INSTALL, MissingError, Setting, System
 from tests.bench.triangles import light, triangulated
 from tests.processes import run

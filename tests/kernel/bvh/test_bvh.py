@@ -32,10 +32,7 @@ from minirt.rendering.packing.bvh import aligned, block_type, build_bvh, wide_no
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.threads import Job, ThreadPool
-from minirt.shapes import KINDS, Shape
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import KINDS, Cylinder, Plane, Shape, Sphere
 from tests.shapes.examples import example, place
 from tests.shapes.regimes import Array, Random, log_uniform, random_directions, unit
 

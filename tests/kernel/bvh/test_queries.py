@@ -11,8 +11,7 @@ import pytest
 from minirt.kernel import bvh_traversal
 from minirt.kernel.bvh_nodes import WIDTH
 from minirt.lanes import Vec, lane, load, where
-from minirt.shapes import KINDS
-from minirt.shapes.cylinder import Cylinder
+from minirt.shapes import KINDS, Cylinder
 from tests.kernel.bvh.test_bvh import (
     brute_force,
     build_tree,

@@ -22,8 +22,7 @@ from minirt.rendering.packing.lights import (
     spot_parameters,
 )
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Sphere
 
 EYE = Camera((0, 0, -5), (0, 0, 1), 60)
 SPOT = SpotLight((0, 9, 0), (0, -1, 0), 60, 1, rim=0.4)

@@ -12,11 +12,7 @@ import minirt
 from minirt.materials import Glass, Mirror, Tint
 from minirt.rendering.packing.materials import encloses
 from minirt.scene import Ambient, Background, Camera, Light, Scene
-from minirt.shapes import KINDS
-from minirt.shapes.box import Box
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
+from minirt.shapes import KINDS, Box, Plane, Sphere, Square
 from tests.kernel.pictures import Array, interpreted
 from tests.shapes.examples import example
 

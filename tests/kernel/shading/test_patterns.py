@@ -16,11 +16,7 @@ from minirt.materials import Clouds, Marble, Wood
 from minirt.rendering.packing.lights import Colours
 from minirt.rendering.packing.materials import pack_patterns
 from minirt.scene import Ambient, Camera, Scene
-from minirt.shapes import KINDS, Kind
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.torus import Torus
+from minirt.shapes import KINDS, Cylinder, Kind, Plane, Sphere, Torus
 from tests.reference import texturing as reference
 from tests.shapes.examples import example
 from tests.shapes.execution_modes import on_lanes, vec_lanes

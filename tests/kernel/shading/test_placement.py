@@ -12,9 +12,7 @@ from minirt.lanes import Vec
 from minirt.materials import Checker, Marble, Placement, Specular
 from minirt.rendering.packing.features import shape_features
 from minirt.rendering.packing.materials import placement_numbers
-from minirt.shapes import Shape
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Shape, Sphere
 from tests.reference.uv_mapping import SurfacePoint
 from tests.reference.uv_mapping import placed as placed_by_inverse
 from tests.shapes.execution_modes import array, vec

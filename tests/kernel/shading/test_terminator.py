@@ -16,9 +16,7 @@ from minirt.lanes import Vec
 from minirt.materials import Bump
 from minirt.meshes import Triangles
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes import mesh
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Mesh, Sphere, mesh
 from tests.meshes.examples import ball, named
 from tests.shapes.regimes import random_directions, unit
 

@@ -13,9 +13,7 @@ from minirt.kernel.shading.whitted import MIN_WEIGHT
 from minirt.materials import Glass, Mirror
 from minirt.rendering.packing.features import DEPTH
 from minirt.scene import Ambient, Background, Camera, Scene
-from minirt.shapes import Shape
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Shape, Sphere
 from tests.kernel.pictures import Array, interpreted
 
 WHITE, RED, GREY = (255, 255, 255), (255, 0, 0), (102, 102, 102)

@@ -17,8 +17,7 @@ from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel, empty_arrays, fitting, generalised
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, ParallelLight, Scene, SpotLight
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Sphere
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, WHITE
 from tests.make_goldens import SCENES
 from tests.meshes.examples import soup

@@ -17,10 +17,7 @@ from minirt.materials.glass import BLACK
 from minirt.rendering.packing.features import FEATURES, features
 from minirt.rendering.packing.materials import pack_materials
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
-from minirt.shapes import Shape
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
+from minirt.shapes import Plane, Shape, Sphere, Square
 from tests.kernel.pictures import EYE
 
 GREY = (128, 128, 128)

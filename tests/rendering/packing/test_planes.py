@@ -14,8 +14,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import signed_heights
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Sphere
 from tests.kernel.pictures import ALL, linear
 from tests.random_scenes import random_scene
 

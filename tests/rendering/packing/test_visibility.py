@@ -24,9 +24,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import FEW, Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene, parse
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Sphere
 from tests.random_scenes import random_scene
 from tests.shapes.regimes import random_directions
 

@@ -11,9 +11,7 @@ from minirt.rendering import Renderer
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import pick
 from minirt.scene import Ambient, Camera, Scene
-from minirt.shapes import Shape
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Plane, Shape, Sphere
 from tests.kernel.pictures import ALL, picture
 from tests.kernel.test_frame import ABOVE, SAME
 from tests.random_scenes import random_scene

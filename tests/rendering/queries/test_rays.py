@@ -14,9 +14,7 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering import scene_packing
 from minirt.rendering.queries import certificates
 from minirt.scene import Scene
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Sphere
 from tests import oracle
 from tests.kernel.bvh.test_bvh import random_rays, random_shapes
 from tests.kernel.pictures import AMBIENT, EYE, RED

@@ -16,13 +16,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.stiffness import ACROSS, DOWN, Stiff, coincident, stiff_shapes
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Scene
-from minirt.shapes import Shape
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.disc import Disc
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
+from minirt.shapes import Cylinder, Disc, Mesh, Plane, Shape, Sphere, Square
 from tests.paths import SCENES
 
 GREY, RED = (128, 128, 128), (255, 0, 0)

@@ -19,9 +19,7 @@ from minirt.rendering.sampling import packets as sampling
 from minirt.rendering.sampling.auto import LEAST_PROBES, PROBES, REFERENCES, AutoSampler
 from minirt.rendering.sampling.packets import CLASSES, Packets
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Sphere
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.paths import SCENES
 from tests.random_scenes import random_scene

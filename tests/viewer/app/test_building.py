@@ -13,8 +13,7 @@ from PIL import Image as pillow  # noqa: N813
 
 from minirt.cli import main
 from minirt.scene import load
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Sphere
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import hints
 from tests.pages import read

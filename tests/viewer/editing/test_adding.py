@@ -15,13 +15,8 @@ from minirt.rendering.packing.ray_casting import distances_of
 from minirt.rendering.queries.pick import clearance, pick
 from minirt.scene import Scene, load
 from minirt.scene.registry import ELEMENTS
-from minirt.shapes import KINDS, Shape
-from minirt.shapes.box import Box
-from minirt.shapes.cylinder import Cylinder
+from minirt.shapes import KINDS, Box, Cylinder, Mesh, Shape, Sphere, Triangle
 from minirt.shapes.frames import basis
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.triangle import Triangle
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.placing import SHARE, aim, dropped, middle_of, stand
 from minirt.viewer.editing.projection import looked_at_distance, projection_of

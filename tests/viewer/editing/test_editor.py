@@ -9,9 +9,7 @@ import pytest
 from minirt.fields import FARTHEST, unit
 from minirt.fields.scalars import LEAST_LENGTH
 from minirt.scene import Camera, FurtherCamera, FurtherLight, Light, Scene, dump
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Cylinder, Plane, Sphere
 from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
 from minirt.viewer.editing.motion import rodrigues, turn_camera
 from minirt.viewer.editing.state import STEP_SHARE, State, initial_state

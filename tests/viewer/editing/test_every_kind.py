@@ -21,12 +21,7 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Background, Camera, Resolution, Scene, dump, load, parse
 from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
-from minirt.shapes import Shape
-from minirt.shapes.box import Box
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.mesh import Mesh
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
+from minirt.shapes import Box, Ellipsoid, Mesh, Shape, Sphere, Square
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import field_names, position_of, projection_of
 from minirt.viewer.editing.state import State, index_of, initial_state

@@ -15,15 +15,8 @@ from minirt.fields.scalars import FARTHEST, LEAST_LENGTH
 from minirt.materials import Checker
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera, Scene, describe, dump, load, parse
-from minirt.shapes.box import Box
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.plane import Plane
+from minirt.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere, Square, Torus, Triangle
 from minirt.shapes.shape import Flat, Oriented
-from minirt.shapes.sphere import Sphere
-from minirt.shapes.square import Square
-from minirt.shapes.torus import Torus
-from minirt.shapes.triangle import Triangle
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.motion import rodrigues, rotate
 from minirt.viewer.editing.projection import scene_size
