@@ -10,13 +10,14 @@ import time
 from collections.abc import Callable
 
 HANG_LIMIT = 300.0  # seconds after which a wait counts as a hang: far above any expected time
-POLL = 0.01  # seconds between two checks
+POLL, SLOWEST_POLL = 0.01, 0.05  # seconds between two checks, at first and after long: a check may start a program
 
 
 def until(condition: Callable[[], bool], what: str) -> None:
     """Wait until `condition` holds. After `HANG_LIMIT` a TimeoutError says that `what` did not come."""
-    deadline = time.monotonic() + HANG_LIMIT
+    deadline, pause = time.monotonic() + HANG_LIMIT, POLL
     while not condition():
         if time.monotonic() > deadline:
             raise TimeoutError(f"{what} did not come within {HANG_LIMIT:.0f} s")
-        time.sleep(POLL)
+        time.sleep(pause)
+        pause = min(1.2 * pause, SLOWEST_POLL)
