@@ -125,14 +125,19 @@ def test_adding_and_removing_pack_only_the_page_that_they_change(packed: list[An
 
 def test_shapes_that_nobody_asks_for_are_packed_without_being_made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fast, "MANY_LINES", 0)
-    lines = [f"sp {i},0,9 1 {i % 256},0,255" for i in range(2 * PAGE_LENGTH)]
+    monkeypatch.setattr(shape_arrays, "JOINED", 2)
+    lines = [f"sp {i},0,9 1 {i % 256},0,255" for i in range(4 * PAGE_LENGTH)]
     first = ["A 1 1,1,1", "C 0,0,0 0,0,1 70", "L 0,9,0 1 255,255,255", "pl 0,-9,0 0,1,0 9,9,9"]
     scene = parse("\n".join([*first, *["#"] * (PAGE_LENGTH - len(first)), *lines])).scene
-    _, _, crowd = scene.runs
+    *_, crowd = scene.runs
     Renderer(1).render(scene, np.zeros((8, 8, 4), np.uint8))
     assert "elements" not in vars(crowd)
-    arrays, others = ShapeArrays(), ShapeArrays()
-    arrays.update(*scene.runs)
+    arrays, others, lengths = ShapeArrays(), ShapeArrays(), []
+    with monkeypatch.context() as patch:
+        pack = shape_arrays.pack_shapes
+        patch.setattr(shape_arrays, "pack_shapes", lambda new: lengths.append(len(new)) or pack(new))
+        arrays.update(*scene.runs)
+    assert lengths == [1, 2 * PAGE_LENGTH, 2 * PAGE_LENGTH]
     others.update(scene.shapes)
     assert "elements" in vars(crowd)
     assert all(map(np.array_equal, arrays.tables, others.tables))

@@ -10,7 +10,7 @@ from bisect import bisect
 from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from functools import cached_property
-from itertools import accumulate, chain, takewhile
+from itertools import accumulate, chain, groupby, islice, takewhile
 from operator import attrgetter
 from typing import Any
 
@@ -82,6 +82,7 @@ def bounding_boxes(shapes: Sequence[Shape]) -> np.ndarray:
 
 
 FIRST = np.arange(1)  # index of the first primitive
+JOINED = 32  # runs, at most
 
 
 class ShapeArrays:
@@ -118,14 +119,14 @@ class ShapeArrays:
         for name in ("shapes", "rows"):
             vars(self).pop(name, None)
         if fits:
-            parts: Any = [([index for index, _, _ in changed], [shape for _, _, shape in changed])]
+            indices = np.array([index for index, _, _ in changed], np.int64)
+            parts: Any = [(indices, [shape for _, _, shape in changed])]
         else:
             self.allocate(*runs)
-            starts = [*accumulate(map(len, runs), initial=0)]
-            parts = [(range(*starts[at : at + 2]), runs[at]) for at in range(*self.take_ends(before))]
+            first, last = self.take_ends(before)
+            parts = joined(runs[first:last], sum(map(len, runs[:first])))
         self.updates += 1
-        for part, members in parts:
-            indices = np.array(part, np.int64)
+        for indices, members in parts:
             groups = self.slots[self.listed[indices], 0]
             for group in set(groups.tolist()):
                 at = np.flatnonzero(groups == group)
@@ -146,18 +147,23 @@ class ShapeArrays:
     def allocate(self, *runs: Sequence[Shape]) -> None:
         """Allocate all arrays for these shapes, without writing them."""
         self.runs, self.updates = runs, 0
-        kinds: list[type[Shape]] = []
-        for run in runs:
-            kinds += [run.kind] * len(run) if isinstance(run, Crowd) else map(type, run)
         present: Any = {type(each): each for run in runs for each in examined(run)}
         used = [kind for kind in ALL_KINDS if kind.element in present]
         examples = [present[kind.element].some(FIRST) for kind in used]
         self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.flat() is not None for each in examples], bool)
-        sizes = np.ones(len(kinds), np.int64)
+        number = self.group_numbers.__getitem__
+        of_runs = [
+            np.repeat(number(run.kind), len(run))
+            if isinstance(run, Crowd)
+            else np.fromiter(map(number, map(type, run)), np.int64, len(run))
+            for run in runs
+        ]
+        groups = np.concatenate([FIRST[:0], *of_runs])
+        sizes = np.ones(len(groups), np.int64)
         if Mesh in present:
             sizes[:] = [shape.parts for shape in self.shapes]
-        groups = np.repeat(np.fromiter(map(self.group_numbers.__getitem__, kinds), np.int64, len(kinds)), sizes)
+        groups = np.repeat(groups, sizes)
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
         self.first_primitive = np.concatenate([[0], np.cumsum(sizes)])
@@ -174,8 +180,8 @@ class ShapeArrays:
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
         self.listed = self.first_primitive[:-1]
         self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.listed]])])
-        self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(kinds), 2, 3))
-        self.written = np.zeros(len(kinds), np.int32)
+        self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(sizes), 2, 3))
+        self.written = np.zeros(len(sizes), np.int32)
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
 
     def take_ends(self, before: ShapeArrays) -> tuple[int, int]:
@@ -274,6 +280,19 @@ def extents_from(eye: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     low, high, _ = spans(boxes)
     extents: np.ndarray = np.abs((low + high) / 2 - eye[:, None]).max(axis=0) + (high - low).max(axis=0) / 2
     return extents
+
+
+def joined(runs: Sequence[Any], start: int) -> Iterator[tuple[np.ndarray, Sequence[Shape]]]:
+    """Yield runs and the indices of their shapes, from `start` on. Crowds that are packed in columns are joined: a
+    million spheres are packed in half of the time."""
+    for kind, alike in groupby(runs, lambda run: run.kind if isinstance(run, Crowd) and run.kind.columnar else None):
+        while some := [*islice(alike, JOINED if kind else 1)]:
+            run = some[0]
+            if len(some) > 1:
+                columns = {name: np.concatenate([each.columns[name] for each in some]) for name in run.columns}
+                run = Crowd(run.kind, [*chain.from_iterable(each.sources for each in some)], columns)
+            yield np.arange(start, start + len(run)), run
+            start += len(run)
 
 
 def common(runs: Sequence[Sequence[Shape]], others: Sequence[Sequence[Shape]]) -> int:
