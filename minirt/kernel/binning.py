@@ -50,7 +50,7 @@ class Projection(NamedTuple):
     cones: Any  # (n, 5) as in `minirt.kernel.scene_arrays`; 0 for shapes without a rectangle
     cone_bits: Any  # (n, 5) the same memory as integers
     sides: Any  # (p,) of each plane, on which the point lies: 1, -1, or 0 where rounding may decide
-    found: Any  # (1,) the number of members of all lists
+    found: Any  # (2,) the number of members of all lists, and of planes whose side was another one before
     extents: Any  # float32 (n, 4) or (0, 4): the last column receives bounds of coordinates from the point
 
 
@@ -135,6 +135,7 @@ def project_planes(seen: Projection, slack: float, at: int) -> int:
         plane, shape = seen.planes[number], seen.plane_indices[number]
         height = signed_height(plane, vector(seen.origin, 0), slack)
         side = int(height > 0.0) - int(height < 0.0)
+        seen.found[1] += int(seen.sides[number] != side)
         seen.sides[number] = side
         cone = seen.cones[shape]
         cone[0], cone[1], cone[2], cone[3], cone[4] = 0.0, 0.0, 0.0, -2.0, abs(height)

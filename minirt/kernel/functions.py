@@ -1,12 +1,11 @@
 """Compiled forms of the functions that Python calls, under their own names."""
 
-from minirt.kernel import binning, bvh_build, bvh_traversal, mesh_triangles, pixels, scene_arrays
+from minirt.kernel import binning, bvh_build, bvh_traversal, mesh_triangles, moving_camera, pixels
 from minirt.kernel.frame import frame as interpreted_frame
 from minirt.kernel.machine_code.library import CompiledFunction
 
-project_shapes, fill_bins = CompiledFunction(binning.project_shapes), CompiledFunction(binning.fill_bins)
-move_shape = CompiledFunction(binning.move_shape)
-to_single = CompiledFunction(scene_arrays.to_single)
+project_shapes, move_shape = CompiledFunction(binning.project_shapes), CompiledFunction(binning.move_shape)
+pack_frame, follow = CompiledFunction(moving_camera.pack_frame), CompiledFunction(moving_camera.follow)
 place_triangles = CompiledFunction(mesh_triangles.place_triangles)
 divide, collapse = CompiledFunction(bvh_build.divide), CompiledFunction(bvh_build.collapse)
 trace_rays = CompiledFunction(bvh_traversal.trace_rays)

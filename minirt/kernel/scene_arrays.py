@@ -7,6 +7,7 @@ the title of the kind: the dtype of an array tells which formulas belong to it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from ctypes import POINTER, c_double, c_float, cast
 from functools import cache
 from typing import Any, NamedTuple, get_type_hints
 
@@ -146,11 +147,18 @@ def kind_of(fields: Any) -> Kind:
     return next(kind for kind in ALL_KINDS if kind.element.title == title)
 
 
-def to_single(table: Any, columns: Any, shifts: Any, rounded: Any) -> None:
-    """Round the rows of a table to float32, each column less the one of some `shifts` that `columns` names."""
-    for i in range(table.shape[0]):
-        for j in range(table.shape[1]):
-            rounded[i, j] = table[i, j] - shifts[columns[j]]
+def to_single(table: Any, kinds: Any, shifts: Any) -> None:
+    """Round a table to float32, each column less its shift, see `minirt.kernel.moving_camera.Followers`."""
+    (numbers, rounded), columns = numbers_at(table[0], table[4]), table[2]
+    for row in range(table[1]):
+        for column in range(columns):
+            at = row * columns + column
+            rounded[at] = numbers[at] - shifts[kinds[table[3] + column]]
+
+
+def numbers_at(doubles: int, singles: int) -> tuple[Any, Any]:
+    """Return the float64 numbers from an address on, and the float32 numbers from another one on."""
+    return cast(int(doubles), POINTER(c_double)), cast(int(singles), POINTER(c_float))
 
 
 def read(rows: Rows, i: int) -> Any:

@@ -78,10 +78,15 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
     return plan_of(np.arange(rows * columns), columns, drawn.reshape(-1, 3))
 
 
-@lru_cache(4)
-def rays_of(steps: bytes, number: np.dtype[Any], samples: int) -> np.ndarray:
-    """Return the `packet_rays` for the bytes of a camera's steps: the same array while the camera does not turn."""
-    return camera.packet_rays(np.frombuffer(steps, number), sample_positions(samples))
+def frame_rays(arrays: Any, samples: int) -> np.ndarray:
+    """Return the rays of each of some samples of a packed scene. One sample is that from the centre of a lens, and of
+    the centres of lights."""
+    rays = camera.packet_rays(arrays.camera[6:12], sample_positions(samples))
+    if not camera.has_apertures(arrays):
+        return rays
+    lanes, variants = width(rays), camera.variants_of(samples) if samples > 1 else 1
+    places = np.zeros((1, lanes, 4)) if samples == 1 else camera.aperture_places(samples, variants, lanes, 0)
+    return camera.with_apertures(np.tile(rays, (variants, 1)), places, arrays.lens)
 
 
 def frame_arguments(
@@ -91,19 +96,15 @@ def frame_arguments(
     linear: np.ndarray = NO_LINEAR,
     counter: np.ndarray | None = None,
     crop: Crop | None = None,
+    rays: np.ndarray | None = None,
+    memory: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> Frame:
-    """Return the arguments for all packets of a packed scene: of a picture, or of a rectangle of a larger one.
-
-    One sample is that from the centre of a lens, and of the centres of lights.
-    """
-    rays, plan = rays_of(arrays.camera[6:12].tobytes(), arrays.camera.dtype, samples), ALL_PACKETS
-    if camera.has_apertures(arrays):
-        lanes, variants = width(rays), camera.variants_of(samples) if samples > 1 else 1
-        places = np.zeros((1, lanes, 4)) if samples == 1 else camera.aperture_places(samples, variants, lanes, 0)
-        rays = camera.with_apertures(np.tile(rays, (variants, 1)), places, arrays.lens)
-        if samples > 1:
-            whole = Crop(pixels.shape[1], pixels.shape[0])
-            plan = plan_of_variants(pixels.shape, lanes, samples, variants, crop or whole)
+    """Return the arguments for all packets of a packed scene: of a picture, or of a rectangle of a larger one. `rays`
+    are those of `frame_rays`, and `memory` that of a thread, where they are known."""
+    rays, plan = frame_rays(arrays, samples) if rays is None else rays, ALL_PACKETS
+    if samples > 1 and camera.has_apertures(arrays):
+        whole = Crop(pixels.shape[1], pixels.shape[0])
+        plan = plan_of_variants(pixels.shape, width(rays), samples, len(rays) // samples, crop or whole)
     return Frame(
         np.zeros(1, np.int64) if counter is None else counter,
         pixels.view(np.uint32)[..., 0],  # numbers 0xAARRGGBB
@@ -111,7 +112,7 @@ def frame_arguments(
         rays,
         plan,
         NO_ERRORS,
-        *thread_memory(arrays),
+        *(memory or thread_memory(arrays)),
         arrays,
     )
 

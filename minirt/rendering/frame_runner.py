@@ -34,7 +34,7 @@ class FrameRunner:
     def __init__(self, threads: int, kernels: Kernels) -> None:
         self.threads = threads
         self.kernels = kernels
-        self.next_row = np.zeros(1, np.int64)  # counter of the frame that is being rendered
+        self.next_row = np.zeros(1, np.int64)  # counter of the rows that are being rendered
         self.choice: Choice | None = None  # the kernel of the last frame
         self.arrays: SceneArrays | None = None  # of its scene
         self.memories: list[tuple[np.ndarray, np.ndarray]] = []  # of the threads, for that scene, from frame to frame
@@ -51,9 +51,9 @@ class FrameRunner:
         """Run a brief job as often as there are threads that render, on these and on the caller's."""
         self.pool.run([job] * self.threads, self.cancel, helps=True)
 
-    def new_counter(self) -> np.ndarray:
-        """Return a counter of rows for a frame, which `cancel` ends from now on."""
-        self.next_row = np.zeros(1, np.int64)
+    def reset_counter(self) -> np.ndarray:
+        """Return the counter of rows for a frame, which `cancel` ends from now on."""
+        self.next_row[0] = 0
         return self.next_row
 
     def run(self, frame: Frame) -> None:
@@ -105,11 +105,13 @@ class FrameRunner:
         """Render a scene that has shapes; with `edges_only` only packets in which neighbouring pixels differ, unless a
         lens or a light with a size blurs others, too. False where it was cancelled or `is_wanted` said no."""
         scene, pixels, light, crop = request
-        counter = self.new_counter()
+        counter = self.reset_counter()
         if not is_wanted():
             return False
         arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
-        frame = frame_arguments(arrays, pixels, samples, light, counter, crop)
+        rays = packing.view.rays if packing.view and samples == 1 else None
+        memory = self.memories[0] if arrays is self.arrays else None
+        frame = frame_arguments(arrays, pixels, samples, light, counter, crop, rays, memory)
         if edges_only and not has_apertures(arrays):
             classes = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_on_all)
             packets = np.flatnonzero(classes >= EDGE)
@@ -132,7 +134,7 @@ class FrameRunner:
         packet_width = lanes // PACKET_HEIGHT
 
         def draw(positions: np.ndarray, plan: np.ndarray, errors: np.ndarray) -> None:
-            counter = self.new_counter()
+            counter = self.reset_counter()
             if self.cancellations != cancellations:
                 raise CancelledError
             rays = packet_rays(arrays.camera[6:12], positions[..., :2])

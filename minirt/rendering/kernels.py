@@ -189,8 +189,9 @@ def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
-    move = functions.move_shape.call(0, *recorder.calls["fill_bins"][1][:3])
-    others = move, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
+    _, counter, *lists = recorder.calls["pack_frame"][1]
+    binning = functions.project_shapes.call(counter, lists[0]), functions.move_shape.call(0, *lists[:3])
+    others = *binning, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
     reading = [READ.call(call_for(b""))] * any(isinstance(shape, Mesh) for shape in examples(scene).values())
     return [*recorder.calls.values(), *others, *reading, functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
@@ -208,9 +209,8 @@ def packing_calls() -> list[Call]:
     """Return calls of all functions beside those that draw, whose types are the same for all scenes."""
     *packing, _ = calls_for(parse(EXAMPLE).scene, "double", DEPTH)
     numbers, integers, table, corners = np.zeros(0), np.zeros(0, np.int64), np.zeros((0, 0)), np.zeros((0, 0), np.int32)
-    rounding = functions.to_single.call(table, integers, numbers, table.astype(np.float32))
     placing = functions.place_triangles.call(integers, numbers, table, table, 0, corners, table, table)
-    return [*packing, rounding, placing, READ.call(call_for(b"")), fast.call_for(b"", 0)]
+    return [*packing, placing, READ.call(call_for(b"")), fast.call_for(b"", 0)]
 
 
 def ray_query() -> Call:

@@ -24,7 +24,7 @@ from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.view import Rounding, View, in_single
+from minirt.rendering.packing.view import View
 from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Shape
@@ -100,7 +100,7 @@ class Packing:
         depends_on_place = arrays.lens is not None or arrays.eye_medium is not None
         if not self.view or depends_on_place or all_but_pose(scene) != all_but_pose(last):
             return False
-        return self.view.follow(scene.camera, arrays, self.run)
+        return self.view.follow(scene.camera, self.run)
 
     def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
         """Return arrays that are made anew, except what the scene shares with the last one."""
@@ -174,10 +174,8 @@ class Packing:
             bvh=self.bvh_of(*scene.runs) if needs_bvh and BVH not in self.without else None,
             **packed,
         )
-        if self.precision == "single" and self.view and fits_single(arrays):
-            self.view.rounding = Rounding(self.kernel, numbers[:3])
-            return in_single(arrays, self.view.bins.seen.extents, self.view.rounding)
-        return arrays
+        is_single = self.precision == "single" and fits_single(arrays)
+        return self.view.complete(arrays, is_single) if self.view else arrays
 
     def seen_by_lights(
         self, sources: list[Lamp], eye: np.ndarray, cells: int, cached: Callable[..., Any], radius: float

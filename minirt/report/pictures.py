@@ -103,7 +103,7 @@ def reference(scene: Scene, width: int, height: int, samples: int, seed: int, st
             if has_apertures(traced):
                 discs = aperture_places(len(places), 1, lanes_of(traced.camera), 2 * seed + half)
                 rays = with_apertures(rays, discs[start : start + PASS], traced.lens)
-            counter = renderer.runner.new_counter()  # so that it can be cancelled
+            counter = renderer.runner.reset_counter()  # so that it can be cancelled
             arguments = frame_arguments(traced, pixels, linear=linear, counter=counter)
             renderer.runner.run(arguments._replace(rays=rays))
             total += linear * len(some)

@@ -38,10 +38,11 @@ Answer = TypeVar("Answer")
 
 def cancelled(renderer: Renderer, work: Callable[[], Answer]) -> Answer:
     """Run `work`, which makes `renderer` render, cancel it when its first row has begun, and return its answer."""
-    before, answers = renderer.runner.next_row, list[Answer]()
+    answers = list[Answer]()
+    renderer.runner.reset_counter()
     thread = Thread(target=lambda: answers.append(work()), daemon=True)
     thread.start()
-    until(lambda: renderer.runner.next_row is not before and renderer.runner.next_row[0] > 0, "the first row")
+    until(lambda: renderer.runner.next_row[0] > 0, "the first row")
     assert renderer.runner.next_row.max() < CANCELLED
     renderer.cancel()
     thread.join(HANG_LIMIT)

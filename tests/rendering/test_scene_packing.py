@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -12,11 +13,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.scene_arrays import read
 from minirt.materials import Checker, Specular
+from minirt.rendering.frame import frame_rays
 from minirt.rendering.packing import shape_arrays
 from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes, extents_from
-from minirt.rendering.packing.view import Rounding, View
+from minirt.rendering.packing.view import View
 from minirt.rendering.packing.visibility import BinnedShapes, Bins
 from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import Packing
@@ -38,9 +41,10 @@ def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return done
 
 
-def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> None:
-    """Assert that arrays equal those of a fresh packing."""
-    fresh = Packing(precision=precision).pack(scene, 24, 16)
+def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> Packing:
+    """Assert that arrays equal those of a fresh packing, and return it."""
+    packing = Packing(precision=precision)
+    fresh = packing.pack(scene, 24, 16)
     for name, value in zip(fresh._fields, fresh, strict=True):
         if name == "tile_shapes":  # which has room for more
             end = fresh.groups[-1].tile_starts[-1]
@@ -52,6 +56,7 @@ def assert_same(arrays: Any, scene: Scene, precision: str = "double") -> None:
     for group, expected in zip(arrays.groups, fresh.groups, strict=True):
         found, right = ((*each[:4], *(each.trees or ()), *(each.triangles or ())) for each in (group, expected))
         assert all(map(np.array_equal, found, right))
+    return packing
 
 
 def test_the_arrays_have_the_numbers_of_the_scene() -> None:
@@ -229,9 +234,11 @@ def test_a_shape_that_moves_is_binned_without_the_others(monkeypatch: pytest.Mon
     packing.pack(next(scenes), 24, 16)
     bins = [packing.view.bins, *(each.bins for each in packing.cache.values() if isinstance(each, BinnedShapes))]
     for each in bins:
-        monkeypatch.setattr(each, "project", None)
+        monkeypatch.setattr(each, "pack", None)
+        monkeypatch.setattr(each, "packing", None)
     scene = packing.last[0]
-    scene = scene.replace(scene.spheres[3], centre=(0, 1, 2))
+    ball = scene.spheres[3]
+    scene = scene.replace(ball, centre=np.add(ball.centre, 1e-3))  # so little that the lists have room
     assert_same(packing.pack(scene, 24, 16), scene)
     assert len(bins) == 4
 
@@ -258,7 +265,9 @@ def follows(seed: int, precision: str) -> int:
     for scene in walk(seed):
         arrays = packing.pack(scene, 24, 16)
         kept += arrays is before
-        assert_same(arrays, scene, precision)
+        fresh = assert_same(arrays, scene, precision)
+        assert packing.view.rays == pytest.approx(frame_rays(arrays, 1), abs=1e-5)
+        assert np.array_equal(packing.view.rays, fresh.view.rays)
         before = arrays
     return kept
 
@@ -268,11 +277,32 @@ def test_arrays_follow_a_camera_that_moves_and_turns(precision: str, monkeypatch
     seed = SystemRandom().randrange(2**32)  # each run tries other walks
     print(f"seeds from {seed} on")
     assert sum(follows(seed + i, precision) for i in range(8)) > 8 * STEPS / 4
-    unchanged = property(lambda view: None, lambda view, seen: None)
-    monkeypatch.setattr(View, "seen", unchanged, raising=False)  # where lists of lights and materials change, too
-    monkeypatch.setattr(Rounding, "move", lambda rounding, eye: None)
+    follow = View.follow  # says where lists of lights and materials change, too
+    monkeypatch.setattr(View, "follow", lambda *arguments: follow(*arguments) or True)
     with pytest.raises(AssertionError):
         sum(follows(seed + i, precision) for i in range(40))
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_a_moving_camera_takes_one_compiled_call_and_none_of_numpy(
+    precision: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    packing, calls, run = Packing(precision=precision), list[Any](), Entry.run
+    scenes = [ALL.replace(ALL.camera, position=(0, 0, -9 - i / 99), direction=(i / 99, 0, 1)) for i in range(3)]
+    for scene in scenes[:2]:
+        arrays = packing.pack(scene, 24, 16)
+    monkeypatch.setattr(Entry, "run", lambda *arguments: calls.append("compiled") or run(*arguments))
+
+    def log(_frame: Any, event: str, called: Any) -> None:
+        if event == "c_call" and "numpy" in f"{called.__module__} {type(called.__self__)}":
+            calls.append(called)
+
+    sys.setprofile(log)
+    try:
+        assert packing.pack(scenes[2], 24, 16) is arrays
+    finally:
+        sys.setprofile(None)
+    assert calls == ["compiled"]
 
 
 def test_single_precision_draws_checkers_but_no_pictures(tmp_path: Path) -> None:

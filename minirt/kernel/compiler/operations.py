@@ -72,6 +72,14 @@ def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return load_packed(context, builder, sig.return_type, first, LANES.count)
 
 
+@register(scene_arrays.numbers_at, lambda *_: types.Tuple([*map(types.CPointer, (types.float64, types.float32))]))
+def _numbers_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    parts = [
+        builder.inttoptr(each, context.get_value_type(kind)) for each, kind in zip(args, sig.return_type, strict=True)
+    ]
+    return context.make_tuple(builder, sig.return_type, parts)
+
+
 # BVH traversal: memory on the stack, and node references in the bits of distances.
 
 

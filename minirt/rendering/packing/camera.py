@@ -11,6 +11,7 @@ neighbouring pixels, and the dimensions of one pixel, have nothing in common.
 from __future__ import annotations
 
 from functools import cache, lru_cache
+from itertools import chain
 from math import cos, pi, radians, sin, tan
 from operator import index
 from typing import Any, NamedTuple, TypeAlias
@@ -117,13 +118,13 @@ def slopes_at_edges(camera: Camera, width: int, height: int) -> tuple[float, flo
     return half, half * height / width
 
 
-def pixel_rays(camera: Camera, width: int, height: int) -> np.ndarray:
+def pixel_rays(camera: Camera, width: int, height: int) -> list[float]:
     """Eye, direction through the upper left corner of the picture, and the changes of that direction a pixel to the
-    right and a pixel down, (12,)."""
+    right and a pixel down, 12 numbers."""
     across, down = slopes_at_edges(camera, width, height)
     axes = ((across * x, down * y, z) for x, y, z in zip(*camera_frame(camera), strict=True))
     columns = ((z - x + y, 2 / width * x, -2 / height * y) for x, y, z in axes)
-    return np.array([camera.position, *zip(*columns, strict=True)]).ravel()
+    return [*camera.position, *chain.from_iterable(zip(*columns, strict=True))]
 
 
 def packet_rays(steps: np.ndarray, samples: np.ndarray) -> np.ndarray:
@@ -133,9 +134,13 @@ def packet_rays(steps: np.ndarray, samples: np.ndarray) -> np.ndarray:
     `steps` (6,) are the changes in `pixel_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where
     each pixel of a packet has its own.
     """
-    positions = packet_pixels(width(steps)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
-    differences: np.ndarray = steps.reshape(2, 3).T @ positions
+    differences: np.ndarray = steps.reshape(2, 3).T @ packet_places(width(steps), samples)
     return differences.reshape(len(samples), -1).astype(steps.dtype)
+
+
+def packet_places(rays: int, samples: np.ndarray) -> np.ndarray:
+    """The x and y of each ray of a packet for each sample, in pixels from its upper left corner, (k, 2, rays)."""
+    return packet_pixels(rays) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
 
 
 @cache

@@ -107,10 +107,10 @@ class ShapeArrays:
 
     def update(self, *runs: Sequence[Shape]) -> bool:
         """Bring the arrays up to date with shapes, run by run; return whether anything changed."""
+        if runs == self.runs:
+            return False
         before = copy(self)
         self.runs = runs
-        if runs == before.runs:
-            return False
         fits = [*map(len, runs)] == [*map(len, before.runs)]
         changed = [*differing_shapes(before.runs, runs)] if fits else []
         fits = fits and all(

@@ -6,28 +6,30 @@ before it is rounded, so that whatever is near the eye is precise. Bounds used f
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from copy import copy
+from struct import pack_into
 from typing import Any
 
 import numpy as np
 
 from minirt.kernel.beams import CENTRE
-from minirt.kernel.machine_code.library import bound
+from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.kernel.scene_arrays import Group, SceneArrays, kind_of, row_axes, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN
 from minirt.lanes import width
+from minirt.rendering.frame import frame_rays, sample_positions
 from minirt.rendering.packing.camera import (
     Place,
     camera_frame,
     camera_numbers,
+    packet_places,
     pixel_rays,
     radius_and_focus,
     slopes_at_edges,
 )
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run, screen_grid, square_edge
+from minirt.rendering.packing.visibility import STILL, BinnedShapes, Bins, Run, screen_grid, square_edge
 from minirt.scene import Camera
 
 SPARE = 0.25  # of the lists of a camera that moves
@@ -37,7 +39,7 @@ class View:
     """The shapes in the tiles of a picture, or of a rectangle of one, and all else that depends on the camera."""
 
     bins: Bins
-    rounding: Rounding | None = None  # of a scene in float32
+    rays: np.ndarray | None  # of one sample, as of `minirt.rendering.frame.frame_rays`; None where a lens turns them
 
     def __init__(
         self,
@@ -62,25 +64,34 @@ class View:
             self.bins = spare.bins
         else:
             self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, extents=extents)
+        self.bins.followers, self.bins.pack = STILL, None
 
     def look(self, camera: Camera, run: Run | None) -> BinnedShapes:
         """Bin the shapes that a camera sees into tiles."""
         right, (x, y, z), forward = camera_frame(camera)
-        self.bins.seen.grid.frames[0] = right, (-x, -y, -z), forward
-        self.bins.see_from(camera.position, run, SPARE)
-        self.seen = self.bins.seen.sides.tobytes(), id(self.bins.members)
+        self.bins.see_from((*camera.position, *right, -x, -y, -z, *forward), run, SPARE)
         return BinnedShapes(self.bins.starts, self.bins.members, self.bins.seen.cones)
 
-    def follow(self, camera: Camera, arrays: SceneArrays, run: Run | None) -> bool:
-        """Let the arrays of a scene follow its camera; False where that takes other arrays, and these are spoilt."""
-        before = self.seen
+    def complete(self, arrays: SceneArrays, is_single: bool) -> SceneArrays:
+        """Let the arrays of a scene follow the camera; return them, or those that are rounded to float32."""
+        self.rounding, bins = Rounding(), self.bins
+        single = in_single(arrays, bins.seen.extents, self.rounding) if is_single else arrays
+        rays = frame_rays(single, 1).astype(np.float64)
+        followed = self.rounding.rounded(rays.reshape(-1, 1), (OTHER,)).reshape(1, -1) if is_single else rays
+        self.rays = None if arrays.lens is not None else followed
+        tables = [(a.ctypes.data, *a.shape, first, b.ctypes.data) for a, first, b in self.rounding.tables]
+        places, shifts = packet_places(width(single.camera), sample_positions(1))[0], np.append(np.zeros(4), MARGIN)
+        rounding = np.array(tables, np.int64).reshape(-1, 5), np.array(self.rounding.kinds, np.int64), shifts
+        bins.followers, bins.pack = Followers(arrays.camera, places, rays[0], *rounding), None
+        bins.kernel.follow(bins.followers)
+        return single
+
+    def follow(self, camera: Camera, run: Run | None) -> bool:
+        """Let all arrays follow a camera; False where that takes other arrays, and these are spoilt."""
+        members = self.bins.members
+        pack_into("12d", self.bins.followers.camera.data, 0, *pixel_rays(camera, *self.size))
         self.look(camera, run)
-        rays = pixel_rays(camera, *self.size)
-        if self.rounding:
-            self.rounding.move(rays[:3])
-            rays[:3] = 0.0
-        arrays.camera[:12] = rays
-        return self.seen == before
+        return members is self.bins.members and not self.bins.seen.found[1]
 
 
 def blurred_balls(balls: np.ndarray, camera: np.ndarray, radius: float, per_focus: float) -> np.ndarray:
@@ -106,24 +117,18 @@ CONE = OTHER, OTHER, OTHER, COSINE, OTHER  # a distance needs no margin: it was 
 
 
 class Rounding:
-    """Tables rounded to float32 relative to an eye; when it moves they are rounded anew, in the same arrays."""
+    """Tables that are rounded to float32, relative to an eye that moves: see `Followers`."""
 
-    def __init__(self, kernel: Any, eye: np.ndarray) -> None:
-        self.kernel = kernel
-        self.shifts = np.array([*eye, 0.0, MARGIN])
-        self.calls: list[Callable[[], Any]] = []
-
-    def move(self, eye: np.ndarray) -> None:
-        self.shifts[:3] = eye
-        for call in self.calls:
-            call()
+    def __init__(self) -> None:
+        self.tables: list[tuple[np.ndarray, int, np.ndarray]] = []  # numbers, number of their first kind, and rounded
+        self.kinds: list[int] = []
 
     def rounded(self, table: np.ndarray, columns: tuple[int, ...]) -> np.ndarray:
-        """Return a table of float64, (n, c), rounded now and when the eye moves. `columns` tells what each one holds:
+        """Return an array that a table of float64, (n, c), is to be rounded into. `columns` tells what each one holds:
         a part of `POINT`, `COSINE` or `OTHER`."""
-        into = np.empty(table.shape, np.float32)
-        self.calls.append(bound(self.kernel.to_single, table, np.array(columns), self.shifts, into))
-        self.calls[-1]()
+        into = np.zeros(table.shape, np.float32)
+        self.tables.append((table, len(self.kinds), into))
+        self.kinds += columns
         return into
 
     def rows(self, rows: np.ndarray) -> np.ndarray:
@@ -140,10 +145,12 @@ class Rounding:
 
 
 def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> SceneArrays:
-    """Return a scene in float32, the eye at the origin, also when the `rounding` moves; `extents` are those of
+    """Return a scene in float32, the eye at the origin, most of which a `rounding` writes; `extents` are those of
     `minirt.kernel.binning.Projection`, (n, 4)."""
     extents[:, :3] = arrays.colours_and_extents[:, :3]
-    light_cones = Rounding(rounding.kernel, rounding.shifts[:3]).rounded(arrays.light_cones.reshape(-1, 5), CONE)
+    light_cones = np.empty(arrays.light_cones.shape, np.float32)
+    with np.errstate(over="ignore"):
+        np.subtract(arrays.light_cones, (0.0, 0.0, 0.0, MARGIN, 0.0), light_cones, casting="same_kind")
     if arrays.patterns:
         columns = [OTHER] * COLUMNS
         columns[ORIGIN : ORIGIN + 3] = POINT
@@ -154,11 +161,11 @@ def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> S
         arrays = arrays._replace(light_grid=arrays.light_grid._replace(grids=grids))
     single: SceneArrays = as_single(
         arrays._replace(
-            camera=np.concatenate([np.zeros(3), arrays.camera[3:]]),
+            camera=rounding.rounded(arrays.camera[None], (*POINT, *(OTHER,) * 11))[0],
             lights=rounding.rounded(arrays.lights, (*POINT, OTHER, OTHER, OTHER)),
             colours_and_extents=extents,
             cones=rounding.rounded(arrays.cones, CONE),
-            light_cones=light_cones.reshape(arrays.light_cones.shape),
+            light_cones=light_cones,
             groups=tuple(map(rounding.group, arrays.groups)),
         )
     )

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from struct import pack_into
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -14,6 +15,7 @@ from minirt.helpers import system
 from minirt.kernel.binning import CHUNK, RADIX, Projection
 from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code.library import bound
+from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import MARGIN, Grid, signed_height
 from minirt.kernel.shadow_rays import CIRCLE
@@ -40,6 +42,8 @@ PARALLEL = 4096  # shapes from which on several threads project them
 
 
 NO_EXTENTS = np.zeros((0, 4), np.float32)
+NO_TABLES = np.zeros((0, 5), np.int64), np.zeros(0, np.int64), np.zeros(5)
+STILL = Followers(np.zeros(14), np.zeros((2, 0)), np.zeros(0), *NO_TABLES)  # arrays of which none follows
 # Fields of `Projection`, and of `ShapeArrays`.
 BOUNDS = "balls", "first_ball", "boxes", "listed", "slots", "planes", "plane_indices"
 Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all threads
@@ -110,9 +114,9 @@ def seen_by_light(
     grid = cube_grid(cells)
     fits = spare and spare.fit(shape_arrays, grid, radius, reach)
     bins = spare if spare and fits else Bins(kernel, shape_arrays, grid, radius, reach=reach)
-    bins.seen.shown[:], bins.copies = 1 - skipped, copies
+    bins.seen.shown[:], bins.shown, bins.copies = 1 - skipped, skipped.tobytes(), copies
     bins.largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    bins.see_from(light, run)
+    bins.see_from(tuple(light.tolist()), run)
     if cells == 1:
         return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
     return BinnedShapes(bins.starts, bins.members[: bins.starts[-1, -1]], bins.seen.cones, bins)
@@ -133,7 +137,10 @@ class Bins:
     extents are those of `minirt.kernel.binning.Projection`."""
 
     copies, largest = 1, system.UNLIMITED
-    last: tuple[Any, ...] = ()  # the point, the frames and the planes that the lists are for
+    last: tuple[Any, ...] = ()  # the pose and the planes that the lists are for
+    shown = b""  # planes that are not
+    followers = STILL  # arrays that follow the pose
+    pack: Callable[[], Any] | None = None  # the call that makes the lists and lets the arrays follow
     updates = 0  # of the shapes, up to which the lists are theirs
 
     def __init__(
@@ -152,9 +159,10 @@ class Bins:
         self.kernel, self.shapes = kernel, shape_arrays
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((len(shape_arrays.slots), 5))
+        self.pose = np.append(np.zeros(3), grid.frames)
         self.seen = Projection(
-            origin=np.zeros(3),
-            grid=grid,
+            origin=self.pose[:3],
+            grid=grid._replace(frames=self.pose[3:].reshape(-1, 3, 3)),
             radius=radius,
             reach=reach,
             lean=lean,
@@ -166,13 +174,13 @@ class Bins:
             cones=cones,
             cone_bits=cones.view(np.int64),
             sides=np.zeros(planes, np.int64),
-            found=np.zeros(1, np.int64),
+            found=np.zeros(2, np.int64),
             extents=extents,
         )
         self.counter, self.entries = np.zeros(1, np.int64), np.empty((2, room), np.int64)
         self.starts, self.members = np.zeros((kinds, grid.cells + 1), np.int32), np.zeros(0, np.int32)
-        self.project = bound(kernel.project_shapes, self.counter, self.seen)
-        self.fill = self.bound_fill()
+        if self.is_large:
+            self.project = bound(kernel.project_shapes, self.counter, self.seen)
 
     def fit(self, shape_arrays: ShapeArrays, grid: Grid, radius: float, reach: float = np.inf) -> bool:
         """Whether these bins can be used for shapes in the same arrays, as seen in such a grid."""
@@ -180,33 +188,34 @@ class Bins:
         is_alike = (seen.grid[1:], seen.radius, seen.reach) == (grid[1:], radius, reach)
         return seen.balls is shape_arrays.balls and is_alike
 
-    def bound_fill(self) -> Callable[[], Any]:
-        scratch = self.entries, np.empty(2**RADIX, np.int64)
-        return bound(self.kernel.fill_bins, self.seen, self.starts.reshape(-1), self.members, *scratch)
+    def packing(self) -> Callable[[], Any]:
+        """Return the call that bins the shapes and lets the followers follow."""
+        lists = self.seen, self.starts.reshape(-1), self.members, self.entries, np.empty(2**RADIX, np.int64)
+        return bound(self.kernel.pack_frame, self.followers, self.counter, *lists)
 
-    def see_from(self, point: Any, run: Run | None = None, spare: float = LITTLE) -> None:
-        """Bin the shapes as seen from a point, many of them on all threads by `run`. New lists leave room for a `spare`
-        share of members. `TooLargeError` where there is no room."""
+    def see_from(self, pose: tuple[float, ...], run: Run | None = None, spare: float = LITTLE) -> None:
+        """Bin the shapes as seen from a point, or from that and a frame, many of them on all threads by `run`. New
+        lists leave room for a `spare` share of members. `TooLargeError` where there is no room."""
         if not len(self.members):
             self.check(0)
-        view: Any = *point, self.seen.grid.frames.tobytes(), self.seen.shown.tobytes()
+        view: Any = *pose, self.shown
         moved: Any = np.flatnonzero(self.shapes.written > self.updates) if self.shapes.updates > self.updates else []
         same = view == self.last and not self.shapes.is_plane[self.shapes.slots[self.shapes.listed[moved[:2]], 0]].any()
-        self.updates, self.last, self.seen.origin[:], self.counter[0] = self.shapes.updates, (), point, 0
+        self.updates, self.last, self.counter[0], self.seen.found[1] = self.shapes.updates, (), 0, 0
+        pack_into(f"{len(pose)}d", self.pose.data, 0, *pose)
         if same and len(moved) == 1:
             self.kernel.move_shape(int(moved[0]), self.seen, self.starts.reshape(-1), self.members)
         elif not same or len(moved):
             if run and self.is_large:
                 run(self.project)
-            else:
-                self.project()
-            self.fill()
+            self.pack = self.pack or self.packing()
+            self.pack()
         count = int(self.seen.found[0])
         if count > len(self.members):
             self.check(count)
             self.members = np.zeros(int(count * (1.0 + spare)), np.int32)
-            self.fill = self.bound_fill()
-            self.fill()
+            self.pack, self.counter[0] = self.packing(), len(self.seen.used)  # all are projected
+            self.pack()
         self.last = view
 
     def check(self, members: int) -> None:

@@ -155,7 +155,7 @@ def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.nd
     cancel are drawn, some hundred of a hundred thousand: a row of pixels is a running sum of the edges that cross it.
     """
     triangles = mesh.triangles
-    eye, corner, across, down = pixel_rays(camera, width, height).reshape(4, 3)
+    eye, corner, across, down = np.reshape(pixel_rays(camera, width, height), (4, 3))
     x, y, depth = np.linalg.inv(np.stack([across, down, corner], axis=1)) @ (mesh.placed(triangles.points) - eye).T
     if depth.min() <= 0:
         return None

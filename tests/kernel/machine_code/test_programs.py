@@ -53,8 +53,8 @@ print(LIBRARY.cache and LIBRARY.cache.folder.name, len(LIBRARY.entries) - len(co
       image.array[4, 4].tolist())
 """
 FULL_DISK = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"  # every write to a file fails
-KERNELS = "6"  # compiled: that of the frame, three functions of binning, and those of contrast and of levels
-LOADED = "4"  # those but that of contrast and that of a shape that moves, which a plain picture does not need
+KERNELS = "7"  # compiled: that of the frame, four functions that pack it, and those of contrast and of levels
+LOADED = "4"  # those but that of contrast and those of a shape that moves and of threads, which a plain picture lacks
 PIXEL, EDITED = "[10, 20, 30]", "[10, 40, 30]"
 NOTHING_KEPT = "notice: every run compiles anew, kernels cannot be kept"
 

@@ -11,7 +11,7 @@ import pytest
 import minirt
 from minirt.errors import RenderError
 from minirt.helpers import system
-from minirt.kernel import binning, functions
+from minirt.kernel import functions, interpreted
 from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import projected_rectangle
@@ -98,7 +98,7 @@ def hard_scene(seed: int) -> Scene:
 
 
 SCENES = [*((random_scene, seed) for seed in range(4)), *((hard_scene, seed) for seed in range(14))]
-KERNELS = pytest.mark.parametrize("kernel", [binning, functions], ids=["interpreted", "compiled"])
+KERNELS = pytest.mark.parametrize("kernel", [interpreted, functions], ids=["interpreted", "compiled"])
 
 
 @pytest.fixture(params=[False, True], ids=["few", "crowd"])
