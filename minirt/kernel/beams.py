@@ -1,7 +1,8 @@
 """Beams of coherent rays through the trees of meshes.
 
 The tree of a mesh is a wide bounding volume hierarchy in a space of its own, whose unit is half of the mesh's size: it
-is built once for a file, and a mesh that is moved, turned or scaled keeps it. The triangles lie in the scene.
+is built once for a file, and a mesh that is moved, turned or scaled keeps it. The triangles lie in the scene; leaves
+have float32 copies of their corners, by which a beam and then each ray is tested before a triangle itself.
 
 A beam encloses rays that share an apex. Along the axis on which they advance most, its bounds are the least and the
 greatest slope of the rays across it: so four products decide for all children of a node at once whether the beam
@@ -24,37 +25,47 @@ from minirt.lanes import (
     Vec,
     any,
     bits,
+    cross,
     dot,
     fabs,
     first,
     greatest,
+    in_single,
     lane,
     load,
     lowest,
     max_norm,
+    maximum,
+    minimum,
     save,
+    save_vec,
     unit_roundoff,
     where,
     width,
 )
 
 WIDE = width(np.empty(0, np.float32))  # children of a node
-NODE = 7 * WIDE  # numbers of a node: the low x, y, z and high x, y, z of its children, and references to them
-HIGH, REFERENCES = 3 * WIDE, 6 * WIDE  # offsets in a node
+# Numbers of a node: the low x, y, z and high x, y, z of its children, or the corners of the triangles of a leaf; and
+# references to them.
+NODE = 10 * WIDE
+HIGH, REFERENCES = 3 * WIDE, 9 * WIDE  # offsets in a node
 ROUNDING = 2.0**-20  # of the space of a tree: rounding of boxes, and of their test
 ROUNDINGS = 64  # unit roundoffs of the coordinates: rounding of rays and of triangles
 LOOSE = 4.0  # a beam that is widened by so much encloses the whole tree
 SPREAD = 0.25  # most difference of two slopes in a beam
-HUGE = 1e30  # more than any number of a box
+HUGE = 1e30  # more than any number of a box; a coordinate of triangles that no ray hits, in lanes to spare
 WIDENING = 4.0  # of a beam whose rays do not leave the apex itself, by so many times their distance from it
 TINY = 2.0**-100  # a ray that is shorter meets nothing
 
 CENTRE, FACTOR, APART = 9, 12, 13  # columns of `MeshTrees.places`
 
-# Memory of a traversal: references to nodes that wait, the depths at which the beam enters them, and those of a node.
+# Memory of a traversal: references to nodes that wait, the depths at which the beam enters them, and those of a node;
+# of the triangles of a leaf, planes, edges and margins, see `between_planes`.
 DEPTHS = LEVELS * WIDE
 CHILDREN = 2 * DEPTHS
-MEMORY = CHILDREN + WIDE
+PLANES = CHILDREN + WIDE
+EDGES, MARGINS = PLANES + 9 * WIDE, PLANES + 18 * WIDE
+MEMORY = MARGINS + WIDE
 
 
 class MeshTrees(NamedTuple):
@@ -90,6 +101,12 @@ class Beam(NamedTuple):
     down: Bounds
     within: Mask  # the rays
     rate: Number  # the depth by which a ray advances along its way
+    central: Vec  # the direction of one ray, 1 along the axis
+    passing: Vec  # where that ray is at depth 0
+    rays: Vec  # the directions of all, 1 along the axis and as seen along that ray: sheared
+    moments: Vec  # of the rays about the apex
+    rounding: float  # of the rays, and of what `triangles_in_beam` computes
+    is_point: bool  # whether the rays leave the apex itself
 
 
 def beam_memory() -> Any:
@@ -99,22 +116,25 @@ def beam_memory() -> Any:
 
 Visit = Callable[..., Any]
 Reach = Callable[[Any, Any], Number]
+Rays = tuple[Vec, Vec, Number]
 
 
 def fold_over_mesh(
-    visit: Visit, reach: Reach, group: Group, row: int, apexes: Vec, way: Vec, active: Mask, state: Any, data: Any
+    visit: Visit, reach: Reach, group: Group, row: int, rays: Rays, active: Mask, state: Any, data: Any
 ) -> Any:
     """Fold `state = visit(group, row, index, within, state, data)` over the triangles of a mesh that rays may meet.
 
-    The first triangle of the mesh is in this row. The `active` rays leave their `apexes`, which are alike or close
-    together, along `way`, of any length. Those `within` a beam around some of them visit a triangle together, the
-    nearest triangles first. They need none beyond `reach(state, data)` times their `way`.
+    The first triangle of the mesh is in this row. The `active` of some `rays` leave their apexes, which are alike or
+    close together, along their ways, of any length. Those within a beam around some of them traverse the tree together,
+    the nearest triangles first. They need none beyond `reach(state, data)` times their way, and none that has the index
+    which comes with them. `within` are those that may meet the triangle.
     """
+    apexes, way, own = rays
     length = fabs(way.x) + fabs(way.y) + fabs(way.z)
     remaining = active & (length > TINY) & (4.0 * length < inf)
     while any(remaining):
         beam = beam_of(group.trees.places[group.trees.numbers[row]], apexes, way, remaining)
-        state = walk(visit, reach, group, row, beam, state, data)
+        state = walk(visit, reach, group, row, beam, own, state, data)
         remaining = remaining & ~beam.within
     return state
 
@@ -139,13 +159,24 @@ def beam_of(place: Any, apexes: Vec, way: Vec, remaining: Mask) -> Beam:
     in_u, in_v = dot(vector(place, 3 * second), at), dot(vector(place, 3 * third), at)
     depth = sign * dot(vector(place, 3 * axis), at)
     farthest = max_norm(apex) + max_norm(vector(place, CENTRE)) + place[APART] + apart
-    slack = ROUNDING + (ROUNDINGS * unit_roundoff(way.x) * farthest + WIDENING * apart) * factor
+    error, apart = ROUNDINGS * unit_roundoff(way.x) * farthest * factor, apart * factor
+    slack, rounding = ROUNDING + error + WIDENING * apart, ROUNDING * (1.0 + apart) + 4.0 * error
     if not slack < LOOSE:
-        in_u, in_v, depth, slack = 0.0, 0.0, 0.0, HUGE
+        in_u, in_v, depth, slack, rounding = 0.0, 0.0, 0.0, HUGE, HUGE
     near, far = (axis * WIDE, HIGH + axis * WIDE) if sign > 0.0 else (HIGH + axis * WIDE, axis * WIDE)
     across = slope_bounds(u, within, second, in_u, depth, slack, near, far, sign)
     down = slope_bounds(v, within, third, in_v, depth, slack, near, far, sign)
-    return Beam(sign, near, far, depth, slack, across, down, within, ahead * factor)
+    central = Vec(1.0, lane(u, ray), lane(v, ray))
+    y, z = u - central.y, v - central.z
+    rays = moments = Vec(in_single(u), in_single(y), in_single(z))
+    if apart > 0.0:
+        beside = (apexes - apex) * factor
+        back = sign * dot(vector(place, 3 * axis), beside)
+        x, up = dot(vector(place, 3 * second), beside) - u * back, dot(vector(place, 3 * third), beside) - v * back
+        moments = Vec(in_single(y * up - z * x), in_single(-up), in_single(x))
+    passing = Vec(0.0, in_u - central.y * depth, in_v - central.z * depth)
+    of_rays = within, ahead * factor, central, passing, rays, moments, rounding, apart == 0.0
+    return Beam(sign, near, far, depth, slack, across, down, *of_rays)
 
 
 def vec_of(v: Vec, ray: int) -> Vec:
@@ -181,10 +212,10 @@ def between_slopes(nodes: Any, node: int, bounds: Bounds) -> Mask:
     return above & below
 
 
-def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, state: Any, data: Any) -> Any:
+def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Number, state: Any, data: Any) -> Any:
     """Continue `fold_over_mesh` over the triangles whose boxes a beam meets, the nearest nodes first."""
     nodes, start = group.trees.nodes, group.trees.starts[group.trees.numbers[row]]
-    memory = beam_memory()
+    excluded, memory = own - start[1], beam_memory()
     memory[0], memory[DEPTHS] = 0.0, -inf
     waiting = 1
     limit = depth_of_reach(beam, reach(state, data))
@@ -193,15 +224,19 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, state: 
         if memory[DEPTHS + waiting] > limit:
             continue
         node = (start[0] + int(memory[waiting])) * NODE
-        inside, near = boxes_in_beam(nodes, node, beam, limit)
-        children = bits(inside)
         if nodes[node + REFERENCES] < 0.0:
+            children = bits(triangles_in_beam(nodes, node, beam, limit, memory))
             while children != 0:
-                triangle = int(-1.0 - nodes[node + REFERENCES + lowest(children)])
+                place = lowest(children)
+                triangle = int(-1.0 - nodes[node + REFERENCES + place])
                 children = children & (children - 1)
-                state = visit(group, row + triangle, start[1] + triangle, beam.within, state, data)
+                met = beam.within & between_planes(memory, place, beam) & (excluded != triangle)
+                if any(met):
+                    state = visit(group, row + triangle, start[1] + triangle, met, state, data)
             limit = depth_of_reach(beam, reach(state, data))
         else:
+            inside, near = boxes_in_beam(nodes, node, beam, limit)
+            children = bits(inside)
             save(near, memory, CHILDREN)
             while children != 0:
                 child = lowest(children)
@@ -209,6 +244,69 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, state: 
                 push(memory, waiting, nodes[node + REFERENCES + child], memory[CHILDREN + child])
                 waiting += 1
     return state
+
+
+# Triangles are seen along one ray of the beam, sheared: so coordinates across are small, and float32 tells exactly
+# enough which rays pass between the planes through the apex and the edges.
+
+
+def triangles_in_beam(nodes: Any, node: int, beam: Beam, limit: float, memory: Any) -> Mask:
+    """Return which triangles of a leaf a beam may meet up to a depth, and write what `between_planes` takes."""
+    a, b = sheared(nodes, node, beam), sheared(nodes, node + 3 * WIDE, beam)
+    c = sheared(nodes, node + 6 * WIDE, beam)
+    slack, far = beam.slack + beam.rounding, maximum(maximum(a.x, b.x), c.x)
+    most = limit - beam.apex + (slack + ROUNDING * abs(beam.apex))
+    inside = (minimum(minimum(a.x, b.x), c.x) <= most) & (far >= -slack)
+    inside = inside & beside_axis(a.y, b.y, c.y, far, beam.across, beam.sign, beam.central.y, slack)
+    inside = inside & beside_axis(a.z, b.z, c.z, far, beam.down, beam.sign, beam.central.z, slack)
+    if any(inside):
+        ab, bc, ca = b - a, c - b, a - c
+        save_edge(b, bc, memory, 0, beam)
+        save_edge(c, ca, memory, 3 * WIDE, beam)
+        save_edge(a, ab, memory, 6 * WIDE, beam)
+        longest = maximum(max_norm(ab), max_norm(ca))
+        save((ROUNDING * (maximum(fabs(a.y), fabs(a.z)) + longest) + beam.rounding) * longest, memory, MARGINS)
+    return inside
+
+
+def save_edge(corner: Vec, edge: Vec, memory: Any, at: int, beam: Beam) -> None:
+    """Write the normals of the planes through the apex and an edge of each triangle, which begins at a corner."""
+    save_vec(cross(corner, edge), memory, PLANES + at)
+    if not beam.is_point:
+        save_vec(edge, memory, EDGES + at)
+
+
+def sheared(nodes: Any, at: int, beam: Beam) -> Vec:
+    """Return corners of the triangles of a leaf: depths behind the apex, and places beside the central ray."""
+    depth = beam.sign * load(nodes, at + min(beam.near, beam.far))
+    x, y = load(nodes, at + beam.across[0]) - beam.passing.y, load(nodes, at + beam.down[0]) - beam.passing.z
+    return Vec(depth - beam.apex, x - beam.central.y * depth, y - beam.central.z * depth)
+
+
+def beside_axis(
+    a: Number, b: Number, c: Number, far: Number, bounds: Bounds, sign: float, slope: float, slack: float
+) -> Mask:
+    """Return which sheared triangles lie at least partly between two planes through the apex."""
+    least, most = sign * bounds[3] - slope, sign * bounds[4] - slope
+    above = maximum(maximum(a, b), c) - least * far >= -slack
+    return above & (minimum(minimum(a, b), c) - most * far <= slack)
+
+
+def between_planes(memory: Any, place: int, beam: Beam) -> Mask:
+    """Return which rays may hit a triangle of a leaf, in front of the apex or behind it."""
+    of_a, of_b = above_plane(memory, place, beam), above_plane(memory, place + 3 * WIDE, beam)
+    of_c, margin = above_plane(memory, place + 6 * WIDE, beam), memory[MARGINS + place]
+    least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
+    return (least >= -margin) | (most <= margin)
+
+
+def above_plane(memory: Any, at: int, beam: Beam) -> Number:
+    """Return on which side of an edge rays pass: the volume between it and their directions."""
+    plane, edge = PLANES + at, EDGES + at
+    above = memory[plane + WIDE] * beam.rays.y + (memory[plane + 2 * WIDE] * beam.rays.z + memory[plane])
+    if not beam.is_point:
+        above = above - dot(Vec(memory[edge], memory[edge + WIDE], memory[edge + 2 * WIDE]), beam.moments)
+    return above
 
 
 def depth_of_reach(beam: Beam, reach: Number) -> float:

@@ -67,6 +67,7 @@ class ShadowRays(NamedTuple):
     origin: Vec
     direction: Vec
     distance: Number  # of the end
+    own: Number  # the index of the shape that a ray starts on and leads away from, which cannot occlude it; or -1
 
 
 def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, glass: bool) -> Mask:
@@ -114,7 +115,7 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
             else:
                 beams = rays_from_light(scene, rays)
                 step = unoccluded_by_shape
-                visible = fold_over_mesh(step, reach_of, group, row, *beams, visible & in_cell, visible, arguments)
+                visible = fold_over_mesh(step, reach_of, group, row, beams, visible & in_cell, visible, arguments)
     return visible
 
 
@@ -124,7 +125,8 @@ def unoccluded_by_shape(group: Group, row: int, index: int, active: Mask, visibl
     scene, rays, _, _, glass = arguments
     shape = read_row(group, row)
     if counts(scene, index, glass) and (
-        is_parallel(scene, rays.light)
+        group.triangles is not None
+        or is_parallel(scene, rays.light)
         or any(may_meet(shape, rays.position, rays.origin, rays.direction, visible & active))
     ):
         limit = where(visible & active, rays.distance, -inf)
@@ -132,13 +134,13 @@ def unoccluded_by_shape(group: Group, row: int, index: int, active: Mask, visibl
     return visible
 
 
-def rays_from_light(scene: SceneArrays, rays: ShadowRays) -> tuple[Vec, Vec]:
+def rays_from_light(scene: SceneArrays, rays: ShadowRays) -> tuple[Vec, Vec, Number]:
     """Return the points of a light source that shadow rays lead to, and the ways from there to where the rays start;
-    for parallel light, where they start and their directions."""
+    for parallel light, where they start and their directions; and the shapes that they start on."""
     if is_parallel(scene, rays.light):
-        return rays.origin, rays.direction
+        return rays.origin, rays.direction, rays.own
     position = splat(rays.position, rays.distance)
-    return position, rays.origin - position
+    return position, rays.origin - position, rays.own
 
 
 def reach_of(visible: Mask, arguments: Arguments) -> Number:

@@ -84,8 +84,8 @@ def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
             if group.trees is None:
                 state = closest_of_shape(group, row, index, nearer, state, arguments)
             else:
-                rays = splat(origin, direction.x), direction, nearer
-                state = fold_over_mesh(closest_of_shape, search_limit, group, row, *rays, state, arguments)
+                rays = splat(origin, direction.x), direction, splat(-1.0, direction.x)  # which start on no shape
+                state = fold_over_mesh(closest_of_shape, search_limit, group, row, rays, nearer, state, arguments)
     return state
 
 
@@ -93,7 +93,7 @@ def closest_of_shape(group: Group, row: int, index: int, active: Mask, state: Hi
     """Continue `closest_hit` by one shape, or by a triangle of a mesh, which only `active` rays may meet."""
     scene, _, origin, direction = arguments
     shape = read_row(group, row)
-    if any(may_meet(shape, origin, None, direction, active)):
+    if group.triangles is not None or any(may_meet(shape, origin, None, direction, active)):
         hit, t = intersect(shape, origin, direction)
         extent = scene.colours_and_extents[index, 3]
         if group.triangles is not None:

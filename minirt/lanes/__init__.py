@@ -192,6 +192,11 @@ def load(values: Any, start: int) -> Number:
     return values[start : start + width(values)].copy()
 
 
+def in_single(x: Number) -> Number:
+    """Return the numbers of rays, rounded to float32."""
+    return x.astype(np.float32)
+
+
 def gather(values: Any, start: int, indices: Number) -> Number:
     """Load for each ray the number at its own whole-number index, below 2^31, of an array from index `start` on.
 

@@ -48,8 +48,9 @@ def packet(seed: int) -> Packet:
     return Packet(mesh, eye, (aims / np.linalg.norm(aims, axis=1)[:, None]).T)
 
 
-def visited(rays: Packet, number: type = np.float64) -> np.ndarray:
-    """Return which triangles beams around the rays of a packet visit for each ray: (lanes, triangles)."""
+def visited(rays: Packet, number: type = np.float64, own: int = -1) -> np.ndarray:
+    """Return which triangles beams around the rays of a packet, which start on one of their `own`, visit for each ray:
+    (lanes, triangles)."""
     mesh, eye, directions = rays
     arrays = ShapeArrays()
     arrays.update((mesh, mesh.replace(scale=2 * mesh.scale)))
@@ -61,15 +62,18 @@ def visited(rays: Packet, number: type = np.float64) -> np.ndarray:
     way = Vec(*np.tile(directions, lanes // 16).astype(number))
     found = np.zeros((lanes, mesh.parts), bool)
 
-    def visit(group: Any, row: int, index: int, within: Any, state: int, data: Any) -> int:
+    def visit(group: Any, row: int, index: int, within: Any, state: None, data: Any) -> None:
         assert row == index < mesh.parts
         found[within, index] = True
-        return state + 1
+
+    def reach(state: None, data: Any) -> np.ndarray:
+        return np.full(lanes, np.inf)
 
     apexes = Vec(*(np.full(lanes, part, number) for part in eye))
     group = Group(arrays.rows[0], None, None, 0, trees)
     active = np.ones(lanes, bool)
-    beams.fold_over_mesh(visit, lambda state, data: np.full(lanes, np.inf), group, 0, apexes, way, active, 0, None)
+    starts = apexes, way, np.full(lanes, own, number)
+    beams.fold_over_mesh(visit, reach, group, 0, starts, active, None, None)
     return found
 
 
@@ -99,11 +103,12 @@ def test_a_beam_that_is_too_narrow_is_found_out(monkeypatch: pytest.MonkeyPatch)
 def test_a_narrow_beam_visits_few_triangles_and_none_behind_the_eye() -> None:
     mesh = Mesh(MeshFile("ball.obj", ball(3)), (1.0, 2.0, 3.0), 2.0, GREY)
     directions = np.array([[0.0], [0.0], [1.0]]) + 1e-4 * np.random.default_rng(1).normal(size=(3, 16))
-    outside, inside, beyond = (
-        visited(Packet(mesh, np.array([1.01, 2.01, z]), directions))[0].sum() for z in (-5.0, 3.0, 9.0)
-    )
-    assert 0 < inside < outside < 0.05 * mesh.parts
+    packets = [Packet(mesh, np.array([1.01, 2.01, z]), directions) for z in (-5.0, 3.0, 9.0)]
+    outside, inside, beyond = (visited(rays)[0].sum() for rays in packets)
+    assert 0 < inside < outside <= 4
     assert beyond == 0
+    own = int(np.flatnonzero(visited(packets[1])[0])[0])
+    assert visited(packets[1], own=own)[0].sum() == inside - 1, "a ray met the triangle that it starts on"
 
 
 def test_moving_turning_and_scaling_a_mesh_keeps_its_tree() -> None:

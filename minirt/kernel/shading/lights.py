@@ -162,7 +162,9 @@ def sampled_position(
     return position, to_light, distance
 
 
-def aim(scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number) -> tuple[ShadowRays, Number]:
+def aim(
+    scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number, owner: Number, normal: Vec
+) -> tuple[ShadowRays, Number]:
     """Return the rays from some points to a light source, and the relative strength of the light at the points.
 
     The points are known up to `rounding`. Rays end a little before the light source: no surface on which it lies
@@ -174,7 +176,8 @@ def aim(scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Numbe
     if scene.soft is not None:
         position, to_light, distance = sampled_position(scene.soft, memory, light, position, to_centre, distance)
     distance = distance - 4.0 * (rounding + ROUNDING * unit_roundoff(distance) * max_norm(position))
-    return ShadowRays(light, position, to_centre, point, to_light, distance), strength
+    own = where(dot(normal, to_light) > 0.0, owner, -1.0)
+    return ShadowRays(light, position, to_centre, point, to_light, distance, own), strength
 
 
 def is_spread(scene: SceneArrays, light: int) -> bool:

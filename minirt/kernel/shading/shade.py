@@ -60,7 +60,7 @@ def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface:
         if scene.light_grid is not None and has_rows(scene.light_grid.grids):
             i = int(scene.light_grid.sources[number])
         intensity = vector(scene.lights[i], 3)
-        rays, strength = aim(scene, memory, i, start, rounding)
+        rays, strength = aim(scene, memory, i, start, rounding, found[1], normal)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):
             strength = strength * bump_fading(surface.base_normal, shading_normal, to_light)
@@ -71,7 +71,8 @@ def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface:
                 turned_away = lit & (dot(normal, to_light) <= 0.0)
                 if rarely(turned_away):
                     smooth = smooth_points(scene, found[1], surface.point, normal, turned_away)
-                    rays, _ = aim(scene, memory, i, where(turned_away, smooth + rounding * normal, start), rounding)
+                    start_of = where(turned_away, smooth + rounding * normal, start)
+                    rays, _ = aim(scene, memory, i, start_of, rounding, found[1], normal)
             share, light = zero, intensity
             if scene.transparent is None:
                 lit = trace_shadow_rays(scene, memory, rays, lit, False)

@@ -188,6 +188,11 @@ def _unit_roundoff(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> 
     return context.get_constant(sig.return_type, 2.0 ** {64: -53, 32: -24}[sig.return_type.bitwidth])
 
 
+@register(lanes.in_single, lambda x: Lanes(types.float32, x.count) if isinstance(x, Lanes) else None)
+def _in_single(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return args[0] if sig.args[0] == sig.return_type else builder.fptrunc(args[0], sig.return_type.llvm)
+
+
 # Vecs.
 
 

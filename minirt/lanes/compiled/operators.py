@@ -83,7 +83,8 @@ def register_comparison(function: Callable[..., Any], symbol: str) -> None:
     @register(function, mask_type, PAIRS)
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         compare = builder.fcmp_unordered if symbol == "!=" else builder.fcmp_ordered
-        numbers = (widen(context, builder, *each, sig.return_type.lanes) for each in zip(args, sig.args, strict=True))
+        target = number_type(*sig.args)
+        numbers = (widen(context, builder, *each, target) for each in zip(args, sig.args, strict=True))
         return compare(symbol, *numbers)
 
 

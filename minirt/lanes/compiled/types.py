@@ -23,11 +23,11 @@ from minirt.lanes import BYTES
 
 
 class Lanes(types.Type):
-    """A number for each ray of a packet, all float64 or all float32."""
+    """A number for each ray of a packet, all float64 or all float32; or half of the latter."""
 
-    def __init__(self, number: types.Type) -> None:
+    def __init__(self, number: types.Type, count: int | None = None) -> None:
         self.number = number
-        self.count = 8 * BYTES // number.bitwidth
+        self.count = count or 8 * BYTES // number.bitwidth
         self.llvm = ir.VectorType({32: ir.FloatType(), 64: ir.DoubleType()}[number.bitwidth], self.count)
         super().__init__(f"f{number.bitwidth}x{self.count}")
 
@@ -36,7 +36,7 @@ class Mask(types.Type):
     """A truth value for each lane."""
 
     def __init__(self, lanes: Lanes) -> None:
-        self.lanes = lanes
+        self.lanes = Lanes(types.float64) if lanes.count == BYTES // 8 else lanes
         self.llvm = ir.VectorType(ir.IntType(1), lanes.count)
         super().__init__(f"i1x{lanes.count}")
 

@@ -192,11 +192,16 @@ def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.nda
         nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE, run=run)
         names = nodes[:, 6]
         names[names < 0] = len(nodes) - 1 - names[names < 0]
-        boxes = boxes[:, : INDEX + 1].astype(np.float32)
         places, spare = lanes_of(leaves, beams.WIDE)
-        leaf_boxes, leaf_names = boxes_of(boxes[:, :INDEX], places, spare, 0.0), -1 - boxes[places, INDEX]
-        leaf_nodes = np.concatenate([leaf_boxes, leaf_names[:, None]], axis=1)
-        trees[triangles] = np.concatenate([nodes, leaf_nodes], dtype=np.float32).ravel()
+        inside = boxes[places, INDEX].astype(np.int64)
+        del boxes
+        packed = np.zeros((len(nodes) + len(leaves), beams.NODE // beams.WIDE, beams.WIDE), np.float32)
+        packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], names
+        corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[inside]]
+        corners[spare] = beams.HUGE
+        packed[len(nodes) :, :9] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
+        packed[len(nodes) :, -1] = -1 - inside
+        trees[triangles] = aligned_copy(packed)
     return trees[triangles]
 
 
