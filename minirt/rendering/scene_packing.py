@@ -188,6 +188,7 @@ class Packing:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
         shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
         has_meshes = Mesh in shapes.group_numbers  # from whose facets rays may be moved out of reach
+        has_cones = visibility.has_cones(len(sources), len(shapes.slots))
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for light in sources:
@@ -198,12 +199,13 @@ class Packing:
             else:
                 position, size = lights.light_position(light), lights.radius_of(light)
                 reach = (not has_meshes and light.fade) or np.inf
-                keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach))
+                keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach, has_cones))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
                 at = position, cells, skipped, size, reach, alike, self.run, self.spare.pop(len(binned), None)
                 binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at))
             if len(binned) > FEW:  # scratch memory, of twice the size of the lists
-                self.cache[keys[-1]] = binned[-1] = binned[-1]._replace(bins=None)
+                cones = binned[-1].cones if has_cones else visibility.NO_CONES
+                self.cache[keys[-1]] = binned[-1] = binned[-1]._replace(bins=None, cones=cones)
         self.spare = {}
         return binned, tuple(keys)
 
@@ -243,6 +245,8 @@ def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tup
     elif binned:
         offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])], dtype=np.int32)
         starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
-        cones = np.stack([each.cones for each in binned])
+        cones = np.zeros((len(binned), len(shapes.slots), 5))
+        if visibility.has_cones(*cones.shape[:2]):
+            np.stack([each.cones for each in binned], out=cones)
         members = np.concatenate([each.members for each in binned])
     return starts, {"light_shapes": members, "light_cones": cones}

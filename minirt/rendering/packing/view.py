@@ -29,7 +29,7 @@ from minirt.rendering.packing.camera import (
     slopes_at_edges,
 )
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import STILL, BinnedShapes, Bins, Run, screen_grid, square_edge
+from minirt.rendering.packing.visibility import STILL, BinnedShapes, Bins, Run, has_cones, screen_grid, square_edge
 from minirt.scene import Camera
 
 SPARE = 0.25  # of the lists of a camera that moves
@@ -148,9 +148,10 @@ def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> S
     """Return a scene in float32, the eye at the origin, most of which a `rounding` writes; `extents` are those of
     `minirt.kernel.binning.Projection`, (n, 4)."""
     extents[:, :3] = arrays.colours_and_extents[:, :3]
-    light_cones = np.empty(arrays.light_cones.shape, np.float32)
-    with np.errstate(over="ignore"):
-        np.subtract(arrays.light_cones, (0.0, 0.0, 0.0, MARGIN, 0.0), light_cones, casting="same_kind")
+    light_cones = np.zeros(arrays.light_cones.shape, np.float32)
+    if has_cones(*light_cones.shape[:2]):
+        with np.errstate(over="ignore"):
+            np.subtract(arrays.light_cones, (0.0, 0.0, 0.0, MARGIN, 0.0), light_cones, casting="same_kind")
     if arrays.patterns:
         columns = [OTHER] * COLUMNS
         columns[ORIGIN : ORIGIN + 3] = POINT

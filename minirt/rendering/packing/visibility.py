@@ -36,12 +36,13 @@ SQUARES_BY_SHAPES = ((50_000, TILE), (500_000, TILE // 2), (np.inf, TILE // 4))
 RECTANGLE = 32  # bytes of a rectangle of cells, and of its places in a sorted list
 COARSEST = 16  # cells along an edge of a light buffer that memory limits
 QUICKLY_BUILT = 2**28  # bytes of lists that are built within seconds
+MOST_CONES = QUICKLY_BUILT // 80  # of all lights: 40 bytes each, and a copy
 MOST_MEMBERS = 2**24  # of all cells that have every shape
 LITTLE = 1 / 64  # of lists to spare, in which shapes may move
 PARALLEL = 4096  # shapes from which on several threads project them
 
 
-NO_EXTENTS = np.zeros((0, 4), np.float32)
+NO_EXTENTS, NO_CONES = np.zeros((0, 4), np.float32), np.zeros((0, 5))
 NO_TABLES = np.zeros((0, 5), np.int64), np.zeros(0, np.int64), np.zeros(5)
 STILL = Followers(np.zeros(14), np.zeros((2, 0)), np.zeros(0), *NO_TABLES)  # arrays of which none follows
 # Fields of `Projection`, and of `ShapeArrays`.
@@ -56,6 +57,12 @@ class BinnedShapes(NamedTuple):
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
     bins: Bins | None = None  # which binned them, if any
+
+
+def has_cones(lights: int, shapes: int) -> bool:
+    """Whether the bounding cones as seen from lights are made; else all are zeros, whose memory the system does not
+    allocate, and which hold all directions: cosines of angles from no axis are 0."""
+    return lights == 1 or lights * shapes <= MOST_CONES
 
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:

@@ -287,6 +287,25 @@ def light_of(scene: Scene) -> tuple[np.ndarray, int]:
     return light, int(renderer.packing.last[2].light_buffer_cells)
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_too_many_cones_of_lights_take_no_memory_and_give_the_same_picture(
+    precision: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lit = parse(SCENE + "\n".join([*BALLS, *(f"l {x},6,-6 0.1 255,255,255" for x in range(6))]), "x.rt").scene
+    lights, found = [], []
+    for most in (visibility.MOST_CONES, 1):
+        monkeypatch.setattr(visibility, "MOST_CONES", most)
+        renderer, light = Renderer(threads=1, precision=precision), np.zeros((48, 64, 3))
+        assert renderer.render(lit, np.empty((48, 64, 4), np.uint8), 1, light)
+        assert renderer.packing.last is not None
+        lights.append(light)
+        found.append(renderer.packing.last[2].light_cones.any())
+        kept = [each for each in renderer.packing.cache.values() if isinstance(each, visibility.BinnedShapes)]
+        assert sum(len(each.cones) > 0 for each in kept) == (7 if most > 1 else 4)
+    assert np.array_equal(*lights)
+    assert found == [True, False]
+
+
 def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     expected, cells = light_of(scene())
     monkeypatch.setattr(system, "SMALL", 0)
