@@ -194,7 +194,7 @@ class Packing:
         for light in sources:
             skipped = lights.never_occludes(shapes, eye, light, radius)
             if not light.position or (light.size and cells > 1):  # by the BVH
-                keys.append(("spread", cells, skipped.tobytes()))
+                keys.append(("spread", cells, skipped.tobytes(), has_cones))
                 binned.append(cached(keys[-1], visibility.seen_by_parallel_light, shapes, cells, skipped))
             else:
                 position, size = lights.light_position(light), lights.radius_of(light)

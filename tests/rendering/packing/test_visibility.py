@@ -306,6 +306,14 @@ def test_too_many_cones_of_lights_take_no_memory_and_give_the_same_picture(
     assert found == [True, False]
 
 
+def test_lights_that_are_deleted_bring_the_cones_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(visibility, "MOST_CONES", 6 * (len(BALLS) + 1))
+    packing, lamps = Packing(), [f"dl 0.{y},-1,0 0.1 255,255,255" for y in range(1, 7)]
+    lit = parse(SCENE + "\n".join([*BALLS, *lamps]), "x.rt").scene
+    assert not packing.pack(lit, 64, 48).light_cones.any()
+    assert packing.pack(lit.remove(lit.lights[1]), 64, 48).light_cones.any()
+
+
 def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     expected, cells = light_of(scene())
     monkeypatch.setattr(system, "SMALL", 0)
