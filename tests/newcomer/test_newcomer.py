@@ -99,11 +99,13 @@ assert "| `ga x,y,z side R,G,B` | gate |" in format_table()
 assert "`sheen:share`" in format_table()
 
 TEXT = "A 0.1 255,255,255\\nC 0,0,-9 0,0,1 40\\nL 0,0,-9 0.6 255,255,255\\nga 0,0,0 4 200,90,50\\n"
-plain, soft = (parse(text).scene for text in (TEXT, TEXT.replace("90,50", "90,50 sheen:0.3")))
+TEXTS = TEXT, TEXT.replace("90,50", "90,50 sheen:0.3")
+plain, soft = (parse(text).scene for text in TEXTS)
 assert soft.gates[0].sheen == minirt.Sheen(0.3)
 assert dump(soft).endswith("ga 0,0,0 4 200,90,50 sheen:0.3\\n")
 assert features(soft) - features(plain) == {"specular"}
-light = [minirt.render(scene, 9, 9).linear[4, 4] for scene in (plain, soft)]
+BEHIND = "ga 0,0,-99 1 9,9,9 sheen:0.3\\n"  # the eye: with it both scenes have one kernel
+light = [minirt.render(parse(text + BEHIND).scene, 9, 9).linear[4, 4] for text in TEXTS]
 assert np.allclose(light[0], 0.7 * np.array([200, 90, 50]) / 255)
 assert np.allclose(light[1] - light[0], 0.3 * 0.6)
 hits = minirt.trace(plain, [[0.3, 0.1, -9]], [[0, 0.1, 1]])
