@@ -233,7 +233,7 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Nu
                 met = beam.within & between_planes(memory, place, beam) & (excluded != triangle)
                 if any(met):
                     state = visit(group, row + triangle, start[1] + triangle, met, state, data)
-            limit = depth_of_reach(beam, reach(state, data))
+                    limit = depth_of_reach(beam, reach(state, data))
         else:
             inside, near = boxes_in_beam(nodes, node, beam, limit)
             children = bits(inside)
