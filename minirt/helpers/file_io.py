@@ -197,19 +197,23 @@ def read_once(read: Callable[[Path], Content]) -> Callable[[str | os.PathLike[st
         status(path, LARGEST_ASSET)
         key = os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
         with lock:
-            if key not in entries or entries[key][0] != stamps(path, entries[key][1]):
+            if key not in entries or entries[key][0] != stamps(path, *getattr(entries[key][1], "libraries", ())):
                 entries.pop(key, None)
                 content = read(Path(path))
-                entries[key] = stamps(path, content), content
+                entries[key] = stamps(path, *getattr(content, "libraries", ())), content
             return entries[key][1]
 
     return cached
 
 
-def stamps(path: str | os.PathLike[str], content: object) -> list[tuple[int, ...]]:
-    """Return numbers that differ when a file has changed, or one of the `libraries` of its content."""
-    found = [Path(each).stat() for each in (path, *getattr(content, "libraries", ())) if Path(each).exists()]
-    return [(each.st_dev, each.st_ino, each.st_size, each.st_mtime_ns) for each in found]
+def stamps(*paths: str | os.PathLike[str]) -> list[tuple[int, ...]]:
+    """Return numbers that differ when one of some files has changed; a file that is not there has none."""
+    found: list[tuple[int, ...]] = []
+    for path in paths:
+        with suppress(OSError, ValueError):
+            each = Path(path).stat()
+            found.append((each.st_dev, each.st_ino, each.st_size, each.st_mtime_ns))
+    return found
 
 
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:

@@ -13,15 +13,13 @@ from minirt.errors import FieldError, FileError, MiniRTError, SceneError
 from minirt.fields import MeshFile
 from minirt.fields.triples import file_name
 from minirt.helpers import file_io
-from minirt.helpers.file_io import reason
+from minirt.helpers.file_io import reason, stamps
 from minirt.materials.pictures import picture
 from minirt.meshes import BY_TRIMESH, load_mesh
-from minirt.scene import Camera, Scene, dump
+from minirt.scene import Camera, Item, Scene, dump
 from minirt.scene.files import SUFFIX, read
-from minirt.scene.pages import Item
 
 INTERVAL = 0.25  # seconds between two checks of the file
-Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
 PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
 MESH_SUFFIXES = {".obj", *BY_TRIMESH}
 
@@ -114,25 +112,25 @@ class WatchedFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.known = signature(path)  # as it was last read or written here
+        self.known = stamps(path)  # as it was last read or written here
         self._reported = self._seen = self.known
         self.news = threading.Event()  # the file was changed, or deleted
         self._closed = threading.Event()
 
-    def accept(self, seen: Signature) -> None:
-        """Record the signature of the file as it was just read or written here."""
+    def accept(self, seen: list[tuple[int, ...]]) -> None:
+        """Record the stamps of the file as it was just read or written here."""
         self.known = self._reported = seen
 
     @property
     def missing(self) -> bool:
         """Whether the file was there, and is not any more."""
-        return self.known is not None and signature(self.path) is None
+        return bool(self.known) and not stamps(self.path)
 
     @property
     def changed(self) -> bool:
         """Whether another program has written the file since."""
-        now = signature(self.path)
-        return now is not None and now != self.known
+        now = stamps(self.path)
+        return bool(now) and now != self.known
 
     def watch(self, notify: Callable[[], object]) -> None:
         """Start a thread that sets `news`, and calls `notify`, once two checks found the same change."""
@@ -150,20 +148,11 @@ class WatchedFile:
 
     def check(self) -> bool:
         """Whether a change is to be reported now: the last two checks found the same, which was not reported."""
-        before, self._seen = self._seen, signature(self.path)
+        before, self._seen = self._seen, stamps(self.path)
         if self._seen == before and self._seen != self._reported:
             self._reported = self._seen
             return True
         return False
-
-
-def signature(path: Path) -> Signature:
-    """Return the numbers that differ when a file has changed."""
-    try:
-        status = path.stat()
-    except (OSError, ValueError):
-        return None
-    return status.st_mtime_ns, status.st_size, status.st_ino
 
 
 def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.0) -> Iterator[str | MeshFile]:
@@ -185,9 +174,3 @@ def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.
             else:
                 picture(scene.beside(file_name(name, ",")))
                 yield name
-
-
-def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
-    """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
-    is_mesh = isinstance(file, MeshFile)
-    return next(usable_files(scene, is_mesh, file.name if isinstance(file, MeshFile) else file, steps), file)

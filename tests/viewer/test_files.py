@@ -8,9 +8,10 @@ import threading
 import numpy as np
 import pytest
 
+from minirt.helpers.file_io import stamps
 from minirt.scene import load
 from minirt.viewer.app.replay import play
-from minirt.viewer.files import WatchedFile, contents_differ, save_recovery, signature
+from minirt.viewer.files import WatchedFile, contents_differ, save_recovery
 from tests.viewer.fake import TEXT, FakeRenderer, colour_of, played, scene, write
 from tests.waiting import until
 
@@ -137,7 +138,7 @@ def test_a_change_is_reported_once_as_soon_as_the_file_is_stable(path):
 def test_writes_of_the_viewer_itself_are_not_reported(path):
     watched = WatchedFile(path)
     path.write_text(OTHER)
-    watched.accept(signature(path))
+    watched.accept(stamps(path))
     assert reports(watched, 4) == []
     assert not watched.changed
 

@@ -101,7 +101,7 @@ def save_scene(session: Session) -> None:
     file, is_changed = session.path, session.file.changed
     copy = files.create_numbered(file, SUFFIX, file_io.read(file, MAX_BYTES)) if is_changed else None
     session.state.scene.save(session.path)
-    session.file.accept(files.signature(session.path))
+    session.file.accept(file_io.stamps(session.path))
     session.saved, session.lenient = session.state.scene, False
     session.screen.banner = ""
     session.found_changes = None
@@ -131,7 +131,7 @@ def follow_change(session: Session) -> None:
 
 def merge_file(session: Session) -> bool:
     """Take the changes of another program beside those of the session; False if both changed a line. SceneError."""
-    seen, mine, saved = files.signature(session.path), session.state.scene, session.saved
+    seen, mine, saved = file_io.stamps(session.path), session.state.scene, session.saved
     scene = load(session.path, session.lenient, mine.camera.left_handed).scene
     for camera, before in zip(mine.cameras, saved.cameras, strict=False):
         mine = mine.replace(camera, before) if looks(camera, before) else mine  # looking around changes no line
@@ -148,7 +148,7 @@ def merge_file(session: Session) -> bool:
 
 def read_file(session: Session, keep_camera: bool = False) -> None:
     """Show the scene in the file. `keep_camera`: keep the current camera unless the file changed it. SceneError."""
-    seen = files.signature(session.path)
+    seen = file_io.stamps(session.path)
     scene = load(session.path, session.lenient, session.state.scene.camera.left_handed).scene
     session.file.accept(seen)
     session.show_file(state_after_reading(session.state, scene, session.saved if keep_camera else None), scene)

@@ -7,7 +7,7 @@ import sys
 import zlib
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Literal, NoReturn, TypedDict
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 
@@ -70,9 +70,12 @@ def run(
         status, stopped = run_event_loop(session)
     finally:
         end_recovery(session)
-    if not stopped:
-        exit_at_once(status)
-    return status
+    if stopped:
+        return status
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, AttributeError):  # full, or closed
+            stream.flush()
+    os._exit(status)  # without waiting for the threads
 
 
 def open_view(
@@ -164,11 +167,3 @@ def lose_window(session: Session) -> None:
     """Write unsaved changes because the display has gone; errors end nothing."""
     with suppress(Exception):
         end_recovery(session)
-
-
-def exit_at_once(status: int) -> NoReturn:
-    """End the process without waiting for its threads."""
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, AttributeError):  # full, or closed
-            stream.flush()
-    os._exit(status)

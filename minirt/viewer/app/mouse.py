@@ -82,17 +82,14 @@ class Mouse:
         if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
-                session.mlx.mlx_set_cursor(session.window, self.cursor(pressed))
+                looks_around = pressed.action == "move by hand" and pressed.moves_camera
+                cursor = Cursor.TURN if looks_around else CURSORS.get(pressed.action, Cursor.TURN)
+                session.mlx.mlx_set_cursor(session.window, cursor)
                 session.state = session.state.end_merging()
             session.say("")
             pressed = pressed._replace(snaps=Modifier.ACCEL in session.modifiers)
             drag = pull if pressed.handle else DRAGS[pressed.action]
             session.show(drag(session.state, pressed, x, y))
-
-    def cursor(self, pressed: DragStart) -> Cursor:
-        """Return the shape of the pointer during a drag; a drag on nothing turns the camera."""
-        looks_around = pressed.action == "move by hand" and pressed.moves_camera
-        return Cursor.TURN if looks_around else CURSORS.get(pressed.action, Cursor.TURN)
 
     def on_release(self, button: int) -> None:
         """A button goes up: a drag ends, or a click is complete."""

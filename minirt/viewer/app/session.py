@@ -23,7 +23,7 @@ from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
 from minirt.viewer.editing.projection import Projection, projection_of
-from minirt.viewer.editing.state import State, initial_state, without_hidden
+from minirt.viewer.editing.state import Hidden, State, initial_state
 from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
@@ -204,7 +204,9 @@ class Session:
             return scene
         of, without, shown = self._without_hidden
         if of is not scene or without != hidden:
-            shown = without_hidden(scene, hidden)
+            shown = scene
+            for index in hidden:
+                shown = shown.edit(index, Hidden())
             self._without_hidden = scene, hidden, shown
         return shown
 

@@ -141,12 +141,6 @@ class Hidden(Element):
     code, title, plural = "", "hidden element", "hidden elements"
 
 
-def without_hidden(scene: Scene, hidden: frozenset[int]) -> Scene:
-    for index in hidden:
-        scene = scene.edit(index, Hidden())
-    return scene
-
-
 def index_of(scene: Scene, element: Element) -> int:
     """Index in `scene.elements` of this very object."""
     return indexOf(map(id, scene.elements), id(element))

@@ -14,8 +14,7 @@ from slimgui import imgui
 
 from minirt.element import Element
 from minirt.errors import MiniRTError
-from minirt.fields import Choice, Colour, Field, Flag, MeshField, MeshFile, Paint, Picture, Three
-from minirt.fields.scalars import spelled
+from minirt.fields import Choice, Colour, Field, Flag, MeshField, MeshFile, Paint, Picture, Three, spelled
 from minirt.viewer.app.session import FINE_STEP, Session
 from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State

@@ -51,7 +51,7 @@ def without_time_limit(monkeypatch) -> None:
         raise AssertionError("the painter did not end")
 
     monkeypatch.setattr(desktop, "STOP_TIMEOUT", HANG_LIMIT)
-    monkeypatch.setattr(desktop, "exit_at_once", fail)
+    monkeypatch.setattr(desktop.os, "_exit", fail)
 
 
 def script(screen: tuple[int, int] = (2560, 1600)) -> Memory:
