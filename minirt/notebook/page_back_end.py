@@ -163,12 +163,8 @@ def deliver(window: Window, message: Message, now: float) -> None:
 
 
 KEYPAD: Final = 3  # the location of keys on the keypad
-MODIFIERS: Final = {  # Command is the modifier of shortcuts, wherever the kernel runs
-    "shift": Modifier.SHIFT,
-    "ctrl": Modifier.CTRL,
-    "alt": Modifier.ALT,
-    "command": Modifier.ACCEL,
-}
+# Command is the modifier of shortcuts, wherever the kernel runs.
+MODIFIERS: Final = {"shift": Modifier.SHIFT, "ctrl": Modifier.CTRL, "alt": Modifier.ALT, "command": Modifier.ACCEL}
 
 
 def code_of(event: Message) -> int | None:

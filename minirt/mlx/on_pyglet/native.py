@@ -31,12 +31,8 @@ MODIFIERS = {
     pyglet_key.MOD_OPTION: Modifier.ALT,
     pyglet_key.MOD_COMMAND: Modifier.COMMAND,
 }
-SYMBOLS = {
-    pyglet_key.LOPTION: Key.ALT_L,
-    pyglet_key.ROPTION: Key.ALT_R,
-    # X11 has another symbol for Shift+Tab, which pyglet does not know: pyglet reports the scan code instead.
-    pyglet_key.user_key(23): Key.TAB,
-}
+# X11 has another symbol for Shift+Tab, which pyglet does not know: pyglet reports the scan code instead, 23.
+SYMBOLS = {pyglet_key.LOPTION: Key.ALT_L, pyglet_key.ROPTION: Key.ALT_R, pyglet_key.user_key(23): Key.TAB}
 
 
 class NativeWindow(Window):

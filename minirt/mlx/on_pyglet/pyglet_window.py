@@ -13,7 +13,7 @@ import pyglet.window
 from pyglet import gl
 from pyglet.graphics.shader import Shader, ShaderProgram
 
-from minirt.mlx.canvas import Box, Canvas
+from minirt.mlx.canvas import Canvas
 from minirt.mlx.events import Cursor
 from minirt.mlx.on_pyglet.x11 import is_x11
 
@@ -80,8 +80,15 @@ class CanvasTexture:
         if (canvas.width, canvas.height) != self._size:
             self._allocate(canvas.width, canvas.height)
             changes = 0, 0, canvas.width, canvas.height
-        if changes is not None:
-            _upload(canvas, changes)
+        if changes is not None:  # upload the box straight from the canvas's memory, without a copy
+            left, top, right, bottom = changes
+            address = canvas.pixels[top:bottom, left:right].ctypes.data
+            gl.glPixelStorei(gl.GL_UNPACK_ROW_LENGTH, canvas.width)
+            gl.glTexSubImage2D(
+                gl.GL_TEXTURE_2D, 0, left, top, right - left, bottom - top,
+                gl.GL_BGRA, gl.GL_UNSIGNED_BYTE, ctypes.c_void_p(address),
+            )  # fmt: skip
+            gl.glPixelStorei(gl.GL_UNPACK_ROW_LENGTH, 0)
         gl.glDisable(gl.GL_SCISSOR_TEST)
         gl.glBlitFramebuffer(
             0, 0, canvas.width, canvas.height, 0, height, width, 0, gl.GL_COLOR_BUFFER_BIT, gl.GL_NEAREST
@@ -94,18 +101,6 @@ class CanvasTexture:
             gl.glTexParameteri(gl.GL_TEXTURE_2D, setting, gl.GL_NEAREST)
         gl.glFramebufferTexture2D(gl.GL_READ_FRAMEBUFFER, gl.GL_COLOR_ATTACHMENT0, gl.GL_TEXTURE_2D, self._texture, 0)
         self._size = width, height
-
-
-def _upload(canvas: Canvas, box: Box) -> None:
-    """Upload a box of the canvas straight from its memory, without a copy."""
-    left, top, right, bottom = box
-    address = canvas.pixels[top:bottom, left:right].ctypes.data
-    gl.glPixelStorei(gl.GL_UNPACK_ROW_LENGTH, canvas.width)
-    gl.glTexSubImage2D(
-        gl.GL_TEXTURE_2D, 0, left, top, right - left, bottom - top,
-        gl.GL_BGRA, gl.GL_UNSIGNED_BYTE, ctypes.c_void_p(address),
-    )  # fmt: skip
-    gl.glPixelStorei(gl.GL_UNPACK_ROW_LENGTH, 0)
 
 
 # Triangles of an overlay.
@@ -130,11 +125,8 @@ in vec2 texture_place;
 in vec4 tint;
 out vec4 pixel;
 void main() { pixel = tint * texture(image, texture_place); }"""
-ATTRIBUTES = (  # numbers, type, normalised, and offset in bytes
-    (2, gl.GL_FLOAT, False, 0),
-    (2, gl.GL_FLOAT, False, 8),
-    (4, gl.GL_UNSIGNED_BYTE, True, 16),
-)
+# Numbers, type, normalised, and offset in bytes of each attribute of a vertex.
+ATTRIBUTES = (2, gl.GL_FLOAT, False, 0), (2, gl.GL_FLOAT, False, 8), (4, gl.GL_UNSIGNED_BYTE, True, 16)
 
 
 class Triangles:
@@ -180,19 +172,15 @@ class Triangles:
         gl.glBlendFunc(gl.GL_SRC_ALPHA, gl.GL_ONE_MINUS_SRC_ALPHA)
         gl.glEnable(gl.GL_SCISSOR_TEST)
         gl.glActiveTexture(gl.GL_TEXTURE0)
-        for texture, box, count, first_index, first_vertex in runs:
-            self._clip(*box)
+        across, down = (pixels / size for pixels, size in zip(self.pixels, self.size, strict=True))
+        for texture, (left, top, right, bottom), count, first_index, first_vertex in runs:
+            x, y = round(left * across), self.pixels[1] - round(bottom * down)  # OpenGL counts from the bottom
+            gl.glScissor(x, y, max(round(right * across) - x, 0), max(round((bottom - top) * down), 0))
             gl.glBindTexture(gl.GL_TEXTURE_2D, texture)
             start = ctypes.c_void_p(first_index * INDEX)
             gl.glDrawElementsBaseVertex(gl.GL_TRIANGLES, count, gl.GL_UNSIGNED_SHORT, start, first_vertex)
         gl.glDisable(gl.GL_SCISSOR_TEST)
         gl.glDisable(gl.GL_BLEND)
-
-    def _clip(self, left: float, top: float, right: float, bottom: float) -> None:
-        """Draw nothing outside of a rectangle, which OpenGL counts from the bottom, in pixels of the frame buffer."""
-        across, down = (pixels / size for pixels, size in zip(self.pixels, self.size, strict=True))
-        x, y = round(left * across), self.pixels[1] - round(bottom * down)
-        gl.glScissor(x, y, max(round(right * across) - x, 0), max(round((bottom - top) * down), 0))
 
 
 def fill(target: int, buffer: Any, address: int, size: int) -> None:

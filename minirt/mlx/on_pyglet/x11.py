@@ -155,20 +155,19 @@ FILES = "text/uri-list"
 
 def fix_drag_enter(window: Any) -> None:
     """Make a pyglet window read the data types in the message. On other platforms this does nothing."""
-    original = getattr(window, "_event_drag_enter", None)
-    if original is not None:
-        window._event_drag_enter = partial(handle_drag_enter, window, original)
+    original: Any = getattr(window, "_event_drag_enter", None)
 
+    def note(event: Any) -> None:
+        source, flags, *types = event.xclient.data.l
+        if flags & 1:  # there are more than three types, in a list that pyglet reads correctly
+            original(event)
+            return
+        window._xdnd_source, window._xdnd_version = source, flags >> 24
+        files = window._xdnd_atoms[FILES]
+        window._xdnd_format = files if files in types else None
 
-def handle_drag_enter(window: Any, original: Any, event: Any) -> None:
-    """Note whether the object that is dragged into the window is a list of files."""
-    source, flags, *types = event.xclient.data.l
-    if flags & 1:  # there are more than three types, in a list that pyglet reads correctly
-        original(event)
-        return
-    window._xdnd_source, window._xdnd_version = source, flags >> 24
-    files = window._xdnd_atoms[FILES]
-    window._xdnd_format = files if files in types else None
+    if original:
+        window._event_drag_enter = note
 
 
 # The X server was killed, or has closed the connection of this program. Xlib ends a process whose connection breaks,
