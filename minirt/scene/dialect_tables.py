@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import radians, tan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from minirt.fields import clamp
 from minirt.scene.elements import linear_combination
@@ -72,33 +72,19 @@ SETTING = (
 )
 
 
-class Layout(NamedTuple):
-    """Another order of the first fields of an element."""
-
-    code: str
-    pattern: str  # of the letters of the words: v for three numbers, n for one, w for others
-    means: Callable[..., list[str]]  # the words of the format, from all words
-
-
+# Other orders of the first fields of an element: its code, a pattern of the letters of the words (v for three numbers,
+# n for one, w for others), and the words of the format from all words.
 UP = "0,1,0"
-LAYOUTS = (
-    Layout("bo", "vn(?!n)", lambda centre, edge, *rest: [centre, UP, f"{edge},{edge},{edge}", *rest]),
-    Layout("bo", "vvn(?!n)", lambda centre, axis, edge, *rest: [centre, axis, f"{edge},{edge},{edge}", *rest]),
-    Layout("bo", "vnnn|vvv(?![vn])", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
-    Layout("bo", "vvv(v|nnn)v", lambda centre, _across, axis, *rest: [centre, axis, *rest]),
-    Layout("el", "vvv(?!v)", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
-    Layout("ob", "w$", lambda file: [file, "0,0,0", "1"]),
-    Layout("ob", "wvvv", lambda file, place, _turns, sizes, *rest: [file, place, sizes.split(",")[0], *rest]),
-    Layout("ob", "vvvvw", lambda place, _turns, sizes, colour, file: [file, place, sizes.split(",")[0], colour]),
+LAYOUTS: tuple[tuple[str, str, Callable[..., list[str]]], ...] = (
+    ("bo", "vn(?!n)", lambda centre, edge, *rest: [centre, UP, f"{edge},{edge},{edge}", *rest]),
+    ("bo", "vvn(?!n)", lambda centre, axis, edge, *rest: [centre, axis, f"{edge},{edge},{edge}", *rest]),
+    ("bo", "vnnn|vvv(?![vn])", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
+    ("bo", "vvv(v|nnn)v", lambda centre, _across, axis, *rest: [centre, axis, *rest]),
+    ("el", "vvv(?!v)", lambda centre, sizes, *rest: [centre, UP, sizes, *rest]),
+    ("ob", "w$", lambda file: [file, "0,0,0", "1"]),
+    ("ob", "wvvv", lambda file, place, _turns, sizes, *rest: [file, place, sizes.split(",")[0], *rest]),
+    ("ob", "vvvvw", lambda place, _turns, sizes, colour, file: [file, place, sizes.split(",")[0], colour]),
 )
-
-
-class Row(NamedTuple):
-    """A meaning of one or two words behind the fields."""
-
-    pattern: str  # of the words, with one blank between two
-    means: Callable[..., str]  # attributes, from the groups of the pattern; '' for none
-    sort: str
 
 
 def picture(file: str) -> str:
@@ -137,21 +123,23 @@ N, C = r"([-+]?[0-9]*\.?[0-9]+)", r"([0-9.]+,[0-9.]+,[0-9.]+)"
 FILE = r"[\"']?([^\"':=; ]+\.(?:xpm|png|jpe?g|ppm|bmp|tga))[\"']?"
 CHECKER = r"-?-?(?:ch|chk|cb|cd|checker\w*|chess\w*|pattern|pat|damier)"
 
-ROWS = (
-    Row(rf"{N} {N}", two_numbers, EXPONENT),
-    Row(r"([-+]?0*[1-9][0-9]*(?:\.[0-9]*)?)", one_number, EXPONENT),
-    Row(N, one_number, REFLECTIVITY),
-    Row(rf"{CHECKER}[:= ]{C}[:;]{C}(?:[:;]{N})?", lambda _one, two, size: f"checker:{size or 1},{two}", CHECKERS),
-    Row(rf"{CHECKER}[:= ]{C}", lambda colour: f"checker:1,{colour}", CHECKERS),
-    Row(rf"{CHECKER}[:= ]{N}", lambda size: f"checker:{size}", CHECKERS),
-    Row(CHECKER, lambda: "checker", CHECKERS),
-    Row(rf"-?-?(?:b|bu|bum|bump\w*|bm|rb|height\w*)[:= ]{FILE}", lambda file: f"bump:{file}", PICTURES),
-    Row(rf"-?-?(?:n|nm|nor\w*)[:= ]{FILE}", lambda file: f"normal:{file}", PICTURES),
-    Row(rf"(?:-?-?\w+[:= ])?{FILE}", picture, PICTURES),
-    Row(rf"-?-?(?:sh|shin\w*|ns|exp\w*|phong)[:= ]{N}", lambda text: highlight(0.5, float(text)), HIGHLIGHTS),
-    Row(rf"-?-?(?:sp|spc|spec\w*)[:= ]{N}", lambda text: highlight(float(text), 32), HIGHLIGHTS),
-    Row(rf"trans\w*[:= ]{N} (?:ior|refr\w*)[:= ]{N}", lambda share, index: f"glass:{index},{share}", GLASS),
-    Row(rf"-?-?(?:re|rf|refl\w*|mir\w*)[:= ]{N}", reflected, HIGHLIGHTS),
+# Meanings of one or two words behind the fields: a pattern of the words, with one blank between two, attributes from
+# the groups of the pattern ('' for none), and the sort of change.
+ROWS: tuple[tuple[str, Callable[..., str], str], ...] = (
+    (rf"{N} {N}", two_numbers, EXPONENT),
+    (r"([-+]?0*[1-9][0-9]*(?:\.[0-9]*)?)", one_number, EXPONENT),
+    (N, one_number, REFLECTIVITY),
+    (rf"{CHECKER}[:= ]{C}[:;]{C}(?:[:;]{N})?", lambda _one, two, size: f"checker:{size or 1},{two}", CHECKERS),
+    (rf"{CHECKER}[:= ]{C}", lambda colour: f"checker:1,{colour}", CHECKERS),
+    (rf"{CHECKER}[:= ]{N}", lambda size: f"checker:{size}", CHECKERS),
+    (CHECKER, lambda: "checker", CHECKERS),
+    (rf"-?-?(?:b|bu|bum|bump\w*|bm|rb|height\w*)[:= ]{FILE}", lambda file: f"bump:{file}", PICTURES),
+    (rf"-?-?(?:n|nm|nor\w*)[:= ]{FILE}", lambda file: f"normal:{file}", PICTURES),
+    (rf"(?:-?-?\w+[:= ])?{FILE}", picture, PICTURES),
+    (rf"-?-?(?:sh|shin\w*|ns|exp\w*|phong)[:= ]{N}", lambda text: highlight(0.5, float(text)), HIGHLIGHTS),
+    (rf"-?-?(?:sp|spc|spec\w*)[:= ]{N}", lambda text: highlight(float(text), 32), HIGHLIGHTS),
+    (rf"trans\w*[:= ]{N} (?:ior|refr\w*)[:= ]{N}", lambda share, index: f"glass:{index},{share}", GLASS),
+    (rf"-?-?(?:re|rf|refl\w*|mir\w*)[:= ]{N}", reflected, HIGHLIGHTS),
 )
 GUESSES = EXPONENT, REFLECTIVITY
 

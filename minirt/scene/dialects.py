@@ -139,8 +139,8 @@ def kind_of(code: str) -> type[Element] | None:
 def in_order(code: str, words: list[str]) -> list[str]:
     """Return the words of an element in the order of its fields here, where they have a known order of their own."""
     letters = "".join("v" if TRIPLE.fullmatch(word) else "n" if re.fullmatch(NUMBER, word) else "w" for word in words)
-    rows = (row for row in tables.LAYOUTS if row.code == code and re.match(row.pattern, letters))
-    return next((row.means(*words) for row in rows), words)
+    fitting = (means for kind, pattern, means in tables.LAYOUTS if kind == code and re.match(pattern, letters))
+    return next((means(*words) for means in fitting), words)
 
 
 def fields_of_words(
@@ -277,11 +277,11 @@ def meaning(words: list[str], are_guessed: bool) -> tuple[int, str, str]:
     """
     for used in (2, 1):
         text = " ".join(words[:used])
-        for row in tables.ROWS if len(words) >= used else ():
-            match = re.fullmatch(row.pattern, text, re.IGNORECASE)
-            if match and (are_guessed or row.sort not in tables.GUESSES):
-                attributes = row.means(*match.groups())
-                return used, attributes, row.sort if attributes else tables.LEFT_OUT
+        for pattern, means, sort in tables.ROWS if len(words) >= used else ():
+            match = re.fullmatch(pattern, text, re.IGNORECASE)
+            if match and (are_guessed or sort not in tables.GUESSES):
+                attributes = means(*match.groups())
+                return used, attributes, sort if attributes else tables.LEFT_OUT
     return 1, "", tables.LEFT_OUT
 
 
