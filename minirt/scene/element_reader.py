@@ -165,11 +165,8 @@ def unknown_key_message(kind: type[Element], key: str) -> str:
     owners = dict.fromkeys(keys[key].sort or title for title, keys in keys_by_title.items() if key in keys)
     if owners:
         return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
-    own = fields_by_key(kind)
-    guess = nearest_word(key, list(own)) or nearest_word(
-        key, [name for keys in keys_by_title.values() for name in keys]
-    )
-    names = list(own)
+    names, every = list(fields_by_key(kind)), [name for keys in keys_by_title.values() for name in keys]
+    guess = nearest_word(key, names) or nearest_word(key, every)
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
 
 

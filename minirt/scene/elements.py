@@ -142,11 +142,8 @@ class Lamp(Element):
 
     def features(self) -> tuple[str, ...]:
         """The features of the kernel that it needs: see `minirt.rendering.packing.features`."""
-        needs = {
-            "spots": self.cone() != ALL_DIRECTIONS or self.fading() > 0.0,
-            "parallel": not self.position,
-            "soft": bool(self.size),
-        }
+        is_spot = self.cone() != ALL_DIRECTIONS or self.fading() > 0.0
+        needs = {"spots": is_spot, "parallel": not self.position, "soft": bool(self.size)}
         return tuple(name for name, needed in needs.items() if needed)
 
 

@@ -45,11 +45,8 @@ def forms() -> tuple[list[type[Element]], np.ndarray]:
 
 def call_for(text: bytes, lines: int) -> tuple[str, tuple[np.ndarray, ...]]:
     """Return the call of the kernel for so many lines, with memory for what is in them."""
-    kinds, numbers, inexact = (
-        np.empty(lines, np.int64),
-        np.empty(lines * MOST),
-        np.empty((len(text) // 2 + 1, 3), np.int64),
-    )
+    kinds, numbers = np.empty(lines, np.int64), np.empty(lines * MOST)
+    inexact = np.empty((len(text) // 2 + 1, 3), np.int64)
     return READ, (np.frombuffer(text, np.int8), forms()[1], kinds, numbers, inexact)
 
 

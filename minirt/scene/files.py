@@ -74,10 +74,8 @@ def picture_texts(scene: str, settings: str, folder: str = "") -> dict[str, str]
 def way_to_scene(picture: str, scene: Path | None) -> str:
     """Return the way from the folder of a picture to that of its scene; '' where they are the same or unknown."""
     try:
-        found = (
-            os.path.relpath(os.path.realpath(scene.parent), os.path.realpath(Path(picture).parent)) if scene else "."
-        )
-        text = Path(found).as_posix()
+        folder = os.path.realpath(Path(picture).parent)
+        text = Path(os.path.relpath(os.path.realpath(scene.parent), folder) if scene else ".").as_posix()
         text.encode()
     except (OSError, ValueError):  # on another drive; or a name that is no UTF-8
         return ""

@@ -15,19 +15,9 @@ from minirt.errors import check_whole
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
+from minirt.scene import elements as others
 from minirt.scene import writer
-from minirt.scene.elements import (
-    DEFAULT_SIZE,
-    Ambient,
-    Background,
-    Camera,
-    FurtherCamera,
-    FurtherLight,
-    Lamp,
-    ParallelLight,
-    Resolution,
-    SpotLight,
-)
+from minirt.scene.elements import DEFAULT_SIZE, Ambient, Background, Camera, FurtherCamera, Lamp, Resolution
 from minirt.scene.pages import Answer, Item, Page, pages_of, replace_item, span_of_ids
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -139,9 +129,9 @@ class Scene(Immutable):
         ambients: tuple[Ambient, ...]
         backgrounds: tuple[Background, ...]
         further_cameras: tuple[FurtherCamera, ...]
-        further_lights: tuple[FurtherLight, ...]
-        parallel_lights: tuple[ParallelLight, ...]
-        spot_lights: tuple[SpotLight, ...]
+        further_lights: tuple[others.FurtherLight, ...]
+        parallel_lights: tuple[others.ParallelLight, ...]
+        spot_lights: tuple[others.SpotLight, ...]
         spheres: tuple[kinds.Sphere, ...]
         planes: tuple[kinds.Plane, ...]
         cylinders: tuple[kinds.Cylinder, ...]
@@ -244,9 +234,8 @@ class Scene(Immutable):
             index, number = index - length, number + 1
         page = self.pages[number]
         index = [place for place, item in enumerate(page.items) if isinstance(item, sort)][index]
-        scene = Scene.of_pages(
-            (*self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]), self.file
-        )
+        pages = *self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]
+        scene = Scene.of_pages(pages, self.file)
         if self.shown:  # the same camera, or what replaces it, or the first one
             kept = [number for number, camera in enumerate(scene.cameras, 1) if camera is self.camera]
             replaced = self.shown + 1 if len(scene.cameras) == len(self.cameras) else 1
