@@ -15,13 +15,13 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, where
+from minirt.lanes import Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import position_error
 from minirt.shapes.frames import in_scene, own_direction, own_point
 from minirt.shapes.plane import CLOSE
-from minirt.shapes.shape import Axial, Ball, Position, point_along
+from minirt.shapes.shape import Axial, Ball, Hit, Position, point_along
 
 
 @record()
@@ -64,7 +64,7 @@ class PackedBox(NamedTuple):
     half: Vec  # of the sizes
 
 
-def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the box. A face on which it starts, within rounding, is not met there again.
 
     Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
@@ -91,7 +91,7 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None 
 
 def first_in_all(
     enter_x: Number, enter_y: Number, enter_z: Number, leave_x: Number, leave_y: Number, leave_z: Number
-) -> tuple[Mask, Number]:
+) -> Hit:
     """Whether three intervals overlap at t > 0, and the first end of the overlap with t > 0."""
     enter = maximum(enter_z, maximum(enter_y, maximum(enter_x, -inf)))
     leave = minimum(leave_z, minimum(leave_y, minimum(leave_x, inf)))

@@ -12,13 +12,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, rarely, splat, sqrt, where
+from minirt.lanes import Number, Vec, fabs, inverse_root, rarely, splat, sqrt, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.compensated import divided, pair, position_error, times
 from minirt.shapes.frames import in_scene, own_direction, own_point, revolved_mapping, to_basis
-from minirt.shapes.shape import Ball, Capped, Position, point_along
+from minirt.shapes.shape import Ball, Capped, Hit, Position, point_along
 
 
 @record()
@@ -52,7 +52,7 @@ class PackedCone(NamedTuple):
     height: float
 
 
-def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
@@ -90,9 +90,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
         if rarely(close):
             slope = divided(pair(cone.radius, 0.0, a), splat(cone.height, a))
             zero = pair(0.0, 0.0, a)
-            exact = quadrics.exact_span(
-                cone.centre, cone.w, origin, direction, (zero, zero, times(slope, slope)), zero[0], cone.height
-            )
+            side = zero, zero, times(slope, slope)
+            exact = quadrics.exact_span(cone.centre, cone.w, origin, direction, side, zero[0], cone.height)
             span = where(close, exact, span)
     return quadrics.first_overlap_of_steep(span)
 

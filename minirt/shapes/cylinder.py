@@ -11,13 +11,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, rarely, splat, sqrt, where
+from minirt.lanes import Number, Vec, copysign, fabs, rarely, splat, sqrt, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import pair, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
-from minirt.shapes.shape import Ball, Capped, Position, point_along
+from minirt.shapes.shape import Ball, Capped, Hit, Position, point_along
 
 
 @record()
@@ -51,9 +51,7 @@ class PackedCylinder(NamedTuple):
     half: float  # of the height
 
 
-def intersect(
-    cylinder: PackedCylinder, origin: Vec, direction: Vec, limit: Number | None = None
-) -> tuple[Mask, Number]:
+def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the cylinder.
 
     The ray is inside the infinite tube for one interval of t and between the planes of the caps for another; it is
@@ -75,10 +73,9 @@ def intersect(
         over = fabs(p.z) - cylinder.half
         close = quadrics.starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)
         if rarely(close):
-            square, zero = square_of(cylinder.radius, a), pair(0.0, 0.0, a)
-            exact = quadrics.exact_span(
-                cylinder.centre, cylinder.w, origin, direction, (square, zero, zero), -cylinder.half, cylinder.half
-            )
+            zero, half = pair(0.0, 0.0, a), cylinder.half
+            side = square_of(cylinder.radius, a), zero, zero
+            exact = quadrics.exact_span(cylinder.centre, cylinder.w, origin, direction, side, -half, half)
             span = where(close, exact, span)
     return quadrics.first_overlap(span)
 

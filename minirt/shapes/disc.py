@@ -11,11 +11,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot
+from minirt.lanes import Number, Vec, dot
 from minirt.records import record
 from minirt.shapes import square
 from minirt.shapes.boundary import Boundary, length
-from minirt.shapes.shape import Ball, Bounds, Flat, Position, bounds_of_disc
+from minirt.shapes.shape import Ball, Bounds, Flat, Hit, Position, bounds_of_disc
 from minirt.shapes.square import meets_plane
 
 
@@ -52,7 +52,7 @@ class PackedDisc(NamedTuple):
 surface, mapping = square.surface, square.mapping
 
 
-def intersect(disc: PackedDisc, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(disc: PackedDisc, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the disc."""
     hit, t, p = meets_plane(disc, origin, direction, limit)
     return hit & (dot(p, p) <= disc.half * disc.half), t

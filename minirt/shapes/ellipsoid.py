@@ -14,7 +14,7 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, outlined, rarely, splat, sqrt, unit, unit_roundoff, where
+from minirt.lanes import Number, Vec, any, dot, fabs, outlined, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import (
@@ -31,7 +31,7 @@ from minirt.shapes.compensated import (
 )
 from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, own_direction, own_point, scene_direction
 from minirt.shapes.quadrics import CLOSE, ROUNDING, exact_ends, negative_interval
-from minirt.shapes.shape import Axial, Ball, Bounds, Position, point_along
+from minirt.shapes.shape import Axial, Ball, Bounds, Hit, Position, point_along
 
 
 @record()
@@ -46,18 +46,14 @@ class Ellipsoid(Axial):
 
     def pack(self) -> PackedEllipsoid:
         z, x, y = self.frame()
-        a, b, c = self.semi_axes()
+        a, b, c = (size / 2 for size in self.sizes)
         return PackedEllipsoid(Position(Vec(*self.centre)), x, y, z, Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c))
-
-    def semi_axes(self) -> Triple:
-        width, height, depth = self.sizes
-        return width / 2, height / 2, depth / 2
 
     def axes(self) -> list[tuple[float, Triple]]:
         """The semi-axes in ascending order, each with its unit direction."""
         z, x, y = self.frame()
         directions = ((axis.x, axis.y, axis.z) for axis in (x, y, z))
-        return sorted(zip(self.semi_axes(), directions, strict=True))
+        return sorted(zip((size / 2 for size in self.sizes), directions, strict=True))
 
     def balls(self) -> tuple[Ball, ...]:
         """Four balls with the least semi-axis c as radius, a - c and b - c off the centre along the axes a and b."""
@@ -82,9 +78,7 @@ class PackedEllipsoid(NamedTuple):
     scale: Vec  # 1 / semi
 
 
-def intersect(
-    ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, limit: Number | None = None
-) -> tuple[Mask, Number]:
+def intersect(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the ellipsoid.
 
     In its own frame, divided by its semi-axes, it is the unit sphere, and t along the scaled ray is the same. As for a

@@ -10,6 +10,7 @@ from minirt.lanes import Mask, Number, Vec, copysign, dot, splat, where
 from minirt.lanes.mathematics import arctan2
 
 TWO_PI = 2.0 * math.pi
+Mapped = tuple[Number, Number, Vec, Vec]  # u, v and the tangents along them
 
 
 def basis(axis: Triple, roll: float = 0.0) -> tuple[Vec, Vec, Vec]:
@@ -92,9 +93,7 @@ def longitude(p: Vec) -> tuple[Number, Vec]:
     return 0.5 + angle_in_turns(-p.y, -p.x), Vec(-TWO_PI * p.y, TWO_PI * p.x, 0.0)
 
 
-def revolved_mapping(
-    u: Vec, v: Vec, w: Vec, p: Vec, side: Mask, height: Number, rise: Vec, radius: Number
-) -> tuple[Number, Number, Vec, Vec]:
+def revolved_mapping(u: Vec, v: Vec, w: Vec, p: Vec, side: Mask, height: Number, rise: Vec, radius: Number) -> Mapped:
     """`mapping` of a solid of revolution with the frame u, v, w, for a point p on its side or on a cap.
 
     On the side v is `height` and its tangent `rise`. On a cap, which has this radius, a picture fills the square around
@@ -113,9 +112,7 @@ def revolved_mapping(
     )
 
 
-def capped_mapping(
-    shape: Any, p: Vec, normal: Vec, height: Number, rise: Vec, radius: Number
-) -> tuple[Number, Number, Vec, Vec]:
+def capped_mapping(shape: Any, p: Vec, normal: Vec, height: Number, rise: Vec, radius: Number) -> Mapped:
     """`revolved_mapping` of a packed shape, for a point and a normal in its own frame."""
     side = copysign(1.0, p.z) * normal.z < 0.5  # that of a cap points away along the axis
     return revolved_mapping(shape.u, shape.v, shape.w, p, side, height, rise, radius)

@@ -14,13 +14,13 @@ from math import sqrt as root
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Mask, Number, Vec, copysign, fabs, inverse_root, maximum, rarely, splat, sqrt, unit, where
+from minirt.lanes import Number, Vec, copysign, fabs, inverse_root, maximum, rarely, splat, sqrt, unit, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import divided, minus, pair, position_error, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
-from minirt.shapes.shape import Ball, Capped, Position, point_along
+from minirt.shapes.shape import Ball, Capped, Hit, Position, point_along
 
 
 @record()
@@ -64,9 +64,7 @@ class PackedHyperboloid(NamedTuple):
     half: float  # of the height
 
 
-def intersect(
-    hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit: Number | None = None
-) -> tuple[Mask, Number]:
+def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the hyperboloid.
 
     x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t if the ray is flatter than the asymptotic cone, and
@@ -100,9 +98,8 @@ def intersect(
             narrow, half = square_of(hyperboloid.waist, a), splat(hyperboloid.half, a)
             widening = minus(square_of(hyperboloid.radius, a), narrow)
             slope, zero = divided(divided(widening, half), half), pair(0.0, 0.0, a)
-            exact = quadrics.exact_span(
-                hyperboloid.centre, hyperboloid.w, origin, direction, (narrow, zero, slope), -half, half
-            )
+            side = narrow, zero, slope
+            exact = quadrics.exact_span(hyperboloid.centre, hyperboloid.w, origin, direction, side, -half, half)
             span = where(close, exact, span)
     return quadrics.first_overlap_of_steep(span)
 

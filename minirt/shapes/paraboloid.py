@@ -13,13 +13,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, fabs, inverse_root, maximum, rarely, splat, sqrt, unit, where
+from minirt.lanes import Number, Vec, fabs, inverse_root, maximum, rarely, splat, sqrt, unit, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.compensated import divided, pair, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
-from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.shape import Axial, Ball, Bounds, Hit, Position, bounds_of_disc, point_along, union_of_bounds
 
 
 @record()
@@ -68,9 +68,7 @@ class PackedParaboloid(NamedTuple):
     height: float
 
 
-def intersect(
-    paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: Number | None = None
-) -> tuple[Mask, Number]:
+def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the paraboloid.
 
     As with the cylinder the ray is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
@@ -96,11 +94,9 @@ def intersect(
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
         close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
         if rarely(close):
-            focal = divided(square_of(paraboloid.radius, a), splat(2.0 * paraboloid.height, a))
-            zero = pair(0.0, 0.0, a)
-            exact = quadrics.exact_span(
-                paraboloid.centre, paraboloid.w, origin, direction, (zero, focal, zero), zero[0], paraboloid.height
-            )
+            zero, height = pair(0.0, 0.0, a), paraboloid.height
+            side = zero, divided(square_of(paraboloid.radius, a), splat(2.0 * height, a)), zero
+            exact = quadrics.exact_span(paraboloid.centre, paraboloid.w, origin, direction, side, zero[0], height)
             span = where(close, exact, span)
     return quadrics.first_overlap(span)
 

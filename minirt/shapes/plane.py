@@ -14,12 +14,12 @@ from dataclasses import KW_ONLY
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Number, Vec, dot, fabs, unit_roundoff
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
 from minirt.shapes.compensated import position_error
-from minirt.shapes.shape import Ball, Flat, Position
+from minirt.shapes.shape import Ball, Flat, Hit, Position
 
 CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
@@ -58,7 +58,7 @@ class PackedPlane(NamedTuple):
     normal: Vec
 
 
-def intersect(plane: PackedPlane, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(plane: PackedPlane, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the plane; one that is parallel to it, or starts on it, to rounding, does not."""
     f = origin - plane.point
     height, slope = dot(plane.normal, f), dot(plane.normal, direction)

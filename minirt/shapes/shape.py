@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_h
 import numpy as np
 
 from minirt.fields import Angle, Direction, Triple, declare
-from minirt.lanes import Mask, Vec
+from minirt.lanes import Mask, Number, Vec
 from minirt.materials import Attributes
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
@@ -53,6 +53,7 @@ from minirt.shapes.frames import basis, facing_frame
 
 Bounds = tuple[Triple, Triple]  # axis-aligned bounding box: least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
+Hit = tuple[Mask, Number]  # whether a ray hits a shape, and where
 Frame = tuple[Vec, Vec, Vec]  # right-handed and orthonormal; the last vector is the axis or the normal
 UPRIGHT: Triple = (0.0, 1.0, 0.0)
 ROLL = "turn about its axis or normal, counter-clockwise as seen from its tip"

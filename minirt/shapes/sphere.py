@@ -12,12 +12,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, outlined, rarely, splat, sqrt, unit, unit_roundoff, where
+from minirt.lanes import Number, Vec, any, dot, fabs, outlined, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.compensated import minus, offset, position_error, scalar_product, square_of, value, zero_within
 from minirt.shapes.frames import TWO_PI, angle_in_turns
-from minirt.shapes.shape import Ball, Bounds, Frame, Position, Turnable
+from minirt.shapes.shape import Ball, Bounds, Frame, Hit, Position, Turnable
 
 CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
 ROUNDING = 16  # unit roundoffs by which |f|^2 / radius^2 - 1 may be off, and more
@@ -58,7 +58,7 @@ class PackedSphere(NamedTuple):
     radius: float
 
 
-def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the sphere.
 
     Both hits lie half a chord from the ray's closest approach to the centre, by Pythagoras. Counting t from there

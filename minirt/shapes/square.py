@@ -18,7 +18,7 @@ from minirt.records import record
 from minirt.shapes.boundary import Boundary, upright_frame
 from minirt.shapes.compensated import position_error
 from minirt.shapes.plane import CLOSE, PARALLEL
-from minirt.shapes.shape import Ball, Flat, Position, point_along
+from minirt.shapes.shape import Ball, Flat, Hit, Position, point_along
 
 
 @record()
@@ -37,9 +37,8 @@ class Square(Flat):
     def corners(self) -> tuple[Triple, ...]:
         half = self.side / 2
         right, up, _ = ((axis.x, axis.y, axis.z) for axis in self.frame())
-        return tuple(
-            point_along(point_along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half)
-        )
+        ends = [point_along(self.centre, right, x) for x in (-half, half)]
+        return tuple(point_along(end, up, y) for end in ends for y in (-half, half))
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((corner, 0.0) for corner in self.corners())
@@ -55,7 +54,7 @@ class PackedSquare(NamedTuple):
     half: float  # of a side
 
 
-def intersect(square: PackedSquare, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(square: PackedSquare, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the square."""
     hit, t, p = meets_plane(square, origin, direction, limit)
     return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t

@@ -18,7 +18,7 @@ from minirt.records import record
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.compensated import position_error
 from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, longitude, own_direction, own_point, scene_direction
-from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along
+from minirt.shapes.shape import Axial, Ball, Bounds, Hit, Position, bounds_of_disc, point_along
 
 PAD = 16.0  # unit roundoffs of a torus' outer radius by which a computed height may be off, and more
 STEPS = 100  # of Halley's or Newton's method at most; most roots take less than ten
@@ -68,7 +68,7 @@ class PackedTorus(NamedTuple):
     tube: float  # radius of the tube
 
 
-def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the torus.
 
     Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides

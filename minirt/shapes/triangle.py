@@ -38,7 +38,7 @@ from minirt.records import record
 from minirt.shapes import boundary as exact
 from minirt.shapes.boundary import Boundary
 from minirt.shapes.compensated import Pair, minus, offset, position_error, times, value
-from minirt.shapes.shape import Ball, Position, Shape
+from minirt.shapes.shape import Ball, Hit, Position, Shape
 
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
 ROUNDINGS = 1.5  # by which a ray that hits a triangle may pass beside it
@@ -94,7 +94,7 @@ class PackedTriangle(NamedTuple):
     normal: Vec
 
 
-def intersect(triangle: Any, origin: Vec, direction: Vec, limit: Number | None = None) -> tuple[Mask, Number]:
+def intersect(triangle: Any, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the triangle, or one of a mesh, without gaps between neighbours.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same

@@ -30,6 +30,7 @@ from minirt.lanes import (
     where,
 )
 from minirt.lanes.mathematics import arctan2
+from minirt.shapes.frames import Mapped
 
 
 def texture_lookup(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> Vec:
@@ -93,9 +94,6 @@ class SurfaceMaps(NamedTuple):
     texels: Any  # all pictures one after the other: rows from the top, pixels from the left, channels in [0, 1]
     pictures: Any  # (k, 4) for each picture its first index in `texels`, its width, height and channels
     placements: Any = None  # (n, 15) scale, shift, cosine and sine of u and v, own axes of a sphere; 0 for most shapes
-
-
-Mapped = tuple[Number, Number, Vec, Vec]  # u, v and the tangents along them
 
 
 def apply_maps(scene: SceneArrays, index: int, point: Vec, normal: Vec, colour: Vec) -> tuple[Vec, Vec]:
