@@ -171,20 +171,19 @@ class CompiledFunction:
         """Call the compiled form. RenderError where it cannot be compiled."""
         LIBRARY.get((self.name, arguments))(*arguments)
 
-    def bound(self, *arguments: Any) -> Callable[[], None]:
-        """Return the call with some arguments, whose arrays may change but not move. RenderError likewise."""
-        entry, words = LIBRARY.get((self.name, arguments)), words_of(arguments)
-
-        def call(kept: Any = arguments) -> None:
-            entry.run(words)
-
-        return call
-
     def call(self, *arguments: Any) -> Call:
         """Return the call with some arguments, to look for its kernel."""
         return self.name, arguments
 
 
 def bound(function: Callable[..., None], *arguments: Any) -> Callable[[], None]:
-    """Return the call of a function, compiled or interpreted, with some arguments; compiled, it takes 2 us."""
-    return function.bound(*arguments) if isinstance(function, CompiledFunction) else partial(function, *arguments)
+    """Return the call of a function, compiled or interpreted, with some arguments, whose arrays may change but not
+    move. Compiled, it takes 2 us. RenderError where it cannot be compiled."""
+    if not isinstance(function, CompiledFunction):
+        return partial(function, *arguments)
+    entry, words = LIBRARY.get((function.name, arguments)), words_of(arguments)
+
+    def call(kept: Any = arguments) -> None:
+        entry.run(words)
+
+    return call
