@@ -15,8 +15,7 @@ from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.rays import Hits, camera_rays, trace
 from minirt.rendering.renderer import renderer as shared_renderer
-from minirt.scene import Ambient, Scene
-from minirt.scene.scene import check_scene
+from minirt.scene import Ambient, Scene, check_scene
 from minirt.shapes import Shape
 
 WHITE = (255, 255, 255)
@@ -52,15 +51,11 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
     origins, directions = camera_rays(scene, width, height)
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
     forward = np.array(unit(scene.camera.direction))
-    return Buffers(
-        hits.distance.reshape(height, width) * (directions @ forward),
-        hits.distance.reshape(height, width),
-        hits.owner.reshape(height, width),
-        hits.point.reshape(height, width, 3),
-        hits.normal.reshape(height, width, 3),
-        coordinates(scene.shapes, hits).reshape(height, width, 2),
-        albedo(scene, width, height, threads),
-    )
+    distance, shape = hits.distance.reshape(height, width), hits.owner.reshape(height, width)
+    parts = hits.point, hits.normal, coordinates(scene.shapes, hits)
+    point, normal, uv = (each.reshape(height, width, -1) for each in parts)
+    colours = albedo(scene, width, height, threads)
+    return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, colours)
 
 
 def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArray[np.float64]:

@@ -67,10 +67,8 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
     The variant of a packet is a random number that depends on its place in the picture alone.
     """
     packet_width = lanes // PACKET_HEIGHT
-    rows, columns, all_columns = (
-        -(-size // step)
-        for size, step in ((shape[0], PACKET_HEIGHT), (shape[1], packet_width), (crop.width, packet_width))
-    )
+    rows, columns = -(-shape[0] // PACKET_HEIGHT), -(-shape[1] // packet_width)
+    all_columns = -(-crop.width // packet_width)
     random = np.random.Generator(np.random.PCG64(variants))
     left, top = crop.left // packet_width, crop.top // PACKET_HEIGHT
     drawn = np.full((rows, columns, 3), (0, samples, 0), np.int32)

@@ -27,8 +27,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.view import View
 from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
 from minirt.scene import Lamp, Scene
-from minirt.shapes import Shape
-from minirt.shapes.mesh import Mesh
+from minirt.shapes import Mesh, Shape
 
 FEW = 4  # lights whose bins are used again
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"

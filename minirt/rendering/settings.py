@@ -93,26 +93,16 @@ def takes_settings(function: Function, source: Callable[..., Any] | None = None)
 
 @overload
 def render(
-    scene: Scene,
-    width: int | None = None,
-    height: int | None = None,
-    *,
-    linear: Literal[True] | None = None,
-    rows: tuple[int, int] | None = None,
-    **settings: Unpack[Keywords],
-) -> LinearImage: ...
+    scene: Scene, width: int | None = None, height: int | None = None, *,
+    linear: Literal[True] | None = None, rows: tuple[int, int] | None = None, **settings: Unpack[Keywords],
+) -> LinearImage: ...  # fmt: skip
 
 
 @overload
 def render(
-    scene: Scene,
-    width: int | None = None,
-    height: int | None = None,
-    *,
-    linear: bool,
-    rows: tuple[int, int] | None = None,
-    **settings: Unpack[Keywords],
-) -> Image: ...
+    scene: Scene, width: int | None = None, height: int | None = None, *,
+    linear: bool, rows: tuple[int, int] | None = None, **settings: Unpack[Keywords],
+) -> Image: ...  # fmt: skip
 
 
 @takes_settings

@@ -28,11 +28,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.rendering.tone_mapping import map_tones
 from minirt.scene import Camera, Scene, describe
-from minirt.shapes.box import Box
-from minirt.shapes.cone import Cone
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.sphere import Sphere
+from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Sphere
 
 BUDGET = 0.12  # seconds
 SHAPE, RAY = 2e-4, 2e-7  # seconds to intersect a shape with all rays, and seconds more for each ray

@@ -74,18 +74,11 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
         double, single = double / scale, np.where(scale < LEAST_IN_SINGLE, np.inf, single / scale)
         pixels = size / (distance * 2 * np.linalg.norm(right) / width)
         thinness = np.where((way @ forward > 0) & (pixels > 0), 1 / pixels, 0.0)
+    figures = {"size": size, "distance": distance, "relative rounding of a hit, double": double, "single": single}
     for index, element in worst(tables, np.maximum(double, single), VISIBLE):
         small = size[index] <= distance[index]
-        yield Stiff(
-            element,
-            "small for its coordinates or its distance" if small else "the eye is close to it for its size",
-            {
-                "size": float(size[index]),
-                "distance": float(distance[index]),
-                "relative rounding of a hit, double": float(double[index]),
-                "single": float(single[index]),
-            },
-        )
+        why = "small for its coordinates or its distance" if small else "the eye is close to it for its size"
+        yield Stiff(element, why, {name: float(each[index]) for name, each in figures.items()})
     for index, element in worst(tables, thinness, 1.0):
         yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
 
