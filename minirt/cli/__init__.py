@@ -130,8 +130,9 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         check_format(options)  # before the work, not after it
     output, replay, auto = options.output, options.replay, options.samples == "auto"
     nameless, last = output in (None, "-"), options.frames.stop - 1 if options.frames else 0
-    is_film = replay or (options.turntable and not options.cluster)
+    is_one = output and not (replay or (options.turntable and not options.cluster))
     side = max(options.size or (0,))
+    is_too_large = side > MAX_SIDE and not options.cluster
     wrong = (
         (options.turntable and nameless, f"--turntable needs {NAME}"),
         (last and not options.turntable, "--frames needs --turntable"),
@@ -140,15 +141,9 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         (options.resume and (replay or auto or nameless), f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
-        (
-            auto and (is_film or not output),
-            "--samples auto makes one picture: it needs -o, and no --replay or --turntable",
-        ),
+        (auto and not is_one, "--samples auto makes one picture: it needs -o, and no --replay or --turntable"),
         (options.cluster and (not output or replay or options.time), "--cluster needs -o, and no --replay or --time"),
-        (
-            side > MAX_SIDE and not options.cluster,
-            f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster",
-        ),
+        (is_too_large, f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster"),
     )
     for is_wrong, message in wrong:
         if is_wrong:

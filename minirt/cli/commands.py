@@ -78,18 +78,9 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     chosen = renderer(options.threads, options.precision or "double", options.depth, options.dither)
     chosen.moves_in_single = options.precision is None
     try:
-        return desktop.run(
-            scene,
-            path=options.scene[0],
-            size=options.size,
-            keys=options.keys,
-            lenient=options.lenient,
-            samples=options.samples or WINDOW_SAMPLES,
-            watch=options.watch,
-            text_scale=options.text_scale,
-            saved=saved,
-            renderer=chosen,
-        )
+        how = {name: getattr(options, name) for name in ("size", "keys", "lenient", "watch", "text_scale")}
+        how |= {"samples": options.samples or WINDOW_SAMPLES, "saved": saved}
+        return desktop.run(scene, path=options.scene[0], renderer=chosen, **how)
     except MlxError as error:
         if not options.fallback:
             raise
