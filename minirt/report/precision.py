@@ -70,10 +70,6 @@ def summarised(kind: Kind, rays: str, backward: Array, condition: Array, normal:
     """Summarise the certificates of some hits of one kind."""
     counts, _ = np.histogram(backward, (0.0, *LIMITS, np.inf))
     far = np.quantile(condition, 0.99, method="inverted_cdf")
-    figures = [np.median(condition), far, condition.max(), normal.max()]
-    return KindCertificates(
-        kind.element.title,
-        rays,
-        len(backward),
-        *map(float, [np.median(backward), backward.max(), *(counts / len(backward)), *figures]),
-    )
+    figures = [np.median(backward), backward.max(), *(counts / len(backward))]
+    figures += [np.median(condition), far, condition.max(), normal.max()]
+    return KindCertificates(kind.element.title, rays, len(backward), *map(float, figures))

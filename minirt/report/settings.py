@@ -56,6 +56,7 @@ class Knob(NamedTuple):
 
 OPTIONS = {uniform_samples: "--samples {:g}", automatic_samples: "--samples auto --error {:g}"}  # of the command line
 UNIFORM = Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS)
+ADAPTIVE = Knob("adaptive", "one sample, then more where neighbouring pixels differ", {}, adaptive_samples, COUNTS[1:])
 SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"})
 AUTO = Knob(
     "auto",
@@ -71,14 +72,7 @@ BOUNCES = tuple(
 )
 CULLING = (TILES, LIGHT_BUFFERS, BOXES)
 BRUTE_FORCE = Knob("brute force", "no culling: every ray tries every shape", {"without": CULLING}, values=COUNTS[:2])
-KNOBS = (  # the simplest first
-    UNIFORM,
-    Knob("adaptive", "one sample, then more where neighbouring pixels differ", {}, adaptive_samples, COUNTS[1:]),
-    AUTO,
-    SINGLE,
-    BRUTE_FORCE,
-    *BOUNCES,
-)
+KNOBS = (UNIFORM, ADAPTIVE, AUTO, SINGLE, BRUTE_FORCE, *BOUNCES)  # the simplest first
 
 
 class Setting(NamedTuple):
