@@ -37,15 +37,10 @@ class FieldSignature:
         if not is_dataclass(kind):
             raise AttributeError("__signature__")  # of a base class of records
         sorts = Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY
-        parameters = [
-            Parameter(
-                each.name,
-                sorts[each.kw_only],
-                default=Parameter.empty if each.default is MISSING else each.default,
-                annotation=each.type,
-            )
-            for each in ordered_fields(kind)
-        ]
+        parameters = []
+        for each in ordered_fields(kind):
+            default = Parameter.empty if each.default is MISSING else each.default
+            parameters.append(Parameter(each.name, sorts[each.kw_only], default=default, annotation=each.type))
         return Signature(parameters)
 
 

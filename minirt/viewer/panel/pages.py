@@ -139,7 +139,5 @@ def step_title(before: Snapshot, after: Snapshot) -> str:
     if len(old) != len(new):
         return f"+ {new[after.selected].title}" if len(new) > len(old) else f"- {old[before.selected].title}"
     one, other = old[after.selected], new[after.selected]
-    changed = [
-        each.title for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None)
-    ]
-    return f"{one.title}: {', '.join(changed)}"
+    changed = (each for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None))
+    return f"{one.title}: {', '.join(each.title for each in changed)}"
