@@ -84,12 +84,10 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     except MlxError as error:
         if not options.fallback:
             raise
-        from minirt.cli.render import render_output
-
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
         changed = {"output": options.fallback, "samples": options.samples or WINDOW_SAMPLES}
         changed["command"] = [*options.command, "-o", options.fallback]
-        render_output(scene, argparse.Namespace(**vars(options) | changed))
+        render(scene, argparse.Namespace(**vars(options) | changed))
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 
