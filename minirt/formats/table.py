@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 from minirt.errors import RenderError, nearest
 
-ANY_SIDE = 2**31 - 1
 FLOAT = 32  # bits of a channel of floating-point numbers
 DEEP_MEMORY = 49  # bytes a pixel of a picture with 16 bits while it is rendered and written
 
@@ -24,7 +23,7 @@ class Format(NamedTuple):
     """A picture or film format."""
 
     suffixes: tuple[str, ...]
-    largest: int = ANY_SIDE  # pixels of a side
+    largest: int = 2**31 - 1  # pixels of a side
     bits: tuple[int, ...] = (8,)  # that a channel can have, the default first
     is_lossy: bool = False  # whether it has a quality from 1 to 100
     is_film: bool = False  # whether it can hold several pictures in one file

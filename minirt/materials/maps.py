@@ -108,9 +108,6 @@ class Placement(Material):
         return self != Placement(1.0, 1.0)
 
 
-MOST_OCTAVES = 12
-
-
 @record()
 class Pattern(Material):
     """Base of solid textures: `pattern:marble`, `pattern:wood` and `pattern:clouds` have the same values.
@@ -121,7 +118,7 @@ class Pattern(Material):
     feature = "patterns"
     size: float = declare(Length, "size of the pattern")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))
-    octaves: int = declare(Whole, "levels of detail", low=1, high=MOST_OCTAVES, default=6)
+    octaves: int = declare(Whole, "levels of detail", low=1, high=12, default=6)
     height: float = declare(Real, "height of the second colour, in sizes", low=-10.0, high=10.0, step=0.01, default=0.0)
 
     def features(self) -> tuple[str, ...]:
