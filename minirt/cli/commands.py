@@ -78,16 +78,27 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     chosen = renderer(options.threads, options.precision or "double", options.depth, options.dither)
     chosen.moves_in_single = options.precision is None
     try:
-        how = {name: getattr(options, name) for name in ("size", "keys", "lenient", "watch", "text_scale")}
-        how |= {"samples": options.samples or WINDOW_SAMPLES, "saved": saved}
-        return desktop.run(scene, path=options.scene[0], renderer=chosen, **how)
+        return desktop.run(
+            scene,
+            path=options.scene[0],
+            size=options.size,
+            keys=options.keys,
+            lenient=options.lenient,
+            samples=options.samples or WINDOW_SAMPLES,
+            watch=options.watch,
+            text_scale=options.text_scale,
+            saved=saved,
+            renderer=chosen,
+        )
     except MlxError as error:
         if not options.fallback:
             raise
+        from minirt.cli.render import render_output
+
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
         changed = {"output": options.fallback, "samples": options.samples or WINDOW_SAMPLES}
         changed["command"] = [*options.command, "-o", options.fallback]
-        render(scene, argparse.Namespace(**vars(options) | changed))
+        render_output(scene, argparse.Namespace(**vars(options) | changed))
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 

@@ -93,16 +93,26 @@ def takes_settings(function: Function, source: Callable[..., Any] | None = None)
 
 @overload
 def render(
-    scene: Scene, width: int | None = None, height: int | None = None, *,
-    linear: Literal[True] | None = None, rows: tuple[int, int] | None = None, **settings: Unpack[Keywords],
-) -> LinearImage: ...  # fmt: skip
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: Literal[True] | None = None,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> LinearImage: ...
 
 
 @overload
 def render(
-    scene: Scene, width: int | None = None, height: int | None = None, *,
-    linear: bool, rows: tuple[int, int] | None = None, **settings: Unpack[Keywords],
-) -> Image: ...  # fmt: skip
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    linear: bool,
+    rows: tuple[int, int] | None = None,
+    **settings: Unpack[Keywords],
+) -> Image: ...
 
 
 @takes_settings

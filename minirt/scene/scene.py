@@ -15,9 +15,19 @@ from minirt.errors import check_whole
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
-from minirt.scene import elements as others
 from minirt.scene import writer
-from minirt.scene.elements import DEFAULT_SIZE, Ambient, Background, Camera, FurtherCamera, Lamp, Resolution
+from minirt.scene.elements import (
+    DEFAULT_SIZE,
+    Ambient,
+    Background,
+    Camera,
+    FurtherCamera,
+    FurtherLight,
+    Lamp,
+    ParallelLight,
+    Resolution,
+    SpotLight,
+)
 from minirt.scene.pages import Answer, Item, Page, pages_of, replace_item, span_of_ids
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -129,9 +139,9 @@ class Scene(Immutable):
         ambients: tuple[Ambient, ...]
         backgrounds: tuple[Background, ...]
         further_cameras: tuple[FurtherCamera, ...]
-        further_lights: tuple[others.FurtherLight, ...]
-        parallel_lights: tuple[others.ParallelLight, ...]
-        spot_lights: tuple[others.SpotLight, ...]
+        further_lights: tuple[FurtherLight, ...]
+        parallel_lights: tuple[ParallelLight, ...]
+        spot_lights: tuple[SpotLight, ...]
         spheres: tuple[kinds.Sphere, ...]
         planes: tuple[kinds.Plane, ...]
         cylinders: tuple[kinds.Cylinder, ...]

@@ -174,3 +174,9 @@ def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.
             else:
                 picture(scene.beside(file_name(name, ",")))
                 yield name
+
+
+def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
+    """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
+    is_mesh = isinstance(file, MeshFile)
+    return next(usable_files(scene, is_mesh, file.name if isinstance(file, MeshFile) else file, steps), file)

@@ -17,7 +17,7 @@ from minirt.fields.directions import cos_and_sin, neat
 from minirt.fields.scalars import FARTHEST, Factor, clamp
 from minirt.scene import Scene
 from minirt.shapes.shape import Oriented
-from minirt.viewer.files import usable_files
+from minirt.viewer.files import next_file
 
 CHANNELS = "red", "green", "blue"
 ANGLES = "heading", "elevation"  # of a direction, in degrees: from z towards x, and above the horizon
@@ -63,8 +63,7 @@ class Value(NamedTuple):
         """The field's value after a number of steps; `stride`: a step of a movement in scene units."""
         field, old = self.leaf, self.get(element)
         if isinstance(field, MeshField) or any(field.pictures(old)):
-            after = old.name if isinstance(field, MeshField) else old
-            return self.replaced(element, next(usable_files(scene, isinstance(field, MeshField), after, steps), old))
+            return self.replaced(element, next_file(scene, old, steps))
         if self.channel is None or isinstance(field, Colour | Lengths):
             new = field.nudge(old, steps)
             return self.replaced(element, new if self.channel is None else new[self.channel])
