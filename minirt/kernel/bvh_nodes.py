@@ -30,11 +30,10 @@ NEXT = 18 * WIDTH  # the tagged distance of the node or leaf that each ray visit
 TOP = 19 * WIDTH  # for each ray the offset of the top row of its stack, an integer
 STACK = 20 * WIDTH  # for each level of the tree and each ray a row: the tagged distances of children still to visit
 STACK_LEVEL = WIDTH * WIDTH  # numbers of one level of the stacks of all rays
-# For the root and each level of the tree, of what the packet as a whole has still to visit: tagged distances, and which
-# rays meet it.
+# For each level of the tree, of what the packet as a whole has still to visit: tagged distances, and which rays hit it.
 PACKET = STACK + (LEVELS + WIDTH) * STACK_LEVEL
 PACKET_LEVEL = 2 * WIDTH
-MEMORY = PACKET + (1 + LEVELS + WIDTH) * PACKET_LEVEL
+MEMORY = PACKET + (LEVELS + WIDTH) * PACKET_LEVEL
 
 
 class Group(NamedTuple):

@@ -81,10 +81,12 @@ def walk(visit: Callable[..., None], step: Callable[..., None], tree: Tree, memo
     is_small = tree.nodes.shape[0] <= NODE
     few = FEW_IN_SMALL if is_small else FEW
     apart = load_vec(memory, DIRECTION) - vec_at(memory, DIRECTION, first(active))
-    differ = not is_small and any(active & (dot(apart, apart) > APART))
+    rays = bits(active)
+    if are_few(rays, few) or (not is_small and any(active & (dot(apart, apart) > APART))):
+        traverse(visit, tree, memory, rays, 0.0)
+        return
     at = PACKET
-    save(splat(inf, apart.x), memory, at)
-    memory[at], memory[at + WIDTH] = 0.0, bits(active)  # the root
+    push_children(tree.nodes, 0, memory, at)
     while at >= PACKET:
         tags = load(memory, at)
         nearest = least_lane(tags)
@@ -94,7 +96,7 @@ def walk(visit: Callable[..., None], step: Callable[..., None], tree: Tree, memo
         child = first(tags == nearest)
         memory[at + child] = inf
         rays, reference = int(memory[at + WIDTH + child]), reference_of(nearest)
-        if differ or are_few(rays, few):
+        if are_few(rays, few):
             traverse(visit, tree, memory, rays, nearest)
         elif reference >= 0:
             at += PACKET_LEVEL

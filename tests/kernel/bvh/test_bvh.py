@@ -222,7 +222,7 @@ def test_the_traversal_stack_holds_the_deepest_tree() -> None:
         )
     assert leaves[:, 1].max() == 900 * WIDTH
     assert STACK + deepest[0] * STACK_LEVEL <= PACKET
-    assert PACKET + (1 + deepest[0]) * PACKET_LEVEL <= MEMORY
+    assert PACKET + deepest[0] * PACKET_LEVEL <= MEMORY
 
 
 def test_any_number_of_threads_builds_the_same_tree(monkeypatch: pytest.MonkeyPatch) -> None:
