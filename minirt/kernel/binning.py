@@ -39,16 +39,15 @@ class Projection(NamedTuple):
     balls: Any  # (b, 4) centre and radius
     first_ball: Any  # (s + 1,)
     boxes: Any  # (s, 2, 3)
-    listed: Any  # (s,)
-    slots: Any  # (n, 2)
+    listed: Any  # (s, 4)
     planes: Any  # (p, 5)
-    plane_indices: Any  # (p,)
+    plane_places: Any  # (p,) their numbers in lists
     shown: Any  # (p,) whether a plane has rectangles
     chunk: int  # shapes in it, at most
     rectangles: Any  # (r, 4) shape, first cell, columns and rows
     used: Any  # (chunks + 1,) rows of each chunk, and of the planes
-    cones: Any  # (n, 5) as in `minirt.kernel.scene_arrays`; 0 for shapes without a rectangle
-    cone_bits: Any  # (n, 5) the same memory as integers
+    cones: Any  # (s, 5) as in `minirt.kernel.scene_arrays`; 0 for shapes without a rectangle
+    cone_bits: Any  # (s, 5) the same memory as integers
     sides: Any  # (p,) of each plane, on which the point lies: 1, -1, or 0 where rounding may decide
     found: Any  # (2,) the number of members of all lists, and of planes whose side was another one before
     extents: Any  # float32 (n, 4) or (0, 4): the last column receives bounds of coordinates from the point
@@ -85,29 +84,28 @@ def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
     It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
     """
     grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
-    index = seen.listed[shape]
     if has_rows(seen.extents):
-        seen.extents[index, 3] = extent_from(seen.origin, seen.boxes, shape)
+        seen.extents[seen.listed[shape, 2], 3] = extent_from(seen.origin, seen.boxes, seen.listed[shape, 3])
     if start == end:
         return at
     if seen.reach < inf:
-        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[index])
-    for face in range(grid.frames.shape[0] if seen.cones[index, 4] <= seen.reach else 0):
+        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
+    for face in range(grid.frames.shape[0] if seen.cones[shape, 4] <= seen.reach else 0):
         column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
         if columns > 0 and rows > 0:
-            at = write_rectangle(seen, at, index, face * grid.down + row, column, columns, rows)
+            at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
     for i in range(5):
-        seen.cones[index, i] = 0.0
+        seen.cones[shape, i] = 0.0
     if at > before:
-        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[index])
-    quantise_distance(seen, index)
+        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
+    quantise_distance(seen, shape)
     return at
 
 
 def write_rectangle(seen: Projection, at: int, shape: int, row: int, column: int, columns: int, rows: int) -> int:
     """Write rectangle number `at`, and return the next number. The cells of each kind are followed by one more."""
     seen.rectangles[at, 0] = shape
-    seen.rectangles[at, 1] = seen.slots[shape, 0] * (seen.grid.cells + 1) + row * seen.grid.across + column
+    seen.rectangles[at, 1] = seen.listed[shape, 0] * (seen.grid.cells + 1) + row * seen.grid.across + column
     seen.rectangles[at, 2] = columns
     seen.rectangles[at, 3] = rows
     return at + 1
@@ -132,7 +130,7 @@ def quantise_distance(seen: Projection, shape: int) -> None:
 def project_planes(seen: Projection, slack: float, at: int) -> int:
     """Project all planes to rectangles of one row of cells, from number `at` on; return the number behind the last."""
     for number in range(seen.planes.shape[0]):
-        plane, shape = seen.planes[number], seen.plane_indices[number]
+        plane, shape = seen.planes[number], seen.plane_places[number]
         height = signed_height(plane, vector(seen.origin, 0), slack)
         side = int(height > 0.0) - int(height < 0.0)
         seen.found[1] += int(seen.sides[number] != side)
@@ -232,27 +230,27 @@ def move_shape(shape: int, seen: Projection, starts: Any, members: Any) -> None:
 
 def rectangles_of(seen: Projection, shape: int) -> tuple[int, int]:
     """Return the range of the rectangles of a shape."""
-    number, index = shape // seen.chunk, seen.listed[shape]
+    number = shape // seen.chunk
     first = number * seen.chunk * seen.grid.frames.shape[0]
     stop = first + seen.used[number]
-    while first < stop and seen.rectangles[first, 0] < index:
+    while first < stop and seen.rectangles[first, 0] < shape:
         first += 1
     end = first
-    while end < stop and seen.rectangles[end, 0] == index:
+    while end < stop and seen.rectangles[end, 0] == shape:
         end += 1
     return first, end
 
 
 def take_out(seen: Projection, shape: int, starts: Any, members: Any) -> None:
     """Take a shape out of the lists of the cells of its rectangles, in ascending order."""
-    index, (first, end) = seen.listed[shape], rectangles_of(seen, shape)
+    first, end = rectangles_of(seen, shape)
     last, gone, before, behind = starts.shape[0] - 1, 0, 0, 0
     for at in range(first, end):
         _, corner, columns, rows = rectangle_at(seen, at)
         for i in range(columns * rows):
             cell = corner + i // columns * seen.grid.across + i % columns
             place = int(starts[cell])
-            while members[place] != index:
+            while members[place] != shape:
                 place += 1
             shift(starts, members, before, cell, behind, place, -gone)
             gone, before, behind = gone + 1, cell, place + 1
@@ -260,8 +258,8 @@ def take_out(seen: Projection, shape: int, starts: Any, members: Any) -> None:
 
 
 def put_in(seen: Projection, shape: int, more: int, starts: Any, members: Any) -> None:
-    """Put a shape into the lists of the cells of its rectangles, in descending order: by distance, then by index."""
-    index, (first, end) = seen.listed[shape], rectangles_of(seen, shape)
+    """Put a shape into the lists of the cells of its rectangles, in descending order: by distance, then by number."""
+    first, end = rectangles_of(seen, shape)
     last = starts.shape[0] - 1
     stop = int(starts[last])
     for at in range(end - 1, first - 1, -1):
@@ -269,17 +267,17 @@ def put_in(seen: Projection, shape: int, more: int, starts: Any, members: Any) -
         for i in range(columns * rows - 1, -1, -1):
             cell = corner + i // columns * seen.grid.across + i % columns
             place = int(starts[cell + 1])
-            while place > starts[cell] and is_behind(seen, members[place - 1], index):
+            while place > starts[cell] and is_behind(seen, members[place - 1], shape):
                 place -= 1
             shift(starts, members, cell, last, place, stop, more)
             more, last, stop = more - 1, cell, place
-            members[place + more] = index
+            members[place + more] = shape
 
 
-def is_behind(seen: Projection, index: int, other: int) -> bool:
-    """Whether a primitive follows another one in lists."""
-    depth, nearer = seen.cone_bits[index, 4], seen.cone_bits[other, 4]
-    return bool(depth > nearer or (depth == nearer and index > other))
+def is_behind(seen: Projection, shape: int, other: int) -> bool:
+    """Whether a shape follows another one in lists."""
+    depth, nearer = seen.cone_bits[shape, 4], seen.cone_bits[other, 4]
+    return bool(depth > nearer or (depth == nearer and shape > other))
 
 
 def shift(starts: Any, members: Any, before: int, last: int, first: int, stop: int, by: int) -> None:

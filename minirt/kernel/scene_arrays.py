@@ -65,12 +65,13 @@ class SceneArrays(NamedTuple):
     lights: Any  # (m, 6) position and intensity of each light source
     colours_and_extents: Any  # (n, 4) colour of each shape, red green blue in [0, 1], and its largest coordinate
     slots: Any  # (n, 2) index of each shape's group, and of its row in that group
+    listed: Any  # int32 (s, 4) group, row, index of the first primitive, and index of each shape, as lists number them
     tile_shapes: Any  # shapes of all tiles, those of a tile and kind sorted by distance; behind them room for more
-    cones: Any  # (n, 5) bounding cones as seen from the eye
+    cones: Any  # (s, 5) bounding cones as seen from the eye
     square: int  # pixels along an edge of the squares of the screen that have lists: a tile, or less in a crowd
     light_buffer_cells: int  # cells along an edge of a light buffer's cube; 1 if light buffers are not used
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance
-    light_cones: Any  # (m, n, 5) bounding cones as seen from each light
+    light_cones: Any  # (m, s, 5) bounding cones as seen from each light
     groups: Any  # a tuple of Group: one for each kind of shape in the scene
     # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows means that
     # the kernel has the feature and the scene lacks it.

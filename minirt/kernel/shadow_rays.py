@@ -104,8 +104,8 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
     scene, rays, cell, in_cell, glass = arguments
     start, end = range_in_cell(group, rays.light, cell)
     for i in range(start, end):
-        index = scene.light_shapes[i]
-        cone, row = scene.light_cones[rays.light, index], scene.slots[index, 1]
+        cone, listed = scene.light_cones[rays.light, scene.light_shapes[i]], scene.listed[scene.light_shapes[i]]
+        row, index = listed[1], listed[2]
         if not any(visible & in_cell & (rays.distance > cone[4])):
             break
         towards = dot(vector(cone, 0), rays.towards)  # minus the cosine of the angle from the axis

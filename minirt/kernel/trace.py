@@ -75,12 +75,12 @@ def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
     scene, tile, origin, direction = arguments
     start, end = range_in_tile(group, tile)
     for i in range(start, end):
-        index = scene.tile_shapes[i]
-        cone, row = scene.cones[index], scene.slots[index, 1]
+        cone, listed = scene.cones[scene.tile_shapes[i]], scene.listed[scene.tile_shapes[i]]
         nearer = state[0] > cone[4]
         if not any(nearer):
             break
         if cone[3] <= -1.0 or rarely(in_cone(cone, direction)):
+            row, index = listed[1], listed[2]
             if group.trees is None:
                 state = closest_of_shape(group, row, index, nearer, state, arguments)
             else:

@@ -155,6 +155,7 @@ class Packing:
                 ("colours", colours.decodes), colours.surface_colours, shapes.colours_and_extents
             ),
             slots=shapes.slots,
+            listed=shapes.listed,
             tile_shapes=eye.members,
             cones=eye.cones,
             square=square,
@@ -187,7 +188,7 @@ class Packing:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
         shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
         has_meshes = Mesh in shapes.group_numbers  # from whose facets rays may be moved out of reach
-        has_cones = visibility.has_cones(len(sources), len(shapes.slots))
+        has_cones = visibility.has_cones(len(sources), len(shapes.listed))
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for light in sources:
@@ -238,13 +239,13 @@ def all_but_pose(scene: Scene) -> tuple[Any, ...]:
 def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
     starts, members = np.zeros((len(shapes.tables), 0, 1), np.int32), np.zeros(0, np.int32)
-    cones = np.zeros((0, len(shapes.slots), 5))
+    cones = np.zeros((0, len(shapes.listed), 5))
     if len(binned) == 1:  # in the same memory: a million shapes take long to copy
         starts, cones, members = binned[0].starts[:, None], binned[0].cones[None], binned[0].members
     elif binned:
         offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])], dtype=np.int32)
         starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
-        cones = np.zeros((len(binned), len(shapes.slots), 5))
+        cones = np.zeros((len(binned), len(shapes.listed), 5))
         if visibility.has_cones(*cones.shape[:2]):
             np.stack([each.cones for each in binned], out=cones)
         members = np.concatenate([each.members for each in binned])

@@ -133,7 +133,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     packing = Packing()
     arrays = packing.pack(scene, width, height)
     seen, lit = (
-        [scene.shapes[index] for index in np.unique(packing.shape_arrays.owner[np.unique(each)]).tolist()]
+        [scene.shapes[index] for index in arrays.listed[np.unique(each), 3].tolist()]
         for each in (arrays.tile_shapes[: arrays.groups[-1].tile_starts[-1]], arrays.light_shapes)
     )
     used = {feature for shape in seen for feature in material_features(shape)}

@@ -112,7 +112,11 @@ def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_o
         assert np.array_equal(balls, shape_arrays.bounding_balls(shapes)), seed
 
 
-def test_adding_and_removing_pack_only_the_page_that_they_change(packed: list[Any]) -> None:
+@pytest.mark.parametrize("crowd", [0, 50_000])
+def test_adding_and_removing_pack_only_the_page_that_they_change(
+    packed: list[Any], crowd: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shape_arrays, "CROWD", crowd)
     balls = [Sphere((i, 1, 2), 1, (i % 256, 0, 0)) for i in range(PAGE_LENGTH)]
     tubes = [Cylinder((i, 0, 0), (0, 1, 0), 1, 1, (0, i % 256, 0)) for i in range(PAGE_LENGTH)]
     scene = Scene((*balls, EYE, *SHAPES, *tubes, *SHAPES))
@@ -124,8 +128,11 @@ def test_adding_and_removing_pack_only_the_page_that_they_change(packed: list[An
         assert set(packed) <= {*SHAPES, *tubes}
         anew.allocate()
         anew.update(*edited.runs)
-        for name in ("boxes", "balls", "colours_and_extents", "planes", "tables"):
+        for name in ("boxes", "balls", "colours_and_extents", "planes", "tables", "listed", "slots"):
             assert all(map(np.array_equal, getattr(arrays, name), getattr(anew, name))), name
+        for group, table in enumerate(arrays.tables):
+            numbers = shape_arrays.packed_rows([arrays.shapes[i].pack() for i in arrays.primitives_of(group)])
+            assert np.array_equal(table.view(np.float64).reshape(len(table), -1), numbers)
 
 
 def test_shapes_that_nobody_asks_for_are_packed_without_being_made(monkeypatch: pytest.MonkeyPatch) -> None:

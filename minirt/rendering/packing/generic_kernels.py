@@ -94,6 +94,7 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         lights=numbers((0, 6)),
         colours_and_extents=numbers((0, 4)),
         slots=integers((0, 2)),
+        listed=indices.reshape(0, 4),
         tile_shapes=indices,
         cones=numbers((0, 5)),
         square=TILE,

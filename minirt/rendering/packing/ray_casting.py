@@ -62,7 +62,7 @@ def hit_distances(arrays: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarra
     """Return the distances at which one ray hits each primitive, infinite where it does not."""
     distance = np.full(len(arrays.slots), inf)
     for group, rows in enumerate(arrays.rows):
-        distance[arrays.slots[:, 0] == group] = cast(packed_columns(rows), origin, direction)
+        distance[arrays.primitives_of(group)] = cast(packed_columns(rows), origin, direction)
     return distance
 
 
@@ -71,7 +71,7 @@ def nearest_hits(arrays: ShapeArrays, origin: Vec, direction: Vec) -> tuple[np.n
     shape = np.broadcast(origin.x, origin.y, origin.z, direction.x, direction.y, direction.z).shape
     nearest, found = np.full(shape, inf), np.full(shape, -1)
     for group, rows in enumerate(arrays.rows):
-        primitives = np.flatnonzero(arrays.slots[:, 0] == group)
+        primitives = arrays.primitives_of(group)
         for start in range(0, len(rows), CHUNK):
             t = cast(packed_columns(rows[start : start + CHUNK], *(1 for _ in shape)), origin, direction)
             t = np.broadcast_to(t, (len(t), *shape))

@@ -83,20 +83,23 @@ def bounding_boxes(shapes: Sequence[Shape]) -> np.ndarray:
 
 FIRST = np.arange(1)  # index of the first primitive
 JOINED = 32  # runs, at most
+CROWD = 50_000  # shapes, beyond which lists number them in the order of Morton's curve
+CURVE = 10  # bits of a coordinate there
+SPREAD = np.array([int(f"{number:b}", 8) for number in range(2**CURVE)])  # its bits, every third one
 
 
 class ShapeArrays:
     """The n primitives of the last shapes that it was given: a mesh has one for each triangle, other shapes have one.
 
-    `written` (s,) has for each of s shapes the number of the last of all `updates` that wrote it. `owner` (n,) is the
-    index in `shapes` of each primitive's shape, `first_primitive` the first primitive of each shape, and `listed` those
-    that lists for culling have: a mesh is there by its first triangle. Each kind of shape has a group, numbered by
-    `group_numbers`. `tables` are the rows, `slots` and `colours_and_extents` those of
+    `places` (s,) are the numbers of all s shapes in lists for culling; `written` (s,) has for each one, in that order,
+    the number of the last of all `updates` that wrote it. `owner` (n,) is the index in `shapes` of each primitive's
+    shape, and `first_primitive` the first primitive of each shape. Each kind of shape has a group, numbered by
+    `group_numbers`. `tables` are the rows, `slots`, `listed` and `colours_and_extents` those of
     `minirt.kernel.scene_arrays`; triangles of meshes have no extent there. `boxes`, (s, 2, 3), are the least and the
-    greatest corner of a box around each of s shapes; of an infinite shape, those of its defining points. Shape i is in
+    greatest corner of a box around each of s shapes; of an infinite shape, those of its defining points. Number i is in
     the hull of `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it.
     Or it is one of the `planes`, (p, 5) unit normal, its product with the points of the plane, and the rounding error
-    of that, whose primitives are `plane_indices`.
+    of that, whose primitives are `plane_indices` and whose numbers are `plane_places`.
     """
 
     runs: tuple[Sequence[Shape], ...]
@@ -104,6 +107,7 @@ class ShapeArrays:
 
     def __init__(self) -> None:
         self.allocate()
+        self.arrange(FIRST[:0])
 
     def update(self, *runs: Sequence[Shape]) -> bool:
         """Bring the arrays up to date with shapes, run by run; return whether anything changed."""
@@ -127,10 +131,12 @@ class ShapeArrays:
             parts = joined(runs[first:last], sum(map(len, runs[:first])))
         self.updates += 1
         for indices, members in parts:
-            groups = self.slots[self.listed[indices], 0]
+            groups = self.slots[self.first_primitive[indices], 0]
             for group in set(groups.tolist()):
                 at = np.flatnonzero(groups == group)
                 self.write(group, indices[at], members if len(at) == len(members) else [members[i] for i in at])
+        if not fits:
+            self.arrange(morton_order(self.boxes) if len(self.boxes) > CROWD else np.arange(len(self.boxes)))
         return True
 
     @cached_property
@@ -178,11 +184,37 @@ class ShapeArrays:
             self.slots[groups == group, 1] = np.arange(counts[group])
         self.plane_indices = np.flatnonzero(self.is_plane[groups])
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
-        self.listed = self.first_primitive[:-1]
-        self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.listed]])])
+        self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.first_primitive[:-1]]])])
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(sizes), 2, 3))
         self.written = np.zeros(len(sizes), np.int32)
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
+        self.places = np.arange(len(sizes))
+
+    def arrange(self, order: np.ndarray) -> None:
+        """Number the shapes in lists, their balls and the rows of their tables in some order, but not triangles."""
+        at, first = self.balls_of(order), self.first_primitive[order]
+        self.first_ball, self.balls = np.append(0, np.cumsum(np.diff(self.first_ball)[order])), self.balls[at]
+        for kind, group in self.group_numbers.items():
+            if kind is not Mesh:
+                members = first[self.slots[first, 0] == group]
+                rows = self.tables[group].view(np.float64).reshape(len(members), -1)  # copied in half of the time
+                rows[:] = rows[self.slots[members, 1]]
+                self.slots[members, 1] = np.arange(len(members))
+        self.listed, self.places = np.empty((len(order), 4), np.int32), np.empty(len(order), np.int32)
+        self.listed[:, :2], self.listed[:, 2], self.listed[:, 3] = self.slots[first], first, order
+        self.places[order] = np.arange(len(order))
+        self.plane_places = self.places[self.owner[self.plane_indices]]
+
+    def balls_of(self, shapes: np.ndarray) -> np.ndarray:
+        """Return the indices of the balls of some shapes."""
+        starts = self.first_ball[self.places[shapes]]
+        counts = self.first_ball[self.places[shapes] + 1] - starts
+        return np.repeat(starts + counts - np.cumsum(counts), counts) + np.arange(counts.sum())
+
+    def primitives_of(self, group: int) -> np.ndarray:
+        """Return the indices of the primitives of a group in the order of its rows."""
+        members = np.flatnonzero(self.slots[:, 0] == group)
+        return members[np.argsort(self.slots[members, 1])]
 
     def take_ends(self, before: ShapeArrays) -> tuple[int, int]:
         """Copy the rows of the first and the last runs that other arrays have, too; return the number of the first run
@@ -191,13 +223,16 @@ class ShapeArrays:
         last = len(self.runs) - common(self.runs[first:][::-1], before.runs[first:][::-1])
         ends = [sum(map(len, self.runs[:number])) for number in (first, last)]
         primitives = self.first_primitive[ends]
-        pairs: list[Any] = [(self.boxes, before.boxes, ends), (self.balls, before.balls, self.first_ball[ends])]
+        balls = before.balls[before.balls_of(np.arange(len(before.boxes)))]
+        pairs: list[Any] = [(self.boxes, before.boxes, ends), (self.balls, balls, self.first_ball[ends])]
         pairs.append((self.colours_and_extents, before.colours_and_extents, primitives))
         pairs.append((self.planes, before.planes, np.searchsorted(self.plane_indices, primitives)))
         for kind, group in self.group_numbers.items():
             if kind in before.group_numbers:
                 counts = np.cumsum(np.append(0, self.slots[:, 0] == group))[primitives]
-                pairs.append((self.tables[group], before.tables[before.group_numbers[kind]], counts))
+                number = before.group_numbers[kind]
+                rows = before.tables[number][before.slots[before.slots[:, 0] == number, 1]]
+                pairs.append((self.tables[group], rows, counts))
         for into, rows, (start, stop) in pairs:
             into[:start], into[stop:] = rows[:start], rows[len(rows) - len(into) + stop :]
         return first, last
@@ -219,8 +254,8 @@ class ShapeArrays:
 
     def write(self, group: int, shapes: np.ndarray, members: Sequence[Shape]) -> None:
         """Write some shapes of one kind, given by their indices, too, into the arrays."""
-        indices = self.listed[shapes]
-        self.written[shapes] = self.updates
+        indices, places = self.first_primitive[shapes], self.places[shapes]
+        self.written[places] = self.updates
         rows, boxes, balls = pack_shapes(members)
         low, high, extents = spans(boxes)
         self.boxes[shapes, 0], self.boxes[shapes, 1] = low.T, high.T
@@ -240,7 +275,7 @@ class ShapeArrays:
         else:
             x, y, z, radius = np.abs(np.moveaxis(balls, 2, 0))
             balls[..., 3] += MARGIN * (radius + np.maximum(np.maximum(x, y), z))
-            self.balls[self.first_ball[shapes, None] + np.arange(balls.shape[1])] = balls
+            self.balls[self.first_ball[places, None] + np.arange(balls.shape[1])] = balls
 
     def tint(self, index: int, mesh: Any) -> None:
         """Write the colours of the triangles of a mesh, unless they are there."""
@@ -273,6 +308,18 @@ def spans(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     corners = np.ascontiguousarray(points.transpose(1, 2, 0))  # reduced in an eighth of the time
     low, high = corners.min(axis=0), corners.max(axis=0)
     return low, high, np.maximum(np.abs(low), np.abs(high)).max(axis=0)
+
+
+def morton_order(boxes: np.ndarray) -> np.ndarray:
+    """Return the order of boxes (n, 2, 3) along the curve of Morton (1966) through their centres: boxes that are near
+    one another are so in memory, too. Frames of a million spheres take four fifths of the time."""
+    numbers = np.arange(len(boxes))
+    for axis in range(3):
+        centres = boxes[:, 0, axis] + boxes[:, 1, axis]
+        steps = 2.0 ** (CURVE - 3) / (centres.std() or 1.0)
+        cells = np.clip((centres - centres.mean()) * steps + 2.0 ** (CURVE - 1), 0.0, 2.0**CURVE - 1.0)
+        numbers |= SPREAD[cells.astype(np.int64)] << 32 + axis
+    return np.sort(numbers) & 2**32 - 1
 
 
 def extents_from(eye: np.ndarray, boxes: np.ndarray) -> np.ndarray:

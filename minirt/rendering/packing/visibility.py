@@ -46,7 +46,7 @@ NO_EXTENTS, NO_CONES = np.zeros((0, 4), np.float32), np.zeros((0, 5))
 NO_TABLES = np.zeros((0, 5), np.int64), np.zeros(0, np.int64), np.zeros(5)
 STILL = Followers(np.zeros(14), np.zeros((2, 0)), np.zeros(0), *NO_TABLES)  # arrays of which none follows
 # Fields of `Projection`, and of `ShapeArrays`.
-BOUNDS = "balls", "first_ball", "boxes", "listed", "slots", "planes", "plane_indices"
+BOUNDS = "balls", "first_ball", "boxes", "listed", "planes", "plane_places"
 Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all threads
 
 
@@ -165,7 +165,7 @@ class Bins:
         chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
         self.kernel, self.shapes = kernel, shape_arrays
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
-        room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((len(shape_arrays.slots), 5))
+        room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
         self.pose = np.append(np.zeros(3), grid.frames)
         self.seen = Projection(
             origin=self.pose[:3],
@@ -207,7 +207,7 @@ class Bins:
             self.check(0)
         view: Any = *pose, self.shown
         moved: Any = np.flatnonzero(self.shapes.written > self.updates) if self.shapes.updates > self.updates else []
-        same = view == self.last and not self.shapes.is_plane[self.shapes.slots[self.shapes.listed[moved[:2]], 0]].any()
+        same = view == self.last and not self.shapes.is_plane[self.shapes.listed[moved[:2], 0]].any()
         self.updates, self.last, self.counter[0], self.seen.found[1] = self.shapes.updates, (), 0, 0
         pack_into(f"{len(pose)}d", self.pose.data, 0, *pose)
         if same and len(moved) == 1:
@@ -239,13 +239,13 @@ def in_all_cells(
 
     `TooLargeError` where many cells have so many shapes that nobody would wait for the picture.
     """
-    count = len(shape_arrays.slots)
-    if cells > 1 and cells * len(shape_arrays.listed) > MOST_MEMBERS:
+    count = len(shape_arrays.listed)
+    if cells > 1 and cells * count > MOST_MEMBERS:
         raise system.TooLargeError(f"{count} shapes in each of {cells} tiles are too many")
     if cones is None:
         cones = np.tile([0.0, 0.0, 0.0, -2.0, 0.0], (count, 1))
-    shapes = np.setdiff1d(shape_arrays.listed, [] if skipped is None else shape_arrays.plane_indices[skipped])
-    kinds = shape_arrays.slots[shapes, 0]
+    shapes = np.setdiff1d(np.arange(count), [] if skipped is None else shape_arrays.plane_places[skipped])
+    kinds = shape_arrays.listed[shapes, 0]
     order = np.lexsort((cones[shapes, 4], kinds))
     members = shapes[order].astype(np.int32)
     ends = np.searchsorted(kinds[order], np.arange(len(shape_arrays.tables))[:, None] + [0, 1])

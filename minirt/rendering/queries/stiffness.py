@@ -112,7 +112,7 @@ def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray, boxes: np.nda
     shape, (n,), infinity if it has none."""
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
-        selected = np.flatnonzero(tables.slots[:, 0] == group)
+        selected = tables.primitives_of(group)
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
         nearest[selected] = np.stack([np.broadcast_to(part, len(selected)) for part in (on.x, on.y, on.z)], axis=-1)
@@ -172,7 +172,7 @@ def all_hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.n
     """For each shape and ray return the hit distance, infinity for a miss, and the cosine of ray and normal."""
     t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
     for group, rows in enumerate(tables.rows):
-        selected, packed, kind = tables.slots[:, 0] == group, packed_columns(rows, 1), kind_of(rows.dtype.names)
+        selected, packed, kind = tables.primitives_of(group), packed_columns(rows, 1), kind_of(rows.dtype.names)
         hit, at = kind.intersect(packed, eye, ways)
         _, normal = kind.surface(packed, eye + at * ways)
         t[selected], slopes[selected] = np.where(hit, at, np.inf), np.abs(dot(normal, ways))

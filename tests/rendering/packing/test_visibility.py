@@ -19,7 +19,7 @@ from minirt.kernel.scene_arrays import kind_of, read
 from minirt.kernel.shadow_rays import CACHED, CIRCLE, is_close, light_buffer_cell, remember_cell
 from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
-from minirt.rendering.packing import visibility
+from minirt.rendering.packing import shape_arrays, visibility
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import FEW, Packing
@@ -41,8 +41,14 @@ def members(arrays: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.n
     all_starts = [getattr(group, starts)[row] for group in arrays.groups]
     found = np.zeros((len(all_starts[0]) - 1, len(arrays.slots)), bool)
     for each in all_starts:
-        found[listed(each, table)] = True
+        at, numbers = listed(each, table)
+        found[at, arrays.listed[numbers, 2]] = True
     return found
+
+
+def places_of(arrays: Any) -> np.ndarray:
+    """The number in lists of each shape, (n,)."""
+    return np.argsort(arrays.listed[:, 2])
 
 
 class RayHits(NamedTuple):
@@ -62,7 +68,7 @@ def camera_hits(arrays: Any) -> RayHits:
     tile = (y // edge * tile_count(WIDTH, edge) + x // edge).astype(int)
     found = [RayHits(*np.zeros((4, 0), int))]
     for index, (hit, t) in enumerate(hits_of_all_shapes(arrays, origin, direction)):
-        cone = np.broadcast_to(in_cone(arrays.cones[index], direction), x.shape)
+        cone = np.broadcast_to(in_cone(arrays.cones[places_of(arrays)[index]], direction), x.shape)
         found.append(RayHits(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
     return RayHits(*map(np.concatenate, zip(*found, strict=True)))
 
@@ -103,8 +109,9 @@ KERNELS = pytest.mark.parametrize("kernel", [interpreted, functions], ids=["inte
 
 @pytest.fixture(params=[False, True], ids=["few", "crowd"])
 def crowd(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The lists as usual, and those that crowds have, of smaller squares and cells, for all scenes."""
+    """The lists as usual, and those that crowds have, of smaller squares and cells and in Morton order, for all."""
     if request.param:
+        monkeypatch.setattr(shape_arrays, "CROWD", 0)
         monkeypatch.setattr(visibility, "SQUARES_BY_SHAPES", ((np.inf, TILE // 4),))
         monkeypatch.setattr(visibility, "CELLS_BY_SHAPES", ((visibility.SMALL, 1), (np.inf, 256)))
 
@@ -118,7 +125,7 @@ def test_a_tile_lists_all_shapes_that_its_rays_hit(make: Any, seed: int, kernel:
     assert len(in_tile) == tile_count(WIDTH, arrays.square) * tile_count(HEIGHT, arrays.square)
     assert in_tile[seen.tile, seen.shape].all()
     assert seen.in_cone.all()
-    assert (seen.distance >= arrays.cones[seen.shape, 4]).all()
+    assert (seen.distance >= arrays.cones[places_of(arrays)[seen.shape], 4]).all()
 
 
 def outside_scene(seed: int) -> Scene:
@@ -158,8 +165,9 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any,
         assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
         left_out = {shape for shape in planes if not in_cell[:, shape].any()}
         for shape, (hit, t) in enumerate(hits_of_all_shapes(arrays, Vec(*row[:3]), Vec(*directions))):
-            assert (t[hit] >= arrays.light_cones[light, shape, 4]).all()
-            assert (in_cone(arrays.light_cones[light, shape], Vec(*directions)) | ~hit).all()
+            cone = arrays.light_cones[light, places_of(arrays)[shape]]
+            assert (t[hit] >= cone[4]).all()
+            assert (in_cone(cone, Vec(*directions)) | ~hit).all()
             assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
 
 
@@ -185,9 +193,11 @@ def test_cells_list_what_is_in_the_circles_around_them(edge: int) -> None:
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_the_lists_of_a_crowd_change_no_bit_of_a_picture(precision: str, monkeypatch: pytest.MonkeyPatch) -> None:
     seed = SystemRandom().randrange(2**32)
-    scene = random_scene(seed).add(Sphere((0, 0, 0), 1, (9, 9, 9)), Cylinder((1, 0, 0), (0, 1, 0), 1, 1, (9, 9, 9)))
+    coincident = [Cylinder((y, y, 0), (1, 1, 0), 1, 3, (9, 99 * y, 9)) for y in (1, 0)]
+    scene = random_scene(seed).add(Sphere((0, 0, 0), 1, (9, 9, 9)), *coincident)
     drawn = []
     for edge in (TILE, TILE // 4):
+        monkeypatch.setattr(shape_arrays, "CROWD", 0 if edge < TILE else np.inf)
         monkeypatch.setattr(visibility, "SQUARES_BY_SHAPES", ((np.inf, edge),))
         renderer, pixels, light = Renderer(2, precision), np.zeros((HEIGHT, WIDTH, 4), np.uint8), []
         for samples, edges_only in ((1, False), (3, False), (2, True)):  # the last one by a plan of packets
