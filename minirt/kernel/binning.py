@@ -40,6 +40,7 @@ class Projection(NamedTuple):
     first_ball: Any  # (s + 1,)
     boxes: Any  # (s, 2, 3)
     listed: Any  # (s, 4)
+    first_primitive: Any  # (s + 1,) of each shape in the order of the scene
     planes: Any  # (p, 5)
     plane_places: Any  # (p,) their numbers in lists
     shown: Any  # (p,) whether a plane has rectangles
@@ -75,7 +76,14 @@ def project_chunk(seen: Projection, number: int) -> None:
         first = number * seen.chunk
         for shape in range(first, min(first + seen.chunk, seen.listed.shape[0])):
             end = project_shape(seen, slack, shape, end)
+            write_extent(seen, shape)
     seen.used[number] = end - start
+
+
+def write_extent(seen: Projection, index: int) -> None:
+    """Write the extent of the shape with this index in the scene: boxes and extents lie in the order of the scene."""
+    if has_rows(seen.extents):
+        seen.extents[seen.first_primitive[index], 3] = extent_from(seen.origin, seen.boxes, index)
 
 
 def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
@@ -84,8 +92,6 @@ def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
     It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
     """
     grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
-    if has_rows(seen.extents):
-        seen.extents[seen.listed[shape, 2], 3] = extent_from(seen.origin, seen.boxes, seen.listed[shape, 3])
     if start == end:
         return at
     if seen.reach < inf:
@@ -219,6 +225,7 @@ def move_shape(shape: int, seen: Projection, starts: Any, members: Any) -> None:
     """
     take_out(seen, shape, starts, members)
     project_chunk(seen, shape // seen.chunk)
+    write_extent(seen, seen.listed[shape, 3])
     first, end = rectangles_of(seen, shape)
     more, last = 0, starts.shape[0] - 1
     for at in range(first, end):

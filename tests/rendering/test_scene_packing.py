@@ -17,10 +17,10 @@ from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.scene_arrays import read
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame import frame_rays
-from minirt.rendering.packing import shape_arrays
+from minirt.rendering.packing import shape_arrays, visibility
 from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes, extents_from
 from minirt.rendering.packing.view import View
-from minirt.rendering.packing.visibility import BinnedShapes, Bins
+from minirt.rendering.packing.visibility import CHUNK, BinnedShapes, Bins
 from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene, fast, parse
@@ -229,7 +229,10 @@ def test_lists_in_the_memory_of_those_before_are_those_of_the_new_scene(
     precision: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seed = SystemRandom().randrange(2**32)
+    monkeypatch.setattr(shape_arrays, "morton_order", lambda boxes: np.arange(len(boxes))[::-1])  # also after edits
     for each in range(seed, seed + 4):
+        monkeypatch.setattr(shape_arrays, "CROWD", (50_000, 0)[each % 2])
+        monkeypatch.setattr(visibility, "CHUNK", (CHUNK, 2)[each % 2])
         follow_edits(each, precision)
     monkeypatch.setattr(Bins, "fit", lambda *_: True)
     with pytest.raises((AssertionError, ValueError)):

@@ -46,7 +46,7 @@ NO_EXTENTS, NO_CONES = np.zeros((0, 4), np.float32), np.zeros((0, 5))
 NO_TABLES = np.zeros((0, 5), np.int64), np.zeros(0, np.int64), np.zeros(5)
 STILL = Followers(np.zeros(14), np.zeros((2, 0)), np.zeros(0), *NO_TABLES)  # arrays of which none follows
 # Fields of `Projection`, and of `ShapeArrays`.
-BOUNDS = "balls", "first_ball", "boxes", "listed", "planes", "plane_places"
+BOUNDS = "balls", "first_ball", "boxes", "listed", "first_primitive", "planes", "plane_places"
 Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all threads
 
 
