@@ -17,8 +17,9 @@ from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.scene_arrays import read
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame import frame_rays
-from minirt.rendering.packing import shape_arrays, visibility
-from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes, extents_from
+from minirt.rendering.packing import packed_shapes, shape_arrays, visibility
+from minirt.rendering.packing.packed_shapes import extents_from
+from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes
 from minirt.rendering.packing.view import View
 from minirt.rendering.packing.visibility import CHUNK, BinnedShapes, Bins
 from minirt.rendering.renderer import PRECISIONS, Renderer
@@ -106,10 +107,10 @@ def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_o
     for kind in crowded:
         random = np.random.default_rng(seed)
         shapes = [example(kind, random, 10.0 ** (i % 9 - 4), i % 2) for i in range(99)]
-        rows, boxes, balls = shape_arrays.pack_shapes(shapes)
-        assert np.array_equal(rows, shape_arrays.packed_rows([shape.pack() for shape in shapes])), seed
-        assert np.array_equal(boxes, shape_arrays.bounding_boxes(shapes)), seed
-        assert np.array_equal(balls, shape_arrays.bounding_balls(shapes)), seed
+        rows, boxes, balls = packed_shapes.pack_shapes(shapes)
+        assert np.array_equal(rows, packed_shapes.packed_rows([shape.pack() for shape in shapes])), seed
+        assert np.array_equal(boxes, packed_shapes.bounding_boxes(shapes)), seed
+        assert np.array_equal(balls, packed_shapes.bounding_balls(shapes)), seed
 
 
 @pytest.mark.parametrize("crowd", [0, 50_000])
@@ -131,7 +132,7 @@ def test_adding_and_removing_pack_only_the_page_that_they_change(
         for name in ("boxes", "balls", "colours_and_extents", "planes", "tables", "listed", "slots"):
             assert all(map(np.array_equal, getattr(arrays, name), getattr(anew, name))), name
         for group, table in enumerate(arrays.tables):
-            numbers = shape_arrays.packed_rows([arrays.shapes[i].pack() for i in arrays.primitives_of(group)])
+            numbers = packed_shapes.packed_rows([arrays.shapes[i].pack() for i in arrays.primitives_of(group)])
             assert np.array_equal(table.view(np.float64).reshape(len(table), -1), numbers)
 
 

@@ -11,7 +11,7 @@ from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.packing.shape_arrays import bounding_boxes
+from minirt.rendering.packing.packed_shapes import bounding_boxes
 from minirt.shapes import Kind, Shape
 from tests import oracle
 from tests.oracle.many import crossed

@@ -18,7 +18,7 @@ from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.machine_code.fingerprint import NATIVE, fingerprint_of
 from minirt.kernel.machine_code.library import Call, Library, identity_of
 from minirt.lanes import Vec, lane, load, save, where, width
-from minirt.rendering.packing.shape_arrays import packed_rows
+from minirt.rendering.packing.packed_shapes import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
 from tests.kernel.machine_code import small_kernels
 from tests.kernel.machine_code.small_kernels import Compiler

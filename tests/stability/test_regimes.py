@@ -18,7 +18,7 @@ from minirt.element import fields_of
 from minirt.fields import Length, Lengths
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.packing.shape_arrays import bounding_boxes
+from minirt.rendering.packing.packed_shapes import bounding_boxes
 from minirt.scene import Scene
 from minirt.shapes import KINDS, Ellipsoid, Kind, Shape
 from tests.oracle.body import body, normals

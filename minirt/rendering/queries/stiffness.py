@@ -16,8 +16,9 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot
 from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import camera_numbers
+from minirt.rendering.packing.packed_shapes import bounding_boxes, extents_from
 from minirt.rendering.packing.ray_casting import camera_ray, packed_columns
-from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes, extents_from
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from minirt.shapes import Mesh, Shape
