@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from tests.paths import ROOT
+from tests.paths import PACKAGE, ROOT
 
 FOLDERS = ("minirt", "scenes", "tests", "assets")
 PAGES = sorted([*ROOT.glob("*.md"), *(page for folder in FOLDERS for page in (ROOT / folder).rglob("*.md"))])
@@ -31,6 +31,19 @@ def block(page: str, language: str, words: str) -> str:
     """The one code block of a page that contains these words."""
     (text,) = (each for each in blocks(page, language) if words in each)
     return text
+
+
+def programs() -> list[tuple[str, str]]:
+    """Pages and their Python blocks, without those that quote a source of the package."""
+    sources = [list(map(str.strip, read(name(file)).splitlines())) for file in PACKAGE.rglob("*.py")]
+    found = [(name(page), text) for page in PAGES for text in blocks(name(page), "python")]
+    return [(page, text) for page, text in found if not any(quotes(text, source) for source in sources)]
+
+
+def quotes(text: str, source: list[str]) -> bool:
+    """Whether the lines of a block all stand in a source, in the same order; others may stand between them."""
+    rest = iter(source)
+    return all(line.strip() in rest for line in text.splitlines())
 
 
 def links(page: str) -> list[str]:

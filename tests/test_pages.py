@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import re
 import shutil
+import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-import minirt
 from minirt.cli import main
 from minirt.cli.arguments import argument_parser
 from tests.make_tables import PAGE, index_text, manual_page, renewed
-from tests.pages import PAGES, anchors, block, blocks, links, name, read, without_code
+from tests.pages import PAGES, anchors, block, blocks, links, name, programs, read, without_code
 from tests.paths import PACKAGE, ROOT, TESTS
 from tests.processes import run
 from tests.skipping import require
@@ -91,38 +91,40 @@ def test_roff_shows_the_manual_page_without_a_warning() -> None:
     assert "EXIT STATUS" in re.sub(".\b", "", done.stdout)
 
 
-def test_the_example_of_the_readme_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("minirt.view", lambda scene: scene, raising=False)
-    names: dict[str, object] = {}
-    exec(block("README.md", "python", "minirt.load"), names)
-    assert (folder / "demo.png").read_bytes().startswith(b"\x89PNG")
-    assert names["scene"].spheres[0].diameter == 3  # type: ignore[attr-defined]
+# Runs a file as the main module, in a process that spawns others as macOS and Windows do. Its windows are simulated,
+# and their user presses Escape.
+SPAWNING = """
+import multiprocessing, runpy, sys
+from minirt.mlx import Key, api
+from minirt.mlx.memory import Memory
+
+def screen():
+    memory = Memory()
+    memory.press(Key.ESCAPE)
+    memory.release(Key.ESCAPE)
+    return memory
+
+api._pyglet_display = screen
+multiprocessing.set_start_method("spawn")
+runpy.run_path(sys.argv[1], run_name="__main__")
+"""
+PROGRAMS = programs()
 
 
-@pytest.mark.parametrize(
-    ("page", "words", "written"),
-    [
-        ("minirt/rendering/README.md", "Camera.look_at", "beads.png"),
-        ("minirt/rendering/README.md", "minirt.save_movie", "jump.gif"),
-        ("minirt/cluster/README.md", "minirt.render_to", "large.tif"),
-    ],
-)
-def test_examples_write_their_pictures(page: str, words: str, written: str, folder: Path) -> None:
-    exec(block(page, "python", words), {"minirt": minirt})
-    assert (folder / written).stat().st_size > 100
+@pytest.mark.parametrize(("page", "program"), PROGRAMS, ids=[f"{page}-{n}" for n, (page, _) in enumerate(PROGRAMS)])
+def test_each_python_block_runs_alone_and_writes_what_it_names(page: str, program: str, folder: Path) -> None:
+    if "notebook=True" in program:
+        require("anywidget")
+    (folder / "program.py").write_text(program, encoding="utf-8")
+    done = run([sys.executable, "-W", "error", "-c", SPAWNING, "program.py"], text=True)
+    assert (done.returncode, done.stderr) == (0, ""), f"a block of {page}"
+    written = re.findall(r'(?:save|save_movie|render_to)\(.*?"(\w+\.\w+)"', program)
+    assert all((folder / each).stat().st_size > 100 for each in written)
 
 
-def test_rays_are_traced() -> None:
-    names: dict[str, object] = {"minirt": minirt, "scene": minirt.load(ROOT / "scenes/demo.rt")}
-    exec(block("minirt/rendering/README.md", "python", "minirt.trace"), names)
-    assert names["hits"].distance.shape == (1,)  # type: ignore[attr-defined]
-
-
-def test_the_viewer_of_notebooks_opens() -> None:
-    require("anywidget")
-    names: dict[str, object] = {}
-    exec(block("minirt/viewer/README.md", "python", "notebook=True"), names)
-    names["viewer"].close()  # type: ignore[attr-defined]
+def test_blocks_that_only_quote_sources_are_few() -> None:
+    quoted = sum(len(blocks(page, "python")) for page in NAMES) - len(PROGRAMS)
+    assert 0 < quoted <= 6 < len(PROGRAMS)
 
 
 def test_the_scene_is_read_and_the_errors_are_printed_as_shown(
