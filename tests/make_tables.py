@@ -188,7 +188,8 @@ def entry(action: argparse.Action) -> str:
         value = f" {action.metavar or '{' + ','.join(map(str, action.choices or ())) + '}'}"
     names = ", ".join(rf"\fB{escaped(name)}\fR" for name in action.option_strings)
     about = (action.help or "").replace("%%", "%")
-    return f".TP\n{names}{escaped(value)}\n{escaped(about[:1].upper() + about[1:].rstrip('.'))}.\n"
+    about = about[:1].upper() + about[1:] + ("" if about.endswith(".") else ".")
+    return f".TP\n{names}{escaped(value)}\n{escaped(about)}\n"
 
 
 def escaped(text: str) -> str:

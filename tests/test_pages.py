@@ -82,6 +82,12 @@ def test_generated_parts_are_as_generated() -> None:
     assert PAGE.read_text(encoding="utf-8") == manual_page(), GENERATED
 
 
+def test_the_manual_page_has_the_whole_help_of_each_option() -> None:
+    shown = PAGE.read_text(encoding="utf-8").replace("\\-", "-").replace("\\(aq", "'").lower()
+    helps = [action.help or "" for action in argument_parser()._actions if action.option_strings]
+    assert [text for text in helps if f"\n{text.lower()}" not in shown] == []
+
+
 def test_roff_shows_the_manual_page_without_a_warning() -> None:
     groff = shutil.which("groff")
     if not groff:
