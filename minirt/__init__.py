@@ -8,24 +8,28 @@ minirt.render(scene, 640, 480, samples=4).save("demo.png")
 from __future__ import annotations
 
 import os
-import re
 import sys
 from functools import cache
 from importlib import import_module
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # as in `typing`, whose import would take as long as all others
 if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
+    from typing import Any
+
     from minirt.cluster.pictures import render_all as render_all
     from minirt.cluster.pictures import render_to as render_to
     from minirt.element import Element as Element
+    from minirt.errors import ElementError as ElementError
     from minirt.errors import FileError as FileError
     from minirt.errors import MiniRTError as MiniRTError
     from minirt.errors import MlxError as MlxError
+    from minirt.errors import Problem as Problem
     from minirt.errors import RenderError as RenderError
     from minirt.errors import ReplayError as ReplayError
     from minirt.errors import SceneError as SceneError
     from minirt.fields import MeshFile as MeshFile
+    from minirt.fields import Triple as Triple
+    from minirt.helpers.system import TooLargeError as TooLargeError
     from minirt.helpers.system import limit_memory as limit_memory
     from minirt.materials import *  # noqa: F403
     from minirt.movie import save_movie as save_movie
@@ -35,6 +39,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.buffers import buffers as buffers
     from minirt.rendering.image import Image as Image
     from minirt.rendering.image import LinearImage as LinearImage
+    from minirt.rendering.outcome import Outcome as Outcome
     from minirt.rendering.queries.rays import Hits as Hits
     from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace
@@ -85,6 +90,9 @@ def homes() -> dict[str, str]:
 
     At run time they are imported on first use, so that `miniRT --help` need not wait for them.
     """
+    import re
+    from pathlib import Path
+
     source = Path(__file__).read_text(encoding="utf-8")
     return {name: module for module, name in re.findall(r"^    from (\S+) import (\w+) as", source, re.MULTILINE)}
 

@@ -4,12 +4,12 @@
     ├── SceneError     a scene file cannot be read, used or written: all of its problems
     ├── RenderError    a picture cannot be rendered or written
     ├── FileError      a file that a scene names, such as a texture or a mesh, cannot be used
+    ├── ElementError   fields of a scene element that are out of range or do not go together; a ValueError, too
     ├── ReplayError    a file of recorded keys cannot be played
     └── MlxError       no window can be opened
 
     ValueError
-    ├── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
-    └── ElementError   fields of a scene element that are out of range or do not go together
+    └── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
 
 Only `minirt.cli` prints them.
 """
@@ -134,5 +134,5 @@ class FieldError(ValueError):
         self.part = part
 
 
-class ElementError(ValueError):
+class ElementError(MiniRTError, ValueError):
     """Fields of a scene element, or of a record, that are out of range or do not go together."""

@@ -43,7 +43,7 @@ class SavedMovie(list[Path]):
         """Return the film as HTML; None, for its names alone, where a notebook cannot play it."""
         (path, *others) = self
         media = MEDIA.get(path.suffix.lower())
-        if others or not media or path.stat().st_size > INLINE:
+        if others or not media or not (status := file_io.found(path)) or status.st_size > INLINE:
             return None
         source = f"data:{media};base64,{b64encode(path.read_bytes()).decode()}"
         if media.startswith("image"):
@@ -52,9 +52,15 @@ class SavedMovie(list[Path]):
 
 
 def save_movie(
-    pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS, *, quality: int | None = None
+    pictures: Iterable[Image | np.ndarray],
+    path: str | os.PathLike[str],
+    fps: float = FPS,
+    *,
+    quality: int | None = None,
 ) -> SavedMovie:
     """Write a film of `fps` pictures per second; return its files, as a list that notebooks play.
+
+    The pictures are those of `minirt.render`, or arrays (h, w, 3) of uint8, red, green and blue.
 
     A path that ends in .gif, .webp, .apng, .mp4 or .webm gives one file, written as a whole or not at all; the first
     three loop for ever, the last two need PyAV. Any other path, such as spin.png, gives a file for each picture:
@@ -70,7 +76,8 @@ def save_movie(
     with in_notebooks(state):
         check_quality(format_of(path), quality)
         film = Film(path, fps, quality) if FORMATS[format_of(path)].is_film else None
-        for picture in pictures:
+        for each in pictures:
+            picture = image_of(each)
             if film:
                 film.add(picture)
             else:
@@ -79,6 +86,17 @@ def save_movie(
     if not number:
         raise RenderError("a movie needs a picture")
     return SavedMovie([film.save()] if film else [numbered(path, each) for each in range(1, number + 1)])
+
+
+def image_of(picture: Image | np.ndarray) -> Image:
+    """Return a picture of a film as an `Image`; RenderError for an array that is none."""
+    if isinstance(picture, Image):
+        return picture
+    array = np.asarray(picture)
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != 3 or not array.size:
+        what = f"an array {array.shape} of {array.dtype}" if array.ndim else repr(picture)
+        raise RenderError(f"a film takes pictures of minirt.render, or arrays (h, w, 3) of uint8, got {what:.60}")
+    return Image(array)
 
 
 class Film:

@@ -107,7 +107,7 @@ class Arguments(argparse.ArgumentParser):
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print a help text or an error; argparse calls this, and would not notice that it cannot be written."""
         if file is sys.stdout:
-            say(message, end="")
+            say(message.encode(sys.stdout.encoding, "backslashreplace"))  # which may have colours
         else:
             tell(message.rstrip("\n"))
 
@@ -200,13 +200,13 @@ def prepare_streams() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")  # as standard error does
 
 
-def say(text: object, end: str = "\n") -> None:
-    """Print to standard output, bytes as they are; RenderError when that fails."""
+def say(text: object) -> None:
+    """Print lines to standard output without control characters, or bytes as they are; RenderError when that fails."""
     try:
         if isinstance(text, bytes):
             sys.stdout.buffer.write(text)
         else:
-            print(text, end=end)
+            print_lines(text, sys.stdout)
         sys.stdout.flush()
     except OSError as error:
         mute(sys.stdout)
@@ -219,9 +219,14 @@ def tell(text: object, stream: TextIO | None = None) -> None:
     """Print lines to standard error, or to another stream, without control characters; do nothing when that fails."""
     stream = stream or sys.stderr
     try:
-        print(*map(printable, str(text).split("\n")), sep="\n", file=stream, flush=True)
+        print_lines(text, stream)
     except OSError:
         mute(stream)
+
+
+def print_lines(text: object, stream: TextIO) -> None:
+    """Print lines without control characters, which the name of a file may have, and which could act on a terminal."""
+    print(*map(printable, str(text).split("\n")), sep="\n", file=stream, flush=True)
 
 
 def mute(stream: TextIO) -> None:

@@ -107,7 +107,7 @@ def choose_example(parser: Arguments, options: argparse.Namespace, arguments: Se
     if options.scene:
         parser.error(f"--example shows a scene of its own, got {options.scene[0]}, too")
     names = (f"{options.example}{suffix}.rt" for suffix in ("", *(f"-{number}" for number in range(1, 1000))))
-    options.scene = [next((name for name in names if not Path(name).exists()), f"{options.example}.rt")]
+    options.scene = [next((name for name in names if not file_io.found(name)), f"{options.example}.rt")]
 
 
 def output_for(scene: str, output: str) -> str:

@@ -50,7 +50,7 @@ def configuration_path(named: str | None) -> Path | None:
     folder = Path(os.environ.get("APPDATA" if os.name == "nt" else "XDG_CONFIG_HOME", ""))
     with suppress(OSError, RuntimeError):  # RuntimeError: nobody's home
         path = (folder if folder.is_absolute() else Path.home() / ".config") / "minirt" / "config.toml"
-        return path if path.is_file() else None
+        return path if file_io.is_file(path) else None
     return None
 
 

@@ -76,8 +76,9 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
             "--cluster with an address needs dask.distributed: install it (pip install 'minirt[cluster]'), or try "
             "--cluster local"
         ) from None
-    for name in ("distributed", "distributed.client", "tornado"):  # their tracebacks where a scheduler ends
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    for name in ["asyncio", *logging.root.manager.loggerDict]:  # their tracebacks where a scheduler ends
+        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):  # some of which have levels of their own
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:
         client = Client(options.cluster, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -173,7 +174,9 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None,
     with kept_work(job, options, share, has_parts=film is not None) as journal:
         if journal and not film:
             places = journal.places.items()
-            journal.places = {number: each for number, each in places if numbered(options.output, number).is_file()}
+            journal.places = {
+                number: each for number, each in places if file_io.is_file(numbered(options.output, number))
+            }
         for band, image in results(bands, executor, journal, share.note, in_order=True):
             outcomes.append(image.reached)
             if film:

@@ -170,7 +170,7 @@ def unpacked(data: bytes) -> Scene:
     """Return a scene; its textures are written into this worker's folder."""
     packed_scene, files = pickle.loads(data)
     for digest, content in files.items():
-        if not (texture := folder() / digest).exists():
+        if not file_io.is_file(texture := folder() / digest):
             file_io.write(texture, content)
     return Scene(*Unpacker(BytesIO(packed_scene)).load())
 

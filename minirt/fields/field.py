@@ -71,6 +71,16 @@ class Field(Immutable):
         """`value` in its normal form, such as a direction of unit length; FieldError if it is out of range."""
         return value
 
+    def meant(self, value: Any) -> Any:
+        """The value that a program means: by True that of the key alone, as in a file; FieldError where none may stand
+        alone, since True is the number 1, too."""
+        if not isinstance(value, bool):
+            return value
+        if value and self.bare:
+            return self.parse(self.bare)
+        example = f", as in '{self.notation}'" if self.keyed else ""
+        raise FieldError(f"must be a value{example}, got {value}")
+
     def remark(self, value: Any) -> str:
         """A notice about a value that is in range but unusual; empty if there is none."""
         return ""
@@ -189,6 +199,7 @@ class MeshFile:
 
     name: str
     triangles: Any = None  # `minirt.meshes.Triangles`; None if it has not been read, as for lines without a scene file
+    is_new: bool = False  # made of arrays: saving a scene writes the file
 
 
 @record(kw_only=True)

@@ -194,5 +194,8 @@ class Flag(Field):
     def check(self, value: bool) -> bool:
         return bool(value)
 
+    def meant(self, value: bool) -> bool:
+        return value
+
     def nudge(self, value: bool, steps: float) -> bool:
         return steps > 0

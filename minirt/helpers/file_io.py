@@ -78,7 +78,7 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
             if os.path.lexists(target):
                 raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target)) from None
             temporary.replace(target)
-        temporary.unlink(missing_ok=True)
+        delete(temporary)
 
 
 @contextmanager
@@ -144,13 +144,32 @@ def located(folder: Path, name: str) -> Path:
     """Return the path of a file that a scene in a folder names: there, or else in the nearest folder above that has it,
     up to the working folder."""
     path = folder / name
-    if not path.exists():
+    if found(path):
+        return path
+    with suppress(OSError):  # the working folder was deleted
+        working = Path.cwd()
         for above in Path(os.path.abspath(folder)).parents:  # noqa: PTH100 - links are not followed
-            if not above.is_relative_to(Path.cwd()):
-                break
-            if (above / name).is_file():
+            if above.is_relative_to(working) and is_file(above / name):
                 return above / name
     return path
+
+
+def found(path: str | os.PathLike[str]) -> os.stat_result | None:
+    """Return the status of a file or folder that somebody names; None where there is none, or where the system does not
+    let it be looked at: it has a name of 300 letters, lies in a folder of others or on a failing disk."""
+    with suppress(OSError, ValueError):
+        return Path(path).stat()
+    return None
+
+
+def is_file(path: str | os.PathLike[str]) -> bool:
+    """Whether a name is that of a regular file."""
+    return bool((status := found(path)) and stat.S_ISREG(status.st_mode))
+
+
+def is_folder(path: str | os.PathLike[str]) -> bool:
+    """Whether a name is that of a folder."""
+    return bool((status := found(path)) and stat.S_ISDIR(status.st_mode))
 
 
 def reason(error: OSError | ValueError) -> str:
@@ -161,13 +180,13 @@ def reason(error: OSError | ValueError) -> str:
 def status(path: str | os.PathLike[str], largest: int) -> os.stat_result:
     """Return the status of a regular file of at most `largest` bytes; FileError for anything else."""
     try:
-        found = Path(path).stat()
+        status = Path(path).stat()
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
-    if not stat.S_ISREG(found.st_mode):
-        raise FileError(path, "is a folder" if stat.S_ISDIR(found.st_mode) else "is not a regular file")
-    check_size(path, found.st_size, largest)
-    return found
+    if not stat.S_ISREG(status.st_mode):
+        raise FileError(path, "is a folder" if stat.S_ISDIR(status.st_mode) else "is not a regular file")
+    check_size(path, status.st_size, largest)
+    return status
 
 
 def read(path: str | os.PathLike[str], largest: int) -> bytes:
@@ -208,12 +227,7 @@ def read_once(read: Callable[[Path], Content]) -> Callable[[str | os.PathLike[st
 
 def stamps(*paths: str | os.PathLike[str]) -> list[tuple[int, ...]]:
     """Return numbers that differ when one of some files has changed; a file that is not there has none."""
-    found: list[tuple[int, ...]] = []
-    for path in paths:
-        with suppress(OSError, ValueError):
-            each = Path(path).stat()
-            found.append((each.st_dev, each.st_ino, each.st_size, each.st_mtime_ns))
-    return found
+    return [(each.st_dev, each.st_ino, each.st_size, each.st_mtime_ns) for each in filter(None, map(found, paths))]
 
 
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:

@@ -17,6 +17,8 @@ from threading import Event, Thread
 from time import perf_counter
 from typing import NamedTuple, TextIO
 
+from minirt.errors import printable
+
 PATIENCE = 1.0  # seconds of work without a bar
 PAUSE = 0.2  # seconds from one drawing of the bar to the next
 STOPPED = 30.0  # seconds between two drawings in which the program was stopped, as by Ctrl+Z, and did not work
@@ -133,5 +135,5 @@ def progress(read: Callable[[], State], out: TextIO | None = None) -> Iterator[N
 def draw(out: TextIO, text: str) -> None:
     """Replace the line of a terminal. One that has gone is no error."""
     with suppress(OSError, ValueError):  # ValueError: the stream is closed
-        out.write("\r\x1b[K" + text[: shutil.get_terminal_size().columns - 1])
+        out.write("\r\x1b[K" + printable(text)[: shutil.get_terminal_size().columns - 1])
         out.flush()

@@ -19,6 +19,7 @@ from minirt.fields import Colour, Triple, clamp, declare
 from minirt.fields.field import file_name
 from minirt.fields.scalars import number
 from minirt.helpers import file_io
+from minirt.helpers.file_io import is_file
 from minirt.materials import GREATEST, Attributes, Bump, Glass, Mirror, Specular, pictures
 from minirt.records import record
 
@@ -39,7 +40,7 @@ class MeshMaterial(Attributes):
 
 def library_paths(names: Iterable[str], folder: Path) -> tuple[Path, ...]:
     """Return the files of materials that lines of a mesh name: several a line, or one whose name has blanks."""
-    return tuple(folder / each for name in names for each in ([name] if (folder / name).is_file() else name.split()))
+    return tuple(folder / each for name in names for each in ([name] if is_file(folder / name) else name.split()))
 
 
 def read_libraries(paths: Iterable[Path], folder: Path) -> tuple[dict[str, MeshMaterial], set[str]]:
@@ -96,7 +97,7 @@ def three(text: str | None, usual: float) -> list[float]:
 def map_of(key: str, text: str, folder: Path) -> dict[str, Any]:
     """Return the attribute of a map, such as `-bm 0.5 relief.png`; FileError where its picture cannot be read."""
     name = OPTIONS.sub("", text).replace("\\", "/")
-    path = next(filter(Path.is_file, (folder / name, folder / Path(name).name)), folder / name)
+    path = next(filter(is_file, (folder / name, folder / Path(name).name)), folder / name)
     file = file_name(os.path.abspath(path), ",")  # noqa: PTH100 - looked up from the folder of any scene
     is_bump = key.lower().endswith("bump") and "norm" not in path.name.lower()
     (pictures.heights if is_bump else pictures.picture)(path)

@@ -17,7 +17,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from minirt.errors import MlxError, ReplayError
+from minirt.errors import MlxError, ReplayError, printable
+from minirt.helpers.file_io import is_file
 from minirt.mlx import recording
 from minirt.mlx.api import Mlx
 from minirt.mlx.arguments import Host, Integer, MaybeNone, integer
@@ -40,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> Any:
         finally:  # even after an exception
             saved = backend is None or backend.finish()
     except (MlxError, ReplayError) as error:
-        print(f"mlx: {error}", file=sys.stderr)
+        print(f"mlx: {printable(str(error))}", file=sys.stderr)
         return FAILED
     return status if saved else FAILED
 
@@ -87,7 +88,7 @@ def _headless(options: argparse.Namespace) -> Headless:
 
 def _run(program: Path, arguments: list[str]) -> Any:
     """Run the program as `python program.py …` does; return what it exits with. Raises MlxError if there is none."""
-    if not program.is_file():
+    if not is_file(program):
         raise MlxError(f"there is no program {program}")
     sys.argv = [str(program), *arguments]
     sys.path[0] = str(program.resolve().parent)

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from signal import SIGINT, SIGTERM
 
 from minirt.errors import MlxError
-from minirt.helpers.system import signal_handlers
+from minirt.helpers.signals import signal_handlers
 from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, integer, set_hook
 from minirt.mlx.calls import Calls
 from minirt.mlx.display import ADVICE, Display

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.errors import MlxError
+from minirt.errors import MlxError, printable
 from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, Options, integer, set_hook
 from minirt.mlx.display import Display
 from minirt.mlx.events import Event
@@ -52,7 +52,7 @@ class Calls:
         """Raise the error, or print it and return None, as MiniLibX does."""
         if self._mlx_options.strict:
             raise error
-        print(f"mlx: {error}", file=sys.stderr)
+        print(f"mlx: {printable(str(error))}", file=sys.stderr)
         return None
 
     # --- hooks and the loop ---
@@ -86,7 +86,7 @@ class Calls:
         return 0
 
     def mlx_loop_exit(self, mlx_ptr: Display) -> int:
-        """End the loop; no hook is called after this."""
+        """End the loop, or the next one where none runs; no hook is called after this."""
         mlx_ptr.ending = True
         return 0
 
@@ -117,8 +117,13 @@ class Calls:
         """Return (bytes, bits per pixel, bytes per row, 0). The bytes of a pixel are blue, green, red, alpha."""
         return img_ptr.pixels.reshape(-1).data, 32, 4 * img_ptr.width, 0
 
-    def mlx_put_image_to_window(self, mlx_ptr: Host, win_ptr: Window, img_ptr: Image, x: Integer, y: Integer) -> int:
-        """Blend the image, as it is now, into the window with its top left corner at x, y; alpha 255 is opaque."""
+    def mlx_put_image_to_window(
+        self, mlx_ptr: Host, win_ptr: Window, img_ptr: Image | None, x: Integer, y: Integer
+    ) -> int | MaybeNone:
+        """Blend the image, as it is now, into the window with its top left corner at x, y; alpha 255 is opaque. The
+        image that could not be read, None, is told."""
+        if img_ptr is None:
+            return self._mlx_failed(MlxError("mlx_put_image_to_window got None in place of an image"))
         win_ptr.canvas.put(img_ptr.pixels, integer(x), integer(y))
         return 0
 

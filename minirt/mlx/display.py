@@ -57,9 +57,9 @@ class Display(Host):
     def loop(self) -> None:
         """Run until the program ends it, an exception has to be raised from here, or no window is left."""
         self.running = True
-        self.ending = not self.is_open
+        self.ending = self.ending or not self.is_open
         try:
-            if self.windows:
+            if not self.over:
                 self.run()
         finally:
             self.running = self.ending = False

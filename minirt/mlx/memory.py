@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.errors import MlxError
+from minirt.errors import MlxError, printable
 from minirt.mlx.canvas import stretch
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.events import Button, Event
@@ -238,7 +238,7 @@ class Headless(Memory):
             if self.picture:
                 self.save(self.picture)
         except MlxError as error:
-            print(f"mlx: {error}", file=sys.stderr)
+            print(f"mlx: {printable(str(error))}", file=sys.stderr)
             return False
         return True
 

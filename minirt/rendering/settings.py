@@ -19,6 +19,7 @@ from minirt.fields import MeshFile
 from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
+from minirt.meshes.from_arrays import digest
 from minirt.records import Immutable, record
 from minirt.rendering.image import Image, LinearImage, rgb_of
 from minirt.rendering.packing.camera import cut_for
@@ -193,6 +194,8 @@ def identity(scene: Scene, settings: str) -> str:
     read."""
     found = hashlib.sha256(f"{fingerprint_of(V3)} {settings} {scene.shown}\n{dump(scene)}".encode())
     found.update(repr([mesh.triangles.materials for mesh in scene.meshes]).encode())
+    for mesh in (mesh for mesh in scene.meshes if mesh.file.is_new):
+        found.update(digest(mesh.triangles).encode())
     for name in sorted({name for element in scene.elements for name in files_of(element)}):
         data = file_io.read(scene.beside(name), file_io.LARGEST_ASSET)
         found.update(f"{name} {len(data)}\n".encode())
@@ -201,10 +204,10 @@ def identity(scene: Scene, settings: str) -> str:
 
 
 def files_of(element: Element) -> Iterator[str]:
-    """Yield the names of the pictures and meshes of an element, as the scene file has them."""
+    """Yield the names of the pictures and meshes of an element, as the scene file has them, but not of new meshes."""
     for field in fields_of(type(element)):
         value = getattr(element, field.name)
-        if isinstance(value, MeshFile):
+        if isinstance(value, MeshFile) and not value.is_new:
             yield value.name
         if value is not None:
             yield from (each.name for each in field.pictures(value))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Iterator
 from math import ceil, log2, nan
 from pathlib import Path
@@ -182,9 +181,9 @@ def report(
     try:
         with TemporaryDirectory(prefix="minirt-report-") as files, progress(measurement.state):
             measurement.run(size, Path(files), ablation)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         missing = f"Interrupted while measuring {measurement.what}: this and all that would have followed is missing."
-        print(write_report(measurement, folder, missing) or NOTHING, file=sys.stderr, flush=True)
+        interrupt.add_note(write_report(measurement, folder, missing) or NOTHING)
         raise
     return write_report(measurement, folder)
 

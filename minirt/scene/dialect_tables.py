@@ -20,6 +20,7 @@ SETTINGS = "settings of other programs are left out"
 MISSING = "shapes are missing"
 INCOMPLETE = "shapes without all of their fields are missing"
 LIGHTS = "lights that cannot be read are left out"
+UNREAD = (SETTINGS, MISSING, INCOMPLETE, LIGHTS)
 NEAREST = "numbers become the nearest ones that can be there"
 DECIMALS = "decimal commas become points"
 SCALED = "directions are scaled to length 1"

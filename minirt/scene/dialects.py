@@ -23,14 +23,14 @@ from minirt.scene import dialect_tables as tables
 from minirt.scene.dialect_tables import NUMBER
 from minirt.scene.element_reader import HEX_COLOUR, SLASHES, split_key
 from minirt.scene.elements import FURTHER, LAMPS, Ambient, Camera, FurtherCamera, Resolution
-from minirt.scene.lines import Line, Log, first_unprintable, line_from
+from minirt.scene.lines import MAX_WORDS, Line, Log, first_unprintable, line_from
 from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
 from minirt.shapes import Cone
 
 # Blanks may stand around the commas of three numbers, and within quotes.
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
-FRAMING = re.compile(r"\(([^()]*,[^()]*)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
+FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
 MOST_SUGGESTED = 3  # lines
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
@@ -72,10 +72,10 @@ def translated(
     `colours` are those of named materials, and pictures are looked for in `folder`. `seen` has the identifiers of
     earlier lines.
     """
-    if first_unprintable(line) >= 0:
-        return None
     body, comment, changes = body_of(line)
     found = WORD.findall(FRAMING.sub(r" \1 ", body))
+    if first_unprintable(line) >= 0 or len(found) > MAX_WORDS:
+        return None
     if not found:
         return Translation("", changes)
     code, *values = words = [word if word[0] == '"' else "".join(word.split()) for word in found]
@@ -283,6 +283,11 @@ def meaning(words: list[str], are_guessed: bool) -> tuple[int, str, str]:
                 attributes = means(*match.groups())
                 return used, attributes, sort if attributes else tables.LEFT_OUT
     return 1, "", tables.LEFT_OUT
+
+
+def unread_lines(log: Log) -> int:
+    """Return the number of lines that no meaning was found for, and that became comments."""
+    return sum(len(log.changes.get(sort, ())) for sort in tables.UNREAD)
 
 
 def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:

@@ -45,7 +45,7 @@ def picture_folder(path: str | os.PathLike[str]) -> Path:
     own = Path(path).parent
     with suppress(FileError, OSError, ValueError):
         named = (read_picture_text(path, FOLDER, LONGEST_FOLDER) or b"").decode()
-        if named and not Path(named).is_absolute() and (own / named).is_dir():
+        if named and not Path(named).is_absolute() and file_io.is_folder(own / named):
             return own / named
     return own
 

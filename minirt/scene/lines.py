@@ -16,6 +16,7 @@ from minirt.errors import Problem
 
 BOM = "\ufeff"  # byte order mark
 MAX_ERRORS = 1000  # in one file; a file with more is not a scene
+MAX_ERRORS_OF_LINE = 20
 MAX_NOTICES = 1000
 MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
@@ -88,7 +89,12 @@ class Log:
         self.changes: dict[str, list[tuple[Line, str]]] = {}  # by a lenient reader, of each sort: lines and words
 
     def error(self, line: Line, message: str, column: int, length: int = 1) -> None:
-        """Add an error; a file with errors is refused."""
+        """Add an error; a file with errors is refused. The last of too many in a line says that there are more."""
+        of_line = [each.line for each in self.errors[-MAX_ERRORS_OF_LINE:]].count(line.number)
+        if of_line == MAX_ERRORS_OF_LINE:
+            return
+        if of_line == MAX_ERRORS_OF_LINE - 1:
+            message = "too many errors: those of this line from here on are left out"
         self.errors.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def notice(self, line: Line, message: str, column: int, length: int = 1) -> None:

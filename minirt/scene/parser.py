@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import FileError, Problem, SceneError, nearest
+from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
@@ -118,7 +119,7 @@ def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
         for at in [at for at, item in enumerate(block) if item is None]:
             line = line_from(start + at + 1, sources[start + at])
             block[at] = read_leniently(line, seen, log, colours) if log.lenient else read_line(line, seen, log)
-            if block[at] is None and len(log.errors) >= MAX_ERRORS:
+            if len(log.errors) + (dialects.unread_lines(log) if log.lenient else 0) >= MAX_ERRORS:
                 log.error(line, "too many errors: the rest of the file is not read", 1)
                 return runs
         runs.append([item for item in block if item is not None])
@@ -236,7 +237,7 @@ UNFIT = re.compile(r"[\s,#]")  # in a path: no line of a scene can name it
 def folder() -> Path:
     """Return the folder of the example scenes; FileError where none was installed."""
     for each in FOLDERS:
-        if (each / "demo.rt").exists():
+        if file_io.is_file(each / "demo.rt"):
             return each
     raise FileError(FOLDERS[0], "the example scenes are not installed")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from minirt.element import Element
 from minirt.errors import nearest
@@ -42,6 +43,7 @@ def nearest_word(word: str, known: list[str]) -> str:
     return next((entry for entry in known if entry.lower() in meant), "") or next(iter(nearest(word, known)), "")
 
 
+@lru_cache(maxsize=1024)  # a file that is no scene has the same wrong word in each of its lines
 def nearest_element(word: str) -> str:
     """Return the identifier that `word` may mean, a misspelled identifier or an element's name; or ''."""
     glued = GLUED.match(word)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
@@ -11,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from minirt import shapes as kinds
 from minirt.element import Element
-from minirt.errors import check_whole
+from minirt.errors import check_whole, did_you_mean
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
@@ -52,6 +54,7 @@ def first(kind: type[Kind], doc: str) -> cached_property[Kind | None]:
     return cached(lambda scene: next(iter(scene.of(kind)), None), doc)
 
 
+COMMENT = re.compile(r"\ufeff?[ \t\r]*(?:#[^\n]*)?")  # or a blank line: what a scene has beside elements
 MISSING = "# missing: "  # begins the comment that a lenient reader makes of a shape that it cannot read
 
 
@@ -67,7 +70,10 @@ class Scene(Immutable):
     shown: int = 0  # index in `cameras` of the one that pictures show
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
-        self._set_pages(tuple(pages_of([tuple(items)])), file)
+        """Make a scene of elements, comments and blank lines; TypeError for anything else."""
+        items = tuple(items)
+        check_elements("Scene", *(item for item in items if not (isinstance(item, str) and COMMENT.fullmatch(item))))
+        self._set_pages(tuple(pages_of([items])), file)
 
     @classmethod
     def of_pages(cls, pages: tuple[Page, ...], file: Path | None) -> Scene:
@@ -161,7 +167,8 @@ class Scene(Immutable):
             for kind in ELEMENTS.values():
                 if kind.plural == plural:
                     return tuple(element for element in self.of(kind) if type(element) is kind)
-            raise AttributeError(f"a scene has no '{plural}'")
+            known = () if plural.startswith("_") else dir(self)
+            raise AttributeError(f"a scene has no '{plural}'{did_you_mean(plural, known)}")
 
     def __dir__(self) -> list[str]:
         plurals = {kind.plural for kind in ELEMENTS.values()}
@@ -173,16 +180,18 @@ class Scene(Immutable):
 
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
         """Return the scene with `old` replaced by `new`, or with some of its fields changed; ValueError without it."""
+        check_elements("replace", old, *(() if new is None else (new,)))
         new = old.replace(**changes) if new is None else new
         if isinstance(old, Camera) and isinstance(new, Camera) and type(new) is not type(old):
             new = new.as_kind(type(old))
         return self._edited(self.index(old), object, new)
 
     def add(self, *elements: Element) -> Scene:
-        """Return the scene with further elements at its end; ValueError where a kind may be there only once.
+        """Return the scene with one or several elements at its end; ValueError where a kind may be there only once.
 
         scene = scene.add(minirt.Sphere((0, 1, 8), 2, (255, 0, 0)))
         """
+        check_elements("add", *elements)
         items = self.items
         end = len(items) - (items[-1:] == ("",))  # before the blank line that is the end of a file
         return Scene((*items[:end], *elements, *items[end:]), self.file).seen_by(self.shown + 1)
@@ -207,6 +216,7 @@ class Scene(Immutable):
 
     def remove(self, *elements: Element) -> Scene:
         """Return the scene without some elements; ValueError when one is not in the scene, or is its camera."""
+        check_elements("remove", *elements)
         scene = self
         for element in elements:
             scene = scene._edited(scene.index(element), object)
@@ -216,7 +226,8 @@ class Scene(Immutable):
         """Write the scene to a file, by default the one that it was read from, as a whole or not at all.
 
         Comments and unchanged lines stay as they were read. Textures and meshes keep their names, which are relative to
-        the folder of the file. SceneError when the file cannot be written, ValueError where there is no path.
+        the folder of the file, into which meshes of arrays are written. SceneError when the file cannot be written,
+        ValueError where there is no path.
         """
         target = self.file if path is None else path
         if target is None:
@@ -231,7 +242,9 @@ class Scene(Immutable):
             if is_near and id(element) in (ids := list(map(id, page.items))):
                 return start + ids.index(id(element))
             start += len(page.items)
-        return self.items.index(element)
+        with suppress(ValueError):
+            return self.items.index(element)
+        raise ValueError(f"the scene has no {element!r}")
 
     def edit(self, index: int, *new: Element) -> Scene:
         """Return the scene with `elements[index]` replaced by any number of elements."""
@@ -259,6 +272,17 @@ class Scene(Immutable):
         return self
 
 
+def check_elements(function: str, *elements: object) -> None:
+    """TypeError, which names what a function got in place of an element of a scene."""
+    for each in elements:
+        if not isinstance(each, Element):
+            is_list = isinstance(each, list | tuple)
+            found = (
+                f"a {type(each).__name__}: give them one by one, or with a * before it" if is_list else f"{each!r:.60}"
+            )
+            raise TypeError(f"{function} takes elements such as minirt.Sphere, got {found}")
+
+
 def check_scene(scene: object, function: str) -> None:
     """TypeError, which says how to load a scene, where a function got the name of its file."""
     if isinstance(scene, (str, os.PathLike)):
@@ -281,9 +305,13 @@ def size_of(scene: Scene) -> tuple[int, int]:
 
 
 def size_for(scene: Scene, width: int | None, height: int | None) -> tuple[int, int]:
-    """The size of a picture of a scene, whose own is used where none is asked for; RenderError for an empty one."""
+    """The size of a picture of a scene: its own where none is asked for, and of its proportions where one side is.
+    RenderError for an empty one."""
     own_width, own_height = size_of(scene)
-    return (
-        own_width if width is None else check_whole("width", width, 1),
-        own_height if height is None else check_whole("height", height, 1),
-    )
+    if width is not None:
+        width = check_whole("width", width, 1)
+    if height is not None:
+        height = check_whole("height", height, 1)
+    if width is None:
+        width = own_width if height is None else max(1, round(height * own_width / own_height))
+    return width, max(1, round(width * own_height / own_width)) if height is None else height

@@ -5,15 +5,18 @@ lines stay as they were read.
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import Any
 
 from minirt.element import Element, fields_of
-from minirt.fields import Field
+from minirt.fields import Field, MeshFile
 from minirt.helpers import file_io
+from minirt.meshes.from_arrays import obj_text
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
 from minirt.scene.pages import Crowd, Page
+from minirt.shapes import Mesh
 
 
 def describe(element: Element) -> str:
@@ -105,7 +108,22 @@ def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:
     """
     files.check_name(path)
     data = text_of(pages).encode()
+    for file in {mesh.file for page in pages for mesh in page.of(Mesh) if mesh.file.is_new}:
+        write_mesh(Path(path).parent / file.name, file)
     try:
         file_io.write(path, data)
+    except (OSError, ValueError) as error:
+        raise files.file_error(path, f"cannot be written: {file_io.reason(error)}") from None
+
+
+def write_mesh(path: Path, file: MeshFile) -> None:
+    """Write the file of a mesh of arrays; SceneError when that fails, or where another file has its name."""
+    data = obj_text(file.triangles)
+    try:
+        file_io.create(path, data)
+    except FileExistsError:
+        if file_io.stamps(path) and file_io.read(path, file_io.LARGEST_ASSET) == data:
+            return
+        raise files.file_error(path, "is another file: give the mesh another name, as in file='mesh.obj'") from None
     except (OSError, ValueError) as error:
         raise files.file_error(path, f"cannot be written: {file_io.reason(error)}") from None

@@ -52,6 +52,38 @@ class Mesh(Turnable):
             object.__setattr__(self, "file", MeshFile(self.file.name, self.triangles))
             super().__post_init__()  # now that its size is known
 
+    @classmethod
+    def from_arrays(
+        cls, vertices: Any, faces: Any, *, normals: Any = None, uvs: Any = None, file: str | None = None,
+        position: Triple = (0.0, 0.0, 0.0), scale: float = 1.0, colour: Triple = (255, 255, 255), **attributes: Any,
+    ) -> Mesh:  # fmt: skip
+        """Return a mesh of `vertices` (n, 3) and `faces` (m, 3), indices of vertices that run counter-clockwise as seen
+        from outside; or of a list of faces of any numbers of corners, which are cut into triangles.
+
+        `normals` (n, 3) of the vertices let it look smooth, `uvs` (n, 2) place pictures. Saving a scene writes the mesh
+        beside it, into `file`, which is named after the contents where it is left out. ElementError for other arrays.
+
+            mesh = minirt.Mesh.from_arrays(data.points, data.regular_faces)  # a PolyData of pyvista
+        """
+        from minirt.meshes.from_arrays import digest, triangles_of
+
+        triangles = triangles_of(vertices, faces, normals, uvs)
+        named = MeshFile(file or f"mesh-{digest(triangles)[:12]}.obj", triangles, is_new=True)
+        return cls(named, position, scale, colour, **attributes)
+
+    @classmethod
+    def from_trimesh(cls, mesh: Any, *, smooth: bool = False, **how: Any) -> Mesh:
+        """Return a mesh of a `trimesh.Trimesh` with its texture coordinates; if `smooth`, with its normals, too.
+
+        The other arguments are those of `from_arrays`. TypeError for another object.
+        """
+        if not (hasattr(mesh, "vertices") and hasattr(mesh, "faces")):
+            raise TypeError(f"from_trimesh takes a trimesh.Trimesh, got {mesh!r:.60}; a trimesh.Scene has .to_mesh()")
+        uvs = getattr(getattr(mesh, "visual", None), "uv", None)
+        return cls.from_arrays(
+            mesh.vertices, mesh.faces, normals=mesh.vertex_normals if smooth else None, uvs=uvs, **how
+        )
+
     def conflict(self) -> tuple[str, str] | None:
         if self.file.triangles is None or np.abs(self.hull).max() <= FARTHEST:  # the box takes a look at all points
             return None
@@ -102,7 +134,7 @@ class Mesh(Turnable):
         return colours if self.triangles.colours is None else colours * self.triangles.colours / 255
 
     def some(self, indices: np.ndarray) -> Mesh:
-        return self.replace(file=MeshFile(self.file.name, self.triangles.some(indices)))
+        return self.replace(file=replace(self.file, triangles=self.triangles.some(indices)))
 
     def placed(self, points: np.ndarray) -> np.ndarray:
         """Transform points of the file into the scene. Equal points stay equal."""

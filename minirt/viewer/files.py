@@ -162,7 +162,9 @@ def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.
     out.
     """
     top, suffixes = scene.beside(""), MESH_SUFFIXES if is_mesh else PICTURE_SUFFIXES
-    files = [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # which passes over what cannot be read
+    files: list[Path] = []
+    with suppress(OSError):
+        files += [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # which passes over what cannot be read
     names = [each.relative_to(top).as_posix() for each in files if each.suffix.lower() in suffixes]
     if steps < 0:
         names.reverse()

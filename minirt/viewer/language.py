@@ -14,6 +14,8 @@ from functools import lru_cache
 from pathlib import Path
 from unicodedata import normalize
 
+from minirt.helpers.file_io import is_file
+
 VARIABLES = "LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"  # of the environment, as gettext asks them
 GAP = "    "  # between groups of words
 LOCATION = re.compile(r"(.+?:\d+:\d+: )(.*)")  # of an error in a file
@@ -30,7 +32,7 @@ def language() -> str:
 def catalogue(code: str) -> tuple[dict[str, str], Patterns]:
     """Read the texts of a language, and those with {} as patterns, the longest first; none where there is no file."""
     file = Path(__file__).with_name("locale") / f"{code}.po"
-    texts = read_po(file.read_text(encoding="utf-8")) if code.isalpha() and file.exists() else {}
+    texts = read_po(file.read_text(encoding="utf-8")) if code.isalpha() and is_file(file) else {}
     open_ended = sorted((text for text in texts if "{}" in text), key=len, reverse=True)
     patterns = [
         (re.compile("(.*?)".join(map(re.escape, text.split("{}"))), re.DOTALL), texts[text]) for text in open_ended

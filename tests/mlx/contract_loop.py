@@ -154,7 +154,7 @@ def the_loop_goes_on_after_an_exception_of_a_hook(harness: Harness) -> None:
         harness.run(actions)
 
 
-@scenario(["wheel", 4], ["returned", 0], ["again", 98])
+@scenario(["wheel", 4], ["returned", 0], ["loop", 0], ["again", 98])
 def no_hook_is_called_after_loop_exit(harness: Harness) -> None:
     def turned(button: int, _x: int, _y: int, _: object) -> None:
         harness.record("wheel", button)
@@ -163,7 +163,8 @@ def no_hook_is_called_after_loop_exit(harness: Harness) -> None:
     harness.m.mlx_mouse_hook(harness.win, turned, None)
     harness.hook(Event.BUTTON_RELEASE, "not after the end")  # comes with the press
     harness.run(lambda user: user.click(5, 5, 4))
-    harness.record("returned", harness.m.mlx_loop_exit(harness.mlx))  # no loop runs: the next one is not ended
+    harness.record("returned", harness.m.mlx_loop_exit(harness.mlx))  # no loop runs: the next one returns at once
+    harness.record("loop", harness.m.mlx_loop(harness.mlx))
     harness.hook(Event.KEY_PRESS, "again")
     harness.run(lambda user: user.keys("+b -b"))
 

@@ -61,7 +61,7 @@ def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -
     if maps:
         packed["surface_maps"] = pack_surface_maps(maps, reader, len(owner))
     if used & PATTERN_FEATURES:
-        packed["patterns"] = pack_patterns(with_materials, owner, used, reader.colours)
+        packed["patterns"] = pack_patterns(with_materials, len(shapes), owner, used, reader.colours)
     return packed
 
 
@@ -105,12 +105,13 @@ def pack_environment(scene: Scene, file: str) -> Environment:
 
 
 def pack_patterns(
-    shapes: Iterable[tuple[int, Shape]], owner: np.ndarray, used: Set[Hashable], colours: Colours
+    shapes: Iterable[tuple[int, Shape]], count: int, owner: np.ndarray, used: Set[Hashable], colours: Colours
 ) -> Patterns:
-    """Pack the patterns of shapes, given with their indices; `owner` (n,) has the shape of each primitive."""
+    """Pack the patterns of shapes, given with their indices below `count`; `owner` (n,) has the shape of each
+    primitive, and may name no primitive of some."""
     rows: list[list[float]] = []
     heights: list[float] = []
-    ranges = np.zeros((owner.max(initial=-1) + 1, 2), np.int64)
+    ranges = np.zeros((count, 2), np.int64)
     for index, shape in shapes:
         first = len(rows)
         for name, kind in KINDS.items():

@@ -11,7 +11,9 @@ from typing import Any, Literal, TypedDict
 
 import numpy as np
 
-from minirt.helpers.system import ended_by_signals, gc_paused
+from minirt.errors import printable
+from minirt.helpers.signals import ended_by_signals, held_signals, leave
+from minirt.helpers.system import gc_paused
 from minirt.mlx import Image, Mlx
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.renderer import renderer as shared_renderer
@@ -69,13 +71,11 @@ def run(
     try:
         status, stopped = run_event_loop(session)
     finally:
-        end_recovery(session)
-    if stopped:
-        return status
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, AttributeError):  # full, or closed
-            stream.flush()
-    os._exit(status)  # without waiting for the threads
+        with held_signals():
+            end_recovery(session)
+    if not stopped:
+        leave(status)
+    return status
 
 
 def open_view(
@@ -126,11 +126,14 @@ def application_icons() -> list[Image]:
 
 
 def run_event_loop(session: Session) -> tuple[int, bool]:
-    """Run the event loop until it ends; return the exit status, and whether all threads have ended."""
+    """Run the event loop until it ends; return the exit status, and whether all threads have ended. RenderError where
+    the session had an error that miniRT did not expect."""
     statuses = []
 
     def end(number: int) -> None:
         statuses.append(128 + number)
+        if len(statuses) > 1:  # a hook does not return
+            raise KeyboardInterrupt
         session.quit()
         session.mlx.mlx_wake(session.display)
 
@@ -146,6 +149,8 @@ def run_event_loop(session: Session) -> tuple[int, bool]:
         session.mlx.mlx_release(session.display)
         session.file.close()
         stopped = session.refinement.painter.close(STOP_TIMEOUT)
+    if session.defect:
+        raise session.defect
     return statuses[0] if statuses else OK, stopped
 
 
@@ -156,7 +161,7 @@ def end_recovery(session: Session) -> None:
         if contents_differ(session.state.scene, session.saved):
             copy = save_recovery(session.state.scene, session.path)
             with suppress(OSError):  # standard output may be closed
-                print(f"The changes that were not saved are in {copy}", flush=True)
+                print(f"The changes that were not saved are in {printable(str(copy))}", flush=True)
         saved = True
     finally:
         if session.recovery:

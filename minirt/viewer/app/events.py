@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from minirt.errors import MlxError
 from minirt.mlx.events import MODIFIER_KEYS, Button, Event
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
@@ -147,7 +148,7 @@ class EventDispatcher:
         session = self.session
         if session.file.news.is_set():
             session.file.news.clear()
-            follow_change(session)
+            session.attempt(follow_change)
         for error in session.refinement.collect():
             session.show_error(error)
         session.attempt(Session.take_screenshot)
@@ -218,11 +219,17 @@ class EventDispatcher:
         """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.
 
         After it, the event loop ticks while a key is held or words wait, and sleeps until the next event otherwise.
+        An error is shown, and only one of the window system ends the window: nothing that a file holds does.
         """
 
         def hook(*arguments: object) -> None:
-            handler(*arguments[:-1])
             session, panel = self.session, self.panel
+            try:
+                handler(*arguments[:-1])
+            except MlxError:
+                raise
+            except Exception as error:
+                session.show_error(error)
             if panel:
                 panel.follow()
             ticks = session.held_keys or session.words_wait or (panel and panel.is_busy)

@@ -31,8 +31,9 @@ def replay(scene: Scene, lines: Iterable[str], *, hud: bool = True, **settings: 
     The error of the first command that failed is raised.
     """
     session = play(scene, lines, **settings)
-    if session.failures:
-        raise session.failures[0]
+    for error in (*session.failures, session.defect):
+        if error:
+            raise error
     return session.screen.frame if hud else session.picture
 
 

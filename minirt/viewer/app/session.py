@@ -79,6 +79,7 @@ class Session:
         self.pressed: DragStart | None = None
         self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
         self.failures: list[MiniRTError] = []  # of commands
+        self.defect: RenderError | None = None  # the first error of this program, raised when the window is closed
         self.screenshot_pending = False
         self.has_unused_memory = False  # of pictures or scenes that are gone
         self.full_screen = False
@@ -160,9 +161,11 @@ class Session:
             self.show_error(error)
 
     def show_error(self, error: Exception) -> None:
-        """Show an error of miniRT over the picture; raise RenderError for any other exception."""
+        """Show an error over the picture. None ends the window: one that miniRT does not expect is its `defect`."""
         if not isinstance(error, MiniRTError):
-            raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
+            cause, error = error, RenderError(f"miniRT has an error, please report it: {type(error).__name__}: {error}")
+            error.__cause__ = cause
+            self.defect = self.defect or error
         self.say(error_summary(error))
 
     def say(self, message: str) -> None:

@@ -10,6 +10,7 @@ from slimgui import imgui
 
 from minirt.element import Element, fields_of
 from minirt.errors import MiniRTError
+from minirt.helpers.file_io import found
 from minirt.movie import FILMS, FPS, QUALITY, numbered, save_movie
 from minirt.rendering.image import Image
 from minirt.rendering.settings import render
@@ -108,7 +109,7 @@ class Pages:
         """Render and write the film, in a thread of its own; the window goes on meanwhile."""
         path = self.session.path
         names = (path.with_name(f"{path.stem}-{number}{self._format}") for number in count(1))
-        file = next(each for each in names if not each.exists() and not numbered(each, 1).exists())
+        file = next(each for each in names if not found(each) and not found(numbered(each, 1)))
         quality = self._quality if FILMS[self._format].is_lossy else None
         self._share = 0.0
         try:
