@@ -40,7 +40,7 @@ MAY: dict[str, set[str]] = {
     "report": LOW | {"__init__", "helpers", "kernel", "machine_code", "rendering", "scene"},
     "cli": {"__init__", "cluster", "errors", "formats", "helpers", "movie"}
     | {"rendering", "report", "scene", "viewer"},
-    "__main__": {"cli"},
+    "__main__": {"cli", "helpers"},
     "__init__": LOW | {"helpers", "scene", "rendering"},
 }
 COMPILER = {"numba", "llvmlite"}

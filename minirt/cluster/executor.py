@@ -5,18 +5,19 @@ from __future__ import annotations
 import hashlib
 import os
 import signal
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, InvalidStateError, ProcessPoolExecutor, wait
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import partial
 from itertools import islice
-from multiprocessing import get_context, parent_process
+from multiprocessing import current_process, get_context, parent_process
 from threading import Thread
 from time import perf_counter
 from typing import Any
 
 from minirt.cluster.job import Job, Made, Workers, packed, version, work
 from minirt.errors import MiniRTError, RenderError
+from minirt.helpers.signals import held_signals
 from minirt.rendering.threads import usable_cores
 from minirt.scene import Camera
 
@@ -26,12 +27,18 @@ MOST_PROCESSES = 8  # on this machine; each has its share of the processors
 LATE, LONGER = 60.0, 10  # seconds, and times the longest band so far, after which one is late; without any, both
 SILENT, DESERTED = 60.0, 300.0  # seconds without an answer of the scheduler, and without workers, that end the work
 WATCH = 1.0  # seconds between two looks at what is late
+UNGUARDED = 87  # exit status of a process of a pool that runs the script which has started it
+GUARD = "it ran the script that has started it from the beginning; what starts processes belongs below a line " + (
+    "\"if __name__ == '__main__':\""
+)
 
 
 class Dispatcher:
     """Bands in flight to an executor. One that is late is sent to another worker, too, since the first may hang."""
 
     def __init__(self, workers: Workers) -> None:
+        if getattr(current_process(), "_inheriting", False):  # as multiprocessing marks one that imports the script
+            os._exit(UNGUARDED)
         self.is_own = callable(workers) and not hasattr(workers, "submit")
         made = workers() if self.is_own else workers
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)
@@ -55,7 +62,7 @@ class Dispatcher:
 
     def results(
         self, bands: Iterable[Job], restore: Callable[[Job], Made | None], in_order: bool
-    ) -> Iterator[tuple[Job, Made]]:
+    ) -> Generator[tuple[Job, Made], None, None]:
         """Yield bands and what was made of them, here or before; RenderError where one fails, its worker dies or the
         cluster has ended."""
         rest = iter(bands)
@@ -76,7 +83,7 @@ class Dispatcher:
                     task.cancel()  # but not the first: a worker that hangs should not get another
                 self.sent.pop(future, None)
                 band = running.pop(future)
-                yield band, made_of(band, future)
+                yield band, self.made_of(band, future)
         finally:
             self.close()
 
@@ -114,7 +121,8 @@ class Dispatcher:
         arguments = version(), self.last[1 if self.has_late else 2], scene.camera
         how = {} if self.client is None else {"pure": False}  # dask makes the same again
         try:
-            task = self.executor.submit(work, *arguments, band._replace(scene=nowhere, settings=settings), **how)
+            with held_signals(), ctrl_c_blocked():  # the first task starts the processes of a pool
+                task = self.executor.submit(work, *arguments, band._replace(scene=nowhere, settings=settings), **how)
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
         self.sent[future] = perf_counter(), patience
@@ -132,29 +140,39 @@ class Dispatcher:
                 future.set_result(task.result())
                 self.longest = max(self.longest, perf_counter() - sent)
 
+    def made_of(self, band: Job, future: Future[Made]) -> Made:
+        """Return what is made of a band; RenderError where that has failed."""
+        try:
+            return future.result()
+        except MiniRTError:
+            raise
+        except Exception as error:
+            if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
+                is_unguarded = any(each.exitcode == UNGUARDED for each in self.processes())
+                raise RenderError(f"{band.what}: its worker died" + f": {GUARD}" * is_unguarded) from error
+            raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
+
+    def processes(self) -> list[Any]:
+        """Return the processes of a pool that has not been shut down."""
+        return list((vars(self.executor).get("_processes") or {}).values()) if self.is_pool else []
+
     def close(self) -> None:
         """Cancel what has not been made, and end the executor if it was made here."""
-        unfinished = [each for each in self.tasks if not each.done()]
-        for each in unfinished:
-            each.cancel()
-        if not self.is_own:
-            return
-        # An idle process waits with the lock of the queue: where it has been killed, the others never learn of the end.
-        for process in list((vars(self.executor).get("_processes") or {}).values()):
-            process.kill()  # also one that is stopped
-        self.executor.shutdown(wait=not unfinished, cancel_futures=True)
-
-
-def made_of(band: Job, future: Future[Made]) -> Made:
-    """Return what is made of a band; RenderError where that has failed."""
-    try:
-        return future.result()
-    except MiniRTError:
-        raise
-    except Exception as error:
-        if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
-            raise RenderError(f"{band.what}: its worker died") from error
-        raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
+        with held_signals():
+            unfinished = [each for each in self.tasks if not each.done()]
+            if not (self.is_own and self.is_pool):  # which fails with InvalidStateError, if it breaks with such tasks
+                for each in unfinished:
+                    each.cancel()
+            if self.is_own:
+                # An idle process waits with the lock of the queue: where it has been killed, the others never learn of
+                # the end. So all are killed, also those that are stopped.
+                for process in self.processes():
+                    process.kill()
+                # The thread of the pool would wait for ever for the rest of a result, or for somebody to read a task.
+                for queue, end in ("_result_queue", "_writer"), ("_call_queue", "_reader"):
+                    with suppress(AttributeError):  # not a pool of processes
+                        getattr(getattr(self.executor, queue), end).close()
+                self.executor.shutdown(wait=not unfinished, cancel_futures=True)
 
 
 def local_pool() -> Executor:
@@ -162,8 +180,21 @@ def local_pool() -> Executor:
     return ProcessPoolExecutor(min(usable_cores(), MOST_PROCESSES), get_context("spawn"), prepare_process)
 
 
+@contextmanager
+def ctrl_c_blocked() -> Iterator[None]:
+    """Let processes that the block starts never get Ctrl+C, which a terminal sends to all, even while they start."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def prepare_process() -> None:
-    """Let a process of the pool ignore Ctrl+C, which a terminal sends to all, and end at once with a killed parent."""
+    """Let a process of the pool ignore Ctrl+C, also on Windows, and end at once with a killed parent."""
 
     def end_with_parent(parent: Any) -> None:
         parent.join()

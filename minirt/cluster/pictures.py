@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import closing
 from itertools import chain
 from operator import length_hint
 from pathlib import Path
@@ -140,18 +141,19 @@ def results(
     on_progress(done, total)
     if journal:
         journal.total = total
-    made_of: Iterable[tuple[Job, Made]] = ((band, restore(band) or render_band(band)) for band in bands)
+    made_of: Generator[tuple[Job, Made], None, None] = ((band, restore(band) or render_band(band)) for band in bands)
     if executor is not None:
         from minirt.cluster.executor import Dispatcher
 
         made_of = Dispatcher(executor).results(bands, restore, in_order)
     start = perf_counter()
-    for band, made in made_of:
-        seconds = perf_counter() - start
-        yield band, made
-        if band.number not in kept:
-            if journal:
-                journal.keep(band.number, made, seconds)
-            done += 1
-            on_progress(done, total)
-        start = perf_counter()
+    with closing(made_of):  # now, and not when nobody looks at the error any more
+        for band, made in made_of:
+            seconds = perf_counter() - start
+            yield band, made
+            if band.number not in kept:
+                if journal:
+                    journal.keep(band.number, made, seconds)
+                done += 1
+                on_progress(done, total)
+            start = perf_counter()

@@ -12,6 +12,8 @@ from threading import Thread
 from typing import TypeAlias
 from weakref import finalize
 
+from minirt.helpers.signals import held_signals
+
 Job: TypeAlias = Callable[[], object]
 Run: TypeAlias = Callable[[Job], object]  # runs a job on all threads
 
@@ -45,18 +47,19 @@ class ThreadPool:
         """
         results, wake = Results(), SimpleQueue[None]()
         own, errors = jobs[:1] if helps else [], list[BaseException]()
-        for job in jobs[len(own) :]:
-            self.tasks.put((job, results, wake))
-        while len(results) < len(jobs):  # an interrupt may come between waking and any count of it
-            try:
-                if own:
-                    perform(own.pop(), results, wake)
-                with suppress(Empty):
-                    wake.get(timeout=LONGEST_WAIT)
-            except BaseException as interrupt:
-                errors.append(interrupt)
-            if errors or any(results):
-                cancel()
+        with held_signals() as came:  # the caller would free the memory that the threads still write
+            for job in jobs[len(own) :]:
+                self.tasks.put((job, results, wake))
+            while len(results) < len(jobs):  # an interrupt may come between waking and any count of it
+                try:
+                    if own:
+                        perform(own.pop(), results, wake)
+                    with suppress(Empty):
+                        wake.get(timeout=LONGEST_WAIT)
+                except BaseException as interrupt:
+                    errors.append(interrupt)
+                if errors or came or any(results):
+                    cancel()
         errors += filter(None, results)
         if errors:
             raise errors[0]

@@ -7,7 +7,7 @@ import pyglet.clock
 import pyglet.display
 from pyglet.app.base import EventLoop
 
-from minirt.helpers.system import interruptible
+from minirt.helpers.signals import interruptible
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.on_pyglet.native import NativeWindow
 from minirt.mlx.on_pyglet.x11 import end_program_when_connection_is_lost
