@@ -10,8 +10,8 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES, say
-from minirt.errors import MlxError
+from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say
+from minirt.errors import MlxError, SceneError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 from minirt.scene import Scene, size_of
@@ -36,6 +36,33 @@ def check(scene: Scene, options: argparse.Namespace) -> int:
         for notice in hidden_shapes(scene):
             say(f"notice: {notice}")
     return OK
+
+
+def check_as_json(options: argparse.Namespace) -> int:
+    """Print the errors and notices of a scene file as a list in JSON, for editors."""
+    import json
+
+    from minirt.cli.files import read_scene
+    from minirt.scene.dialects import meant
+
+    try:
+        told = [("notice", each) for each in read_scene(options).notices]
+    except SceneError as error:
+        told = [("error", each) for each in error.problems]
+    say(
+        json.dumps(
+            [
+                {
+                    **{name: getattr(each, name) for name in ("file", "line", "column", "length")},
+                    "severity": severity,
+                    "message": each.message,
+                    "hint": meant(each.line, each.text) if severity == "error" and each.line else "",
+                }
+                for severity, each in told
+            ]
+        )
+    )
+    return FAILED if any(severity == "error" for severity, _ in told) else OK
 
 
 def render(scene: Scene, options: argparse.Namespace) -> int:
@@ -116,7 +143,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     width, height = options.size or size_of(scene)
     if options.output:
         check_output(options.output, width, height)
-    text = file_io.read(options.replay, MAX_RECORDING).decode(errors="replace")
+    text = file_io.read_given(options.replay, MAX_RECORDING).decode(errors="replace")
     lines = text.replace("\r\n", "\n").split("\n")
     settings: dict[str, Any] = {
         "file": options.replay,

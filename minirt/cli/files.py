@@ -7,24 +7,24 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import OPENING, Arguments, say, tell
-from minirt.errors import RenderError, SceneError
+from minirt.errors import FileError, RenderError, SceneError
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
-    from minirt.scene import Scene
+    from minirt.scene import Reading, Scene
 
 OPENING_PICTURE = "miniRT-opening.png"  # of a program without arguments, where no window can be opened
 STANDARD_INPUT = "standard input"
 PLACE = "{name}"  # in an output, stands for the name of the scene's file without its extension
 
 
-def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, for_window: bool = False) -> Scene:
-    """Load the scene; print its notices, one for each tolerated mistake, to `stream`. `new`: an empty file is one.
+def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool = False) -> Reading:
+    """Load the scene, with notices about tolerated mistakes. `new`: an empty file is one.
 
     For a window a file in another dialect, which a strict reader refuses, is read as --lenient does, after its error.
     """
@@ -36,8 +36,9 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, f
     with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
         if options.example:
             reading = Reading(example(options.example), ())
-        elif path == "-":  # whose pictures and meshes are looked for in the current folder
-            reading = parse(standard_input(), STANDARD_INPUT, options.lenient)
+        elif is_nameless(path):  # its pictures and meshes are looked for in the current folder
+            name = STANDARD_INPUT if path == "-" else path
+            reading = parse(stream_data(path, name), name, options.lenient, Path())
         else:
             try:
                 if for_window:
@@ -51,12 +52,10 @@ def read_scene(options: argparse.Namespace, stream: TextIO, new: bool = False, f
                 if not options.lenient:
                     note_lenience(path, error)
                 raise
-    for notice in reading.notices:
-        tell(f"notice: {notice}", stream)
     scene = reading.scene.mirrored() if options.left_handed else reading.scene
     if options.camera > len(scene.cameras):
         raise RenderError(f"{path} has {len(scene.cameras)} cameras: there is no --camera {options.camera}")
-    return scene.seen_by(options.camera)
+    return Reading(scene.seen_by(options.camera), reading.notices)
 
 
 def note_lenience(path: str, error: SceneError) -> None:
@@ -72,17 +71,25 @@ def note_lenience(path: str, error: SceneError) -> None:
         error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
 
 
-def standard_input() -> bytes:
-    """Read standard input. SceneError."""
+def is_nameless(path: str) -> bool:
+    """Whether a scene or an output is a stream: standard input or output, or one that a shell has opened."""
+    return path == "-" or file_io.is_stream(path)
+
+
+def stream_data(path: str, name: str) -> bytes:
+    """Read a scene from a stream. SceneError, which calls it by a name."""
     from minirt.scene.files import MAX_BYTES, file_error
 
     try:
+        if path != "-":
+            return file_io.read_given(path, MAX_BYTES)
         data = sys.stdin.buffer.read(MAX_BYTES + 1)
+        file_io.check_size(name, len(data), MAX_BYTES)
+    except FileError as error:
+        raise file_error(name, error.reason) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else None
-        raise file_error(STANDARD_INPUT, f"cannot be read: {reason or 'it is closed'}") from None
-    if len(data) > MAX_BYTES:
-        raise file_error(STANDARD_INPUT, f"larger than {MAX_BYTES // 2**20} MiB")
+        raise file_error(name, f"cannot be read: {reason or 'it is closed'}") from None
     return data
 
 
@@ -117,7 +124,7 @@ def output_for(scene: str, output: str) -> str:
 
 def format_name(output: str) -> str:
     """Return the name of the format of an output; RenderError for an unknown extension."""
-    return "PNG" if output == "-" else format_of(output)
+    return "PNG" if is_nameless(output) else format_of(output)
 
 
 def is_film(options: argparse.Namespace) -> bool:
@@ -145,17 +152,20 @@ def check_format(options: argparse.Namespace) -> None:
 
 def check_output(output: str, width: int, height: int) -> None:
     """Check that a picture of this size can be written to a file; RenderError otherwise."""
-    if output == "-":
+    check_size(output, format_name(output), width, height)
+    if is_nameless(output):
         return
-    check_size(output, format_of(output), width, height)
     with file_io.told_errors(output):
         file_io.probe(output)
 
 
 def write(data: bytes, output: str) -> None:
-    """Write an encoded picture to a file as a whole, or to standard output; RenderError when that fails."""
+    """Write an encoded picture to a file as a whole, or to a stream; RenderError when that fails."""
     if output == "-":
         say(data)
         return
     with file_io.told_errors(output):
-        file_io.write(output, data)
+        if file_io.is_stream(output):
+            Path(output).write_bytes(data)
+        else:
+            file_io.write(output, data)

@@ -23,6 +23,25 @@ PICTURES = ("size", "samples", "quality", "depth", "precision", "dither", "metad
 CONFIGURABLE = (*PICTURES, "keys", "watch", "threads", "memory", "verbose")
 CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "dither", "camera", "left_handed")
 IN_WINDOWS_TOO = ("size", "depth", "precision", "camera", "left_handed")
+# Options that choose a command, the first of which counts, and the commands with which each option has an effect, where
+# that is not all of them. Without such an option there is a window.
+COMMANDS = {"check": "--check", "bench": "--bench", "report": "--report", "replay": "--replay", "output": "-o"}
+EFFECTS = {
+    name: set(commands.split())
+    for names, commands in (
+        ("region turntable frames resume error time strict cluster verbose", "output"),
+        ("output bits quality metadata", "replay output"),
+        ("samples depth dither", "replay output window"),
+        ("precision", "bench replay output window"),
+        ("size threads tone exposure", "bench report replay output window"),
+        ("keys", "replay window"),
+        ("fallback text_scale watch", "window"),
+        ("quick ablation", "report"),
+        ("json", "check bench"),
+        *((command, command) for command in ("check", "bench", "report", "replay")),
+    )
+    for name in names.split()
+}
 LARGEST = 2**16  # bytes of a configuration file
 ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
 FILES = {"output", "fallback", "replay", "report", "config"}  # options whose value is a path
@@ -59,7 +78,7 @@ def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, obje
     import tomllib
 
     try:
-        table = tomllib.loads(file_io.read(path, LARGEST).decode())
+        table = tomllib.loads(file_io.read_given(path, LARGEST).decode())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise FileError(path, f"is not TOML: {error}") from None
     actions = actions_of(parser, CONFIGURABLE)
@@ -94,6 +113,24 @@ def value_of(action: argparse.Action, value: object) -> object:
     if action.choices and result not in action.choices:
         raise ValueError(f"must be one of {', '.join(map(str, action.choices))}, got {value!r:.40}")
     return result
+
+
+def without_effect(parser: argparse.ArgumentParser, options: argparse.Namespace) -> str:
+    """Return a message about an option that was given and has no effect with the command that others choose, or ''.
+
+    Defaults of the configuration file are for the commands that use them.
+    """
+    command = next((name for name in COMMANDS if getattr(options, name, None)), "window")
+    commands = {command, *(["output"] if options.fallback else [])}
+    for action in actions_of(parser, [*EFFECTS]).values():
+        has_effect = EFFECTS[action.dest]
+        if getattr(options, action.dest) != parser.get_default(action.dest) and not commands & has_effect:
+            if action.dest in COMMANDS:
+                return f"{COMMANDS[action.dest]} does not go with {COMMANDS[command]}"
+            where = f"with {COMMANDS[command]}" if command in COMMANDS else "in the window"
+            names = [COMMANDS.get(name, "the window") for name in (*COMMANDS, "window") if name in has_effect]
+            return f"{action.option_strings[-1]} has no effect {where}: it is for {' and '.join(names)}"
+    return ""
 
 
 def settings_text(options: argparse.Namespace, width: int, height: int) -> str:

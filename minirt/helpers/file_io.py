@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import stat
 import sys
 from collections.abc import Callable, Iterator
@@ -202,6 +203,30 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
     check_size(path, len(data), largest)
     if data.startswith(LFS_POINTER):
         raise FileError(path, "is a pointer of Git LFS in place of the file: 'git lfs pull' fetches it")
+    return data
+
+
+STREAM = re.compile(r"/dev/(?:null|std(?:in|out|err)|fd/[0-9]+)")
+
+
+def is_stream(path: str | os.PathLike[str]) -> bool:
+    """Whether a name is that of an open stream of this process, as `<(...)` of a shell gives it, or of none at all.
+
+    It is for names that the user gives: one in a scene must not read what somebody else has opened.
+    """
+    return STREAM.fullmatch(os.fspath(path)) is not None
+
+
+def read_given(path: str | os.PathLike[str], largest: int) -> bytes:
+    """Return the bytes of a regular file or a stream that the user names, as `read`. FileError."""
+    if not is_stream(path):
+        return read(path, largest)
+    try:
+        with Path(path).open("rb") as stream:
+            data = stream.read(largest + 1)
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {reason(error)}") from None
+    check_size(path, len(data), largest)
     return data
 
 

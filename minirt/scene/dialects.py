@@ -330,6 +330,11 @@ def read_cones(items: list[Any], log: Log) -> None:
 def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
     """Yield what the first of the lines that a strict reader refuses may mean."""
     for number, text in list(dict.fromkeys((each.line, each.text) for each in problems))[:MOST_SUGGESTED]:
-        meant = translated(line_from(number, text), colours={}, folder=None)
-        if meant and meant.text:
-            yield f"line {number}: did you mean '{printable(meant.text)}'?"
+        if text := meant(number, text):
+            yield f"line {number}: did you mean '{printable(text)}'?"
+
+
+def meant(number: int, text: str) -> str:
+    """Return what a line that a strict reader refuses may mean, '' where that is unknown."""
+    translation = translated(line_from(number, text), colours={}, folder=None)
+    return translation.text if translation else ""
