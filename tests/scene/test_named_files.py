@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import errno
+import os
 import random
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +21,9 @@ from minirt.meshes import obj_lines
 from minirt.scene import describe, dump, load, parse
 from minirt.shapes.mesh import Mesh
 from tests.fuzz.inputs import originals
+from tests.processes import in_child
 from tests.scene.examples import AMBIENT, CAMERA
+from tests.test_imports import sources
 
 ONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
@@ -169,9 +176,116 @@ def test_transparent_parts_are_told_and_pictures_are_turned_by_their_exif_data(f
     assert told(path) == ["sphere texture has transparent parts, which are drawn opaque"]
 
 
+# Names that the system does not look at, and why; `odd` stands for one that it cannot look at now, see `deny`.
+LONG = "a" * 300
+NOT_LOOKED_AT = {
+    LONG: errno.ENAMETOOLONG,
+    "/".join([LONG] * 2): errno.ENAMETOOLONG,
+    "/".join(["folder"] * 900): errno.ENAMETOOLONG,
+    "one.ppm/map.ppm": errno.ENOTDIR,
+    "loop.obj/map.ppm": errno.ELOOP,
+    **{f"odd-{code}": code for code in (errno.EACCES, errno.EIO, errno.ESTALE, errno.EOVERFLOW, errno.ENOMEM)},
+}
+NAMING = {
+    "sp 0,0,9 1 9,9,9 texture:{}": "sphere texture must be a picture file",
+    "sp 0,0,9 1 9,9,9 bump:{},0.5": "sphere bump must be a picture file",
+    "sp 0,0,9 1 9,9,9 normal:{}": "sphere normal map must be a picture file",
+    "bg {}": "background paint must be a picture file",
+    "ob {} 0,0,0 1 9,9,9": "mesh file must be a mesh file",
+}
+
+
+@pytest.fixture
+def deny(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the system fail to look at files whose names are `odd-` and the number of an error."""
+
+    def look(path: Any, *more: Any, **named: Any) -> os.stat_result:
+        code = str(path).rpartition("odd-")[2]
+        if "odd-" in str(path):
+            raise OSError(int(code), os.strerror(int(code)), str(path))
+        return stat(path, *more, **named)
+
+    stat = os.stat
+    monkeypatch.setattr(os, "stat", look)
+
+
+@pytest.mark.usefixtures("deny")
+@pytest.mark.parametrize("line", NAMING)
+@pytest.mark.parametrize("name", NOT_LOOKED_AT, ids=lambda name: name[-20:])
+def test_a_named_file_that_cannot_be_looked_at_is_an_error_at_its_name(folder: Path, line: str, name: str) -> None:
+    (folder / "one.ppm").write_bytes(PLAIN)
+    written = line.format(name)
+    for lenient in (False, True):  # which may leave the shape out
+        with suppress(SceneError):
+            load(scene(folder, "sp 0,0,9 1 9,9,9", written), lenient)
+    with pytest.raises(SceneError) as caught:
+        load(scene(folder, written))
+    (problem,) = caught.value.problems
+    assert problem.message.startswith(f"{NAMING[line]}, got ")
+    assert problem.message.endswith(f": cannot be read: {os.strerror(NOT_LOOKED_AT[name]).lower()}")
+    assert (problem.line, problem.column, problem.length) == (3, line.index("{") + 1, len(name))
+
+
+@pytest.mark.usefixtures("deny")
+@pytest.mark.parametrize("name", NOT_LOOKED_AT, ids=lambda name: name[-20:])
+def test_materials_and_pictures_that_cannot_be_looked_at_are_left_out_of_a_mesh(folder: Path, name: str) -> None:
+    (folder / "one.ppm").write_bytes(PLAIN)
+    (folder / "named.mtl").write_text(f"newmtl red\nKd 1 0 0\nmap_Kd {name}\nmap_Bump -bm 2 {name}\n")
+    for library, what in ((name, "a file of materials that"), ("named.mtl", "pictures that")):
+        (folder / "one.obj").write_text(f"mtllib {library}\nusemtl red\n{ONE}")
+        (notice,) = told(scene(folder, "ob one.obj 0,0,0 1 9,9,9"))
+        assert f"this is not used: {what} cannot be read" in notice
+
+
+def test_files_of_folders_without_permission_are_errors_and_end_no_program(folder: Path) -> None:
+    (folder / "closed").mkdir()
+    (folder / "closed" / "map.ppm").write_bytes(PLAIN)
+    path = scene(folder, "sp 0,0,9 1 9,9,9 texture:closed/map.ppm")
+    for each in (folder, *folder.parents[:2]):
+        each.chmod(0o755)
+    (folder / "closed").chmod(0)
+
+    def read() -> None:
+        if os.geteuid() == 0:  # who may look everywhere
+            os.setuid(65534)
+        with pytest.raises(SceneError, match=r"map\.ppm': cannot be read: permission denied"):
+            load(path)
+
+    try:
+        assert in_child(read) == 0
+    finally:
+        (folder / "closed").chmod(0o700)
+
+
+def test_a_deleted_working_folder_is_no_error(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = scene(folder, "sp 0,0,9 1 9,9,9 texture:none.png")
+    (folder / "gone").mkdir()
+    monkeypatch.chdir(folder / "gone")
+    (folder / "gone").rmdir()
+    with pytest.raises(SceneError, match=r"none\.png': cannot be read: no such file or directory"):
+        load(path)
+
+
+LOOKS = {"exists", "is_file", "is_dir", "is_symlink", "is_fifo", "stat", "lstat", "samefile", "owner", "resolve"}
+OWN_FOLDERS = {"helpers/file_io.py", "kernel/machine_code/cache.py"}  # which look at files of this user
+
+
+def looks(source: str) -> set[str]:
+    """Return the methods of paths that a source calls and that raise where the system does not let a file be looked
+    at."""
+    calls = (node.func for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
+    return {call.attr for call in calls if isinstance(call, ast.Attribute)} & LOOKS
+
+
+def test_files_are_looked_at_by_functions_that_never_raise() -> None:
+    found = {path: looks(source) for path, source in sources().items() if path not in OWN_FOLDERS and looks(source)}
+    assert not found, "use `found`, `is_file` and `is_folder` of `minirt.helpers.file_io`"
+    assert looks("if Path(name).is_file(): pass") == {"is_file"}, "the planted source is found"
+
+
 SECRET, NUMBER = b"qzjxkvwqzv", b"9182736450"
 PLAIN = b"P3 2 1 255 1 2 3 4 5 6\n"
-NAMING = "ob file 0,0,0 1 9,9,9", "bg file", "sp 0,0,9 1 9,9,9 texture:file bump:file normal:file"
+NAMING_FILE = "ob file 0,0,0 1 9,9,9", "bg file", "sp 0,0,9 1 9,9,9 texture:file bump:file normal:file"
 TRIES = 7  # of each file
 
 
@@ -184,7 +298,7 @@ def test_no_message_quotes_a_file_that_a_scene_names(
         monkeypatch.setattr(obj_lines, "expected", str)
     seed = random.SystemRandom().randrange(2**32)
     chance = random.Random(seed)
-    path = scene(folder, *NAMING)
+    path = scene(folder, *NAMING_FILE)
     for data, secret in [
         (ONE.encode(), SECRET),
         (ONE.encode(), NUMBER),
