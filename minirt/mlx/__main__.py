@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import os
 import runpy
 import sys
 import threading
@@ -91,7 +92,7 @@ def _run(program: Path, arguments: list[str]) -> Any:
     if not is_file(program):
         raise MlxError(f"there is no program {program}")
     sys.argv = [str(program), *arguments]
-    sys.path[0] = str(program.resolve().parent)
+    sys.path[0] = str(Path(os.path.realpath(program)).parent)
     try:
         runpy.run_path(str(program), run_name="__main__")
     except SystemExit as leaving:
