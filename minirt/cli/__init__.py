@@ -35,7 +35,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         return FAILED
     except KeyboardInterrupt as error:  # SIGINT, or another signal, whose number it has
         tell_notes(error)
-        return 128 + int(*error.args or [SIGINT])
+        status = 128 + int(*error.args or [SIGINT])
+        if argv is not None:
+            return status
+        from minirt.helpers.signals import leave
+
+        leave(status)
     except MiniRTError as error:
         return failed(error)
     except MemoryError as error:
@@ -101,35 +106,38 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
-    from minirt.helpers.system import ended_by_signals, gc_paused
+    from minirt.helpers.signals import ended_by_signals
+    from minirt.helpers.system import gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
-        from minirt.cli.commands import command_for, replay, show
+        from minirt.cli.commands import check, check_as_json, command_for, replay, show
         from minirt.cli.files import output_for, read_scene, with_camera_options
         from minirt.cli.options import with_settings
-
+    with ended_by_signals():
         output = output_for(scene, options.output) if options.output else options.output
         options = argparse.Namespace(**vars(options) | {"scene": [scene], "output": output})
         options = with_settings(parser, options)
         command = command_for(options)
-        # A picture may go to standard output. A window leaves it free, and standard error stays empty without errors.
-        stream = sys.stdout if command is show else sys.stderr
-        read = read_scene(options, stream, command in (show, replay), for_window=command is show)
-    if command is show:  # which compares what it shows with the file
-        return show(with_camera_options(read, options), options, read)
-    with ended_by_signals():
+        if options.json and command is check:
+            return check_as_json(options)
+        with gc_paused():
+            read, notices = read_scene(options, command in (show, replay), for_window=command is show)
+        for notice in notices:
+            # A picture may go to standard output. A window leaves it free, and standard error is empty without errors.
+            tell(f"notice: {notice}", sys.stdout if command is show else sys.stderr)
+        if command is show:  # which compares what it shows with the file
+            return show(with_camera_options(read, options), options, read)
         return command(with_camera_options(read, options), options)
 
 
 def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     """Exit with a message when the options do not go together; RenderError for an unknown or unfit picture format."""
     check_scenes(parser, options)
-    if options.output or options.fallback:
-        from minirt.cli.files import check_format
+    from minirt.cli.files import check_format, is_nameless
 
-        check_format(options)  # before the work, not after it
+    check_format(options)  # before the work, not after it
     output, replay, auto = options.output, options.replay, options.samples == "auto"
-    nameless, last = output in (None, "-"), options.frames.stop - 1 if options.frames else 0
+    nameless, last = not output or is_nameless(output), options.frames.stop - 1 if options.frames else 0
     is_one = output and not (replay or (options.turntable and not options.cluster))
     side = max(options.size or (0,))
     is_too_large = side > MAX_SIDE and not options.cluster
@@ -137,34 +145,38 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         (options.turntable and nameless, f"--turntable needs {NAME}"),
         (last and not options.turntable, "--frames needs --turntable"),
         (last > (options.turntable or last), f"--frames: there are {options.turntable} pictures, got {last}"),
-        (options.region and (replay or not output), "--region needs -o, and no --replay"),
         (options.resume and (replay or auto or nameless), f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
         (auto and not is_one, "--samples auto makes one picture: it needs -o, and no --replay or --turntable"),
-        (options.cluster and (not output or replay or options.time), "--cluster needs -o, and no --replay or --time"),
+        (options.cluster and options.time, "--cluster has no effect with --time"),
         (is_too_large, f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster"),
     )
     for is_wrong, message in wrong:
         if is_wrong:
             parser.error(message)
+    from minirt.cli.options import without_effect
+
+    if message := without_effect(parser, options):
+        parser.error(message)
 
 
 def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
     """Exit with a message when the scenes do not go with the other options."""
+    from minirt.cli.files import PLACE, is_nameless, output_for
+
     scenes, output = options.scene, options.output
     if not scenes:
         parser.error("expected one scene file, got 0")
     is_headless = output or options.check or options.bench or options.report
-    if "-" in scenes and (not is_headless or options.replay or scenes.count("-") > 1):
+    streams = [*filter(is_nameless, scenes)]
+    if streams and (not is_headless or options.replay or len(streams) > len(set(streams))):
         parser.error("a scene on standard input needs -o or --check, and is read once")
     if len(scenes) == 1 or options.check:
         return
     found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}"
     if not output or options.bench or options.report or options.replay:
         parser.error(found)
-    from minirt.cli.files import PLACE, output_for
-
     if PLACE not in output:
         parser.error(f"{found}; several need -o with {PLACE}, such as -o out/{PLACE}.png")
     outputs = [output_for(scene, output) for scene in scenes]
