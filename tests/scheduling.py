@@ -31,6 +31,7 @@ SLOW = (
     "tests/bench/",
     "tests/cli/test_arguments.py",
     "tests/cli/test_cluster.py",
+    "tests/cli/test_ends.py",
     "tests/cli/test_files.py",
     "tests/cli/test_formats.py",
     "tests/cli/test_output.py",

@@ -27,10 +27,9 @@ MOST_PROCESSES = 8  # on this machine; each has its share of the processors
 LATE, LONGER = 60.0, 10  # seconds, and times the longest band so far, after which one is late; without any, both
 SILENT, DESERTED = 60.0, 300.0  # seconds without an answer of the scheduler, and without workers, that end the work
 WATCH = 1.0  # seconds between two looks at what is late
+COLLECTING = 1.0  # seconds for the exit statuses of processes
 UNGUARDED = 87  # exit status of a process of a pool that runs the script which has started it
-GUARD = "it ran the script that has started it from the beginning; what starts processes belongs below a line " + (
-    "\"if __name__ == '__main__':\""
-)
+GUARD = "it ran this script once more; what starts processes belongs below \"if __name__ == '__main__':\""
 
 
 class Dispatcher:
@@ -148,7 +147,10 @@ class Dispatcher:
             raise
         except Exception as error:
             if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
-                is_unguarded = any(each.exitcode == UNGUARDED for each in self.processes())
+                processes = self.processes()
+                if processes:  # whose exit statuses a thread of the pool collects
+                    self.executor._executor_manager_thread.join(COLLECTING)
+                is_unguarded = any(each.exitcode == UNGUARDED for each in processes)
                 raise RenderError(f"{band.what}: its worker died" + f": {GUARD}" * is_unguarded) from error
             raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
 

@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from types import FrameType
 
 TYPE_CHECKING = False
@@ -54,7 +55,7 @@ def handle_from_start() -> None:
             signal.signal(number, handle)
 
 
-def raise_again(ignored: sys.UnraisableHookArgs) -> None:
+def raise_again(other_hook: Callable[[sys.UnraisableHookArgs], object], ignored: sys.UnraisableHookArgs) -> None:
     """Send a signal once more whose KeyboardInterrupt was lost: Python drops exceptions of some callbacks, such as
     those of weak references."""
     if ended and isinstance(ignored.exc_value, KeyboardInterrupt):
@@ -62,7 +63,7 @@ def raise_again(ignored: sys.UnraisableHookArgs) -> None:
 
         Timer(0.01, signal.raise_signal, [ended.pop()]).start()
     else:
-        sys.__unraisablehook__(ignored)
+        other_hook(ignored)
 
 
 @contextmanager
@@ -73,7 +74,8 @@ def ended_by_signals(end: Callable[[int], object] = interrupt) -> Iterator[None]
     Signals that are ignored, as under nohup, or that have a handler of another program stay as they are.
     """
     mine = [number for number in ENDING if signal.getsignal(number) in DEFAULTS]
-    hook, sys.unraisablehook = sys.unraisablehook, raise_again
+    hook = sys.unraisablehook
+    sys.unraisablehook = partial(raise_again, hook)
     ends.append(end)
     try:
         with signal_handlers(*mine, handler=handle):

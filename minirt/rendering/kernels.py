@@ -153,8 +153,12 @@ class Kernels:
         *packing, drawing = self.specialised(scene)
         with ThreadPoolExecutor(1) as pool:
             first = pool.submit(LIBRARY.compile, packing, self.packing_process)
-            LIBRARY.compile([drawing], self.compile_process)
-            first.result()
+            try:
+                LIBRARY.compile([drawing], self.compile_process)
+                first.result()
+            except BaseException:  # such as an interrupt, which should not wait for the other process
+                self.packing_process.stop()
+                raise
 
     def stop(self) -> None:
         self.compile_process.stop()

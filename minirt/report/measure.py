@@ -14,6 +14,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
+from minirt.helpers.signals import held_signals
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import WORDS, features
@@ -175,6 +176,7 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     require_matplotlib()
+    is_new = not Path(folder).exists()
     with file_io.told_errors(folder, "cannot be made"):
         Path(folder).mkdir(parents=True, exist_ok=True)
     measurement = Measurement(scene, name, QUICK if quick else FULL, threads)
@@ -183,9 +185,13 @@ def report(
             measurement.run(size, Path(files), ablation)
     except KeyboardInterrupt as interrupt:
         missing = f"Interrupted while measuring {measurement.what}: this and all that would have followed is missing."
-        interrupt.add_note(write_report(measurement, folder, missing) or NOTHING)
+        written = write_report(measurement, folder, missing)
+        if is_new and not written:
+            Path(folder).rmdir()
+        interrupt.add_note(written or NOTHING)
         raise
-    return write_report(measurement, folder)
+    with held_signals():
+        return write_report(measurement, folder)
 
 
 def write_report(measurement: Measurement, folder: str | os.PathLike[str], interrupted: str = "") -> str:

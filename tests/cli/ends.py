@@ -31,6 +31,7 @@ SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 LIMIT = 3.0  # seconds from a signal to the end, asked for by hand alone
 FILM = ("--turntable", "40", "--size", "640x360", "--samples", "64")
 CLUSTER = ("--cluster", "local", "-o")
+AT_REST = 30  # looks at the processor time, with a pause of up to 0.05 s
 KEYS = "press Right\nwait 0.2\n" * 200
 
 
@@ -83,14 +84,14 @@ def handles(program: int, number: int) -> bool:
 
 
 def trial(
-    kind: str, chance: random.Random, variables: dict[str, str], limit: float = HANG_LIMIT, handled: bool = False
+    kind: str, chance: random.Random, variables: dict[str, str], limit: float = HANG_LIMIT, share: float = 1.0
 ) -> End:
     """Start a program of a kind, end it by a signal at a random moment, and check its end.
 
-    `variables` of its environment. `limit` in seconds, after which a program hangs. `handled`: not before the program
-    has a handler of the signal.
+    `variables` of its environment. `limit` in seconds, after which a program hangs. `share` of the span of the kind;
+    less than all of it begins when the program has a handler of the signal.
     """
-    number, moment = chance.choice(SIGNALS), chance.uniform(0.0, KINDS[kind].longest)
+    number, moment = chance.choice(SIGNALS), chance.uniform(0.0, share * KINDS[kind].longest)
     arguments = chance.choice(KINDS[kind].arguments)
     with ExitStack() as stack:
         home, folder = (Path(stack.enter_context(tempfile.TemporaryDirectory())) for _ in range(2))
@@ -105,9 +106,12 @@ def trial(
             processes.started(command, cwd=folder, env=variables, stdout=subprocess.DEVNULL, stderr=errors)
         )
 
+        looks: list[float] = []  # at the time used, which no more changes in a window that is at rest
+
         def is_time() -> bool:
-            is_over = process.poll() is not None
-            return is_over or (used(process.pid) >= moment and (not handled or handles(process.pid, number)))
+            looks.append(used(process.pid))
+            is_over = looks[-1] >= moment or looks[-AT_REST:] == looks[-1:] * AT_REST
+            return process.poll() is not None or (is_over and (share == 1 or handles(process.pid, number)))
 
         until(is_time, "the moment of a signal")
         if process.poll() is not None:
@@ -115,7 +119,10 @@ def trial(
             return End(number, True, 0.0, [f"ended by itself: {process.returncode}\n{told}"])
         is_handled = handles(process.pid, number)
         start = time.monotonic()
-        process.send_signal(number)
+        if number == signal.SIGINT:  # as Ctrl+C in a terminal
+            processes.kill_group(process, number)
+        else:
+            process.send_signal(number)
         faults = check_end(process, number, is_handled, limit)
         seconds = time.monotonic() - start
         told = (home / "errors").read_text()

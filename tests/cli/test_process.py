@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ import minirt
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, PROGRAM, environment, program, start
 from tests.cli.test_output import pixels
+from tests.paths import ROOT
 from tests.processes import next_line, run
 from tests.waiting import HANG_LIMIT
 
@@ -115,6 +117,29 @@ def test_a_signal_while_a_file_is_written_leaves_no_temporary(folder: Path, name
     assert out.strip() == b"True"
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
+
+
+STARTING = """
+import signal, sys
+
+class Finder:
+    def find_spec(self, name, *_):
+        if name == {module!r}:
+            sys.meta_path.remove(self)
+            signal.raise_signal({number})
+
+sys.meta_path.insert(0, Finder())
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGHUP")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("module", ["minirt.cli", "argparse", "minirt.cli.options", "numpy"])
+def test_a_signal_ends_the_program_while_it_imports_a_module(folder: Path, module: str, number: int) -> None:
+    (folder / "sitecustomize.py").write_text(STARTING.format(module=module, number=int(number)))
+    variables = environment() | {"PYTHONPATH": os.pathsep.join((str(folder), str(ROOT)))}
+    ended = run([*PROGRAM, "ball.rt", "-o", "x.png"], cwd=folder, env=variables)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, b"", b"")
 
 
 def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:

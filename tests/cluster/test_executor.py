@@ -7,11 +7,15 @@ import logging
 import os
 import re
 import signal
+import struct
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,9 +28,11 @@ from minirt.cli import main, render
 from minirt.cluster import executor
 from minirt.cluster.job import Job, Made, share_of_cores, work
 from minirt.errors import RenderError
+from minirt.rendering.settings import RenderSettings
+from tests.cli.program import environment
 from tests.cluster.scenes import BALL, with_files
 from tests.paths import ROOT
-from tests.processes import started
+from tests.processes import run, started
 from tests.waiting import until
 
 SIZE = 600, 400
@@ -71,6 +77,54 @@ def test_an_executor_that_is_shut_down_takes_no_tasks(tmp_path: Path) -> None:
     pool.shutdown()
     with pytest.raises(RenderError, match="takes no tasks: cannot schedule new futures after shutdown"):
         minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=pool)
+
+
+UNGUARDED = """
+import minirt
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+make = lambda: ProcessPoolExecutor(1, get_context("spawn"))
+minirt.render_to("a.tif", minirt.example(), 64, 48, executor=make if {is_made} else make())
+"""
+
+
+@pytest.mark.parametrize("is_made", [True, False])
+def test_a_script_without_the_guard_is_told_to_have_it(tmp_path: Path, is_made: bool) -> None:
+    (tmp_path / "script.py").write_text(UNGUARDED.format(is_made=is_made))
+    ended = run([sys.executable, "script.py"], cwd=tmp_path, env=environment(), text=True)
+    *_, last = ended.stderr.splitlines()
+    assert ended.returncode == 1
+    assert last.startswith("minirt.errors.RenderError: rows 0 to 47: its worker died: it ran this script once more; ")
+    assert last.endswith("belongs below \"if __name__ == '__main__':\"")
+    assert ended.stderr.count("Traceback") <= 2  # of this process, and none of the worker
+
+
+def sends_half(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
+    """Make the first band; of the result of another one send a half, and stop."""
+
+    def send(self: Connection, result: Any) -> None:
+        os.write(self.fileno(), struct.pack("!i", len(result)) + bytes(result)[: len(result) // 2])
+        Path(os.environ["HALF"]).touch()
+        signal.pause()
+
+    if band.region.y:
+        Connection._send_bytes = send  # type: ignore[method-assign]
+    return work(version, data, camera, band)
+
+
+def test_a_pool_ends_though_half_a_result_has_come(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HALF", str(tmp_path / "half"))
+    monkeypatch.setattr(executor, "work", sends_half)
+    bands = Job(BALL, SIZE, RenderSettings()).bands(8)
+    made = executor.Dispatcher(lambda: ProcessPoolExecutor(1, get_context("spawn"))).results(
+        bands, lambda _: None, in_order=True
+    )
+    before = set(threading.enumerate())
+    next(made)
+    until((tmp_path / "half").exists, "half a result")
+    made.close()
+    until(lambda: set(threading.enumerate()) <= before, "the end of the threads of the pool")
 
 
 OF_DASK = pytest.mark.filterwarnings("ignore")  # those of another library
@@ -181,3 +235,5 @@ def test_the_program_sends_a_film_to_the_workers(
     assert main([*arguments, "b.gif"]) == 0
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert capsys.readouterr() == ("", "")
+    for name in ("asyncio", "distributed.client", "distributed.core", "tornado", "tornado.application"):
+        assert not logging.getLogger(name).isEnabledFor(logging.CRITICAL)  # where a scheduler dies they have tracebacks

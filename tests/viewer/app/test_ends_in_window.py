@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ import pytest
 
 import minirt
 from minirt.viewer.recovery import name_of
+from tests.cli.ends import trial
 from tests.viewer.app.test_real_window import SIZE, Viewer, picture, viewing
 from tests.viewer.fake import SPHERE_ON_PLANE, WITH_CYLINDER
 from tests.viewer.idle_waits import compilers, group
@@ -69,6 +71,14 @@ def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(de
         assert viewer.end() == (143, "", "")
     assert list(tmp_path.iterdir()) == [path]
     assert kept(desktop, path) == []
+
+
+def test_a_signal_at_any_moment_ends_the_window_as_documented(desktop):
+    seed = random.randrange(10**9)
+    print(f"seed {seed}")
+    chance = random.Random(seed)
+    for _ in range(3):
+        assert trial("window", chance, desktop.environment, share=0.5).faults == []
 
 
 def test_a_killed_program_loses_nothing(desktop, tmp_path):
