@@ -51,8 +51,26 @@ def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
     sized = minirt.Scene((Resolution(40, 20), *scene.items))
     assert minirt.size_of(sized) == (40, 20)
     assert minirt.render(sized).array.shape == (20, 40, 3)
-    assert minirt.render(sized, 10).array.shape == (20, 10, 3)
-    assert minirt.render(sized, height=10).array.shape == (10, 40, 3)
+    assert minirt.render(sized, 10, 20).array.shape == (20, 10, 3)
+
+
+@pytest.mark.parametrize(
+    ("own", "asked", "expected"),
+    [
+        ((40, 20), {"width": 10}, (10, 5)),
+        ((40, 20), {"height": 10}, (20, 10)),
+        ((300, 400), {"width": 100}, (100, 133)),
+        ((1000, 1), {"width": 9}, (9, 1)),  # and never without a pixel
+        (None, {"width": 64}, (64, 36)),
+        (None, {"height": 18}, (32, 18)),
+    ],
+)
+def test_one_side_keeps_the_proportions_of_the_scenes_size(
+    scene: minirt.Scene, own: tuple[int, int] | None, asked: dict[str, int], expected: tuple[int, int]
+) -> None:
+    sized = minirt.Scene((*([Resolution(*own)] if own else []), *scene.items))
+    assert minirt.render(sized, **asked).array.shape == (*expected[::-1], 3)
+    assert minirt.buffers(sized, **asked).distance.shape == expected[::-1]
 
 
 @pytest.mark.parametrize(
@@ -120,10 +138,12 @@ def test_an_edit_makes_a_new_scene(scene: minirt.Scene) -> None:
         minirt.Box((0, 0, 0), size=(1, 1, 1))  # type: ignore[call-arg]
     with pytest.raises(TypeError, match=r"^Sphere has no field 'diametre', did you mean 'diameter'\?$"):
         scene.replace(scene.spheres[0], diametre=3)
-    with pytest.raises(ValueError, match="not in"):
+    with pytest.raises(ValueError, match=r"^the scene has no Sphere\(centre=\(0.0, 0.0, 0.0\), diameter=1.0, "):
         scene.replace(minirt.Sphere((0, 0, 0), 1, (1, 2, 3)), diameter=1)
-    with pytest.raises(AttributeError, match="a scene has no 'teapots'"):
+    with pytest.raises(AttributeError, match=r"^a scene has no 'teapots'$"):
         _ = scene.teapots
+    with pytest.raises(AttributeError, match=r"^a scene has no 'sphere', did you mean 'spheres'\?$"):
+        _ = scene.sphere
     with pytest.raises(AttributeError):
         scene.items = ()  # type: ignore[misc]
 
@@ -144,10 +164,83 @@ def test_elements_are_added_and_removed(scene: minirt.Scene, tmp_path: Path) -> 
     assert larger.remove(*larger.further_lights, ball) == scene
     with pytest.raises(ValueError, match="at most one ambient light, got 2"):
         scene.add(minirt.Ambient(1, (255, 255, 255)))
-    with pytest.raises(ValueError, match="not in"):
+    with pytest.raises(ValueError, match=r"^the scene has no Sphere\(.*\)$"):
         scene.remove(ball)
     with pytest.raises(ValueError, match="exactly one camera, got 0"):
         scene.remove(scene.camera)
+
+
+NO_ELEMENTS: list[tuple[Any, str]] = [
+    (5, "5"),
+    (None, "None"),
+    ("sp 0,0,5 2 255,0,0", "'sp 0,0,5 2 255,0,0'"),
+    ([minirt.Sphere((0, 0, 5), 2, (255, 0, 0))], r"a list: give them one by one, or with a \* before it"),
+    (minirt.Mirror(0.5), r"Mirror\(share=0.5\)"),
+    (minirt.Sphere, "<class 'minirt.shapes.sphere.Sphere'>"),
+]
+
+
+@pytest.mark.parametrize(("wrong", "named"), NO_ELEMENTS, ids=[type(wrong).__name__ for wrong, _ in NO_ELEMENTS])
+def test_what_is_no_element_is_refused_at_once(scene: minirt.Scene, wrong: Any, named: str) -> None:
+    ball = scene.spheres[0]
+    for function, call in {
+        "add": lambda: scene.add(ball, wrong),
+        "remove": lambda: scene.remove(wrong),
+        "replace": lambda: scene.replace(wrong, ball),
+        "Scene": lambda: minirt.Scene([*scene.items, wrong]),
+    }.items():
+        with pytest.raises(TypeError, match=f"^{function} takes elements such as minirt.Sphere, got {named}$"):
+            call()
+    if wrong is not None:
+        with pytest.raises(TypeError, match=f"^replace takes elements such as minirt.Sphere, got {named}$"):
+            scene.replace(ball, wrong)
+
+
+def test_a_scene_has_comments_and_blank_lines_beside_its_elements(scene: minirt.Scene) -> None:
+    lines = "", " \t", "# a comment", "  # another\r", "\ufeff# with a byte order mark"
+    assert minirt.Scene((*lines, *scene.elements)).items[:5] == lines
+    for text in ("two\n# lines", "# two\nsp 0,0,5 2 255,0,0", "a # comment"):
+        with pytest.raises(TypeError, match=r"^Scene takes elements"):
+            minirt.Scene((*scene.elements, text))
+
+
+def test_true_means_what_the_key_alone_means_in_a_file_and_is_no_number() -> None:
+    for name in ("checker", "fresnel"):
+        (read,) = minirt.loads(f"A 1 9,9,9\nC 0,0,0 0,0,1 60\nsp 0,0,5 2 1,2,3 glass:1.5 {name}\n").spheres
+        assert minirt.Sphere((0, 0, 5), 2, (1, 2, 3), glass=1.5, **{name: True}) == read
+    assert minirt.Plane((0, 0, 0), (0, 1, 0), (1, 2, 3), checker=True).checker == minirt.Checker(1.0)
+    for name, example in (
+        ("glass", "glass:ior"),
+        ("mirror", "mirror:share"),
+        ("glow", "glow:share"),
+        ("roll", "roll:"),
+    ):
+        with pytest.raises(
+            minirt.ElementError, match=f"^sphere {name} must be a value, as in '{example}.*', got True$"
+        ):
+            minirt.Sphere((0, 0, 5), 2, (1, 2, 3), **{name: True})
+    with pytest.raises(minirt.ElementError, match=r"^sphere diameter must be a value, got True$"):
+        minirt.Sphere((0, 0, 5), True, (1, 2, 3))
+    assert minirt.Specular(0.5, 9, blinn=True).blinn is True
+
+
+def test_errors_and_results_have_public_names(scene: minirt.Scene) -> None:
+    with pytest.raises(minirt.ElementError) as wrong:
+        minirt.Sphere((0, 0, 5), -2, (1, 2, 3))
+    assert isinstance(wrong.value, minirt.MiniRTError)
+    assert isinstance(wrong.value, ValueError)
+    minirt.limit_memory(2**20)
+    try:
+        with pytest.raises(minirt.TooLargeError):
+            minirt.render(scene, 4000, 4000)
+    finally:
+        minirt.limit_memory(None)
+    assert isinstance(minirt.render(scene, 16, 9, samples="auto", error=0.5).reached, minirt.Outcome)
+    with pytest.raises(minirt.SceneError) as refused:
+        minirt.loads("sp 0,0,5 2 1,2,3\n")
+    assert all(isinstance(each, minirt.Problem) for each in refused.value.problems)
+    place: minirt.Triple = (0, 0, 5)
+    assert minirt.Sphere(place, 2, (1, 2, 3)).centre == place
 
 
 def test_a_scene_is_written_and_read_again(scene: minirt.Scene, tmp_path: Path) -> None:

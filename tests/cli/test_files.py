@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import json
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from minirt.cli import argument_parser
 from minirt.cli.files import OPENING_PICTURE, choose_example
 from minirt.formats import png
 from minirt.scene import files
-from tests.cli.program import SCENE, Run, program
+from tests.cli.program import SCENE, Result, Run, program
 from tests.cli.test_output import pixels
 from tests.paths import SCENES
 
@@ -221,6 +223,82 @@ def test_a_scene_on_standard_input_is_rendered(run: Run, folder: Path, give: Cal
     give(SCENE.encode())
     assert run("-", "-o", "{name}.png", "--size", "40x30").status == 0
     assert (folder / "stdin.png").exists()
+
+
+@pytest.fixture
+def piped() -> Iterator[Callable[[bytes], str]]:
+    """A function that returns the name by which a shell gives data to a program: `miniRT <(...)`."""
+    opened = []
+
+    def pipe(data: bytes) -> str:
+        reader, writer = os.pipe()
+        os.write(writer, data)
+        os.close(writer)
+        opened.append(reader)
+        return f"/dev/fd/{reader}"
+
+    yield pipe
+    for each in opened:
+        os.close(each)
+
+
+def test_streams_that_a_shell_has_opened_are_read_and_written(
+    run: Run, folder: Path, piped: Callable[[bytes], str]
+) -> None:
+    options = "--config", piped(b'size = "40x30"')
+    assert run(piped(SCENE.encode()), "-o", "a.png", *options).status == 0
+    expected = minirt.render(minirt.load("ball.rt"), 40, 30).array
+    assert (pixels((folder / "a.png").read_bytes()) == expected).all()
+    reader, writer = os.pipe()
+    assert run("ball.rt", "-o", f"/dev/fd/{writer}", "--size", "40x30").status == 0
+    os.close(writer)
+    with os.fdopen(reader, "rb") as written:
+        assert (pixels(written.read()) == expected).all()
+    assert run("ball.rt", "--replay", piped(b"press n\n"), "-o", "b.png", "--size", "40x30").status == 0
+    name = piped(SCENE.encode() + b"spp\n")
+    assert run(name, "--check").err.startswith(f"Error\n{name}:6:1: unknown element 'spp'")
+    assert run("ball.rt", "-o", "/dev/null", "--size", "40x30", "--config", "/dev/null") == Result(0, b"", "")
+    assert run("/dev/null", "--check").err == "Error\n/dev/null: is empty\n"
+    assert sorted(each.name for each in folder.iterdir()) == ["a.png", "b.png", "ball.rt"]
+
+
+def test_a_scene_reads_no_stream_of_the_program(run: Run, folder: Path, piped: Callable[[bytes], str]) -> None:
+    name = piped(b"P3 1 1 255 1 2 3\n")
+    (folder / "thief.rt").write_text(f"{SCENE}sp 0,0,9 1 9,9,9 texture:{name}\n")
+    ended = run("thief.rt", "--check")
+    assert (ended.status, "is not a regular file" in ended.err) == (1, True)
+
+
+def test_problems_are_printed_for_editors(run: Run, folder: Path) -> None:
+    (folder / "bad.rt").write_text(f"{SCENE}sp 0,0,9 -1 9,9,9\nsp 0, 0, 9 1 9,9,9\n")
+    (folder / "warm.rt").write_text(f"{SCENE}sp 0,0,9 1 9,9,9 tint:1,2,3\n")
+    ended = run("ball.rt", "bad.rt", "warm.rt", "none.rt", "--check", "--json")
+    assert (ended.status, ended.err) == (1, "")
+    ball, bad, warm, none = map(json.loads, ended.out.splitlines())
+    assert ball == []
+    wrong, spaced = bad
+    assert wrong == {
+        "file": "bad.rt",
+        "line": 6,
+        "column": 10,
+        "length": 2,
+        "severity": "error",
+        "message": "sphere diameter must be > 0, got -1",
+        "hint": "",
+    }
+    assert (spaced["line"], spaced["column"], spaced["hint"]) == (7, 5, "sp 0,0,9 1 9,9,9")
+    assert [(each["line"], each["severity"]) for each in warm] == [(6, "notice")]
+    assert [(each["line"], each["message"]) for each in none] == [(0, "cannot be read: no such file or directory")]
+
+
+def test_names_of_files_are_cleaned_on_both_streams(run: Run, folder: Path) -> None:
+    name = "a\x1b[31m\x07\r.rt"
+    told = [run(name, "--check"), run(name, "--check", "--json")]
+    (folder / name).write_text(SCENE)
+    told += [run(name, "--check"), run(name, "-o", "a.png", "--verbose", "--size", "8x8")]
+    assert [each.status for each in told] == [1, 1, 0, 0]
+    for each in told:
+        assert not set((each.out.decode() + each.err).replace("\n", "")) & set(map(chr, range(32)))
 
 
 def test_errors_name_standard_input(run: Run, give: Callable[[bytes], None]) -> None:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from math import dist
 from pathlib import Path
+from typing import Any
 from weakref import WeakSet
 
 import numpy as np
@@ -190,6 +191,31 @@ def test_a_forked_child_writes_the_film_that_its_parent_has_written(tmp_path: Pa
 def test_what_is_no_film_is_refused(tmp_path: Path, name: str, pictures: list[Image], message: str) -> None:
     with pytest.raises(RenderError, match=message):
         save_movie(pictures, tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.png"])
+def test_arrays_are_pictures_of_a_film(tmp_path: Path, name: str) -> None:
+    pictures = film()
+    of_images = save_movie(pictures, tmp_path / f"images-{name}")
+    of_arrays = save_movie([each.array for each in pictures], tmp_path / f"arrays-{name}")
+    assert [each.read_bytes() for each in of_arrays] == [each.read_bytes() for each in of_images]
+
+
+@pytest.mark.parametrize(
+    ("picture", "found"),
+    [
+        (np.zeros((4, 4, 3)), r"an array \(4, 4, 3\) of float64"),
+        (np.zeros((4, 4), np.uint8), r"an array \(4, 4\) of uint8"),
+        (np.zeros((0, 4, 3), np.uint8), r"an array \(0, 4, 3\) of uint8"),
+        ("a.png", "'a.png'"),
+    ],
+)
+def test_a_film_says_what_it_takes(tmp_path: Path, picture: Any, found: str) -> None:
+    message = rf"^a film takes pictures of minirt.render, or arrays \(h, w, 3\) of uint8, got {found}$"
+    for name in ("a.gif", "a.png"):
+        with pytest.raises(RenderError, match=message):
+            save_movie([picture], tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 

@@ -115,6 +115,10 @@ FAILURES = {
     "no file": (lambda m, mlx: m.mlx_png_file_to_image(mlx, "none.png"), (None, 0, 0)),
     "broken PNG": (lambda m, mlx: m.mlx_png_file_to_image(mlx, "broken.png"), (None, 0, 0)),
     "no PNG": (lambda m, mlx: m.mlx_png_file_to_image(mlx, __file__), (None, 0, 0)),
+    "None as an image": (
+        lambda m, mlx: m.mlx_put_image_to_window(mlx, m.mlx_new_window(mlx, 9, 9, ""), None, 0, 0),
+        None,
+    ),
     "no XPM": (lambda m, mlx: m.mlx_xpm_file_to_image(mlx, __file__), (None, 0, 0)),
 }
 

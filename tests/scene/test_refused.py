@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from minirt.errors import Problem, excerpt, quoted
+from minirt.scene import dialects, parser
+from minirt.scene.lines import MAX_ERRORS, MAX_ERRORS_OF_LINE, line_from
 from minirt.scene.registry import nearest_element
 from tests.scene.bad_lines import BACKGROUNDS, BLANKS, COUNTS, IDENTIFIERS, LIGHTS, NUMBERS, RANGES, SHAPES, VECTORS
 from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
@@ -108,6 +110,36 @@ def test_no_field_but_the_colour_of_a_light_may_be_left_out_or_doubled(line: str
         if shorter != ["L", "-40,0,30", "0.7"]:
             assert problems(scene_with(" ".join(shorter)))[0].line == 3
         assert problems(scene_with(" ".join(longer)))[0].line == 3
+
+
+def test_a_line_has_at_most_20_errors() -> None:
+    found = problems(scene_with(f"{SPHERE} " + " ".join(f"a{number}:1" for number in range(90))))
+    assert [each.line for each in found] == [3] * MAX_ERRORS_OF_LINE
+    assert found[-1].message == "too many errors: those of this line from here on are left out"
+    assert {each.line for each in problems(scene_with("sp x", "sp y"))} == {3, 4}
+
+
+@pytest.mark.parametrize("line", ["x x x", "sp 0,0,zz 1 2,3,4", "A 0.2 255,255,255 mat"])
+def test_a_lenient_reader_gives_up_a_file_of_many_lines_without_meaning(
+    line: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that names its sort of line in each of them is no scene: 256 KiB of them took half a minute."""
+    read: list[int] = []
+    original = parser.read_line
+    monkeypatch.setattr(parser, "read_line", lambda line, *more: read.append(line.number) or original(line, *more))
+    found = problems("\n".join([AMBIENT, CAMERA, *[line] * 5000]), lenient=True)
+    assert found[-1].message == "too many errors: the rest of the file is not read"
+    assert max(read) <= MAX_ERRORS + 3
+
+
+@pytest.mark.parametrize(
+    "text", ["sp (" + "1," * 2**17, f"{SPHERE} " + "x " * 2**17, "sp " + "x," * 2**17], ids=["frame", "words", "commas"]
+)
+def test_a_long_line_is_refused_in_a_time_in_proportion_to_its_length(text: str) -> None:
+    """The frame of a dialect took hours, its words a minute."""
+    for lenient in (False, True):
+        assert {each.line for each in problems(scene_with(text), lenient=lenient)} == {3}
+    assert dialects.translated(line_from(3, text), {}, None) is None or "," in text
 
 
 def test_a_problem_is_shown_with_its_line_and_a_caret() -> None:

@@ -28,12 +28,11 @@ ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # corn
 def replay(scene: Scene, lines: Iterable[str], *, hud: bool = True, **settings: Any) -> Pixels:
     """Play `lines` as `play` does, and return the last frame, (h, w, 4) BGRA; without `hud` the picture alone.
 
-    The error of the first command that failed is raised.
+    The first error that the window showed is raised: of a command that failed, or of a picture that cannot be made.
     """
     session = play(scene, lines, **settings)
-    for error in (*session.failures, session.defect):
-        if error:
-            raise error
+    if session.failures:
+        raise session.failures[0]
     return session.screen.frame if hud else session.picture
 
 

@@ -78,7 +78,7 @@ class Session:
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
         self.pressed: DragStart | None = None
         self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
-        self.failures: list[MiniRTError] = []  # of commands
+        self.failures: list[MiniRTError] = []  # that were shown
         self.defect: RenderError | None = None  # the first error of this program, raised when the window is closed
         self.screenshot_pending = False
         self.has_unused_memory = False  # of pictures or scenes that are gone
@@ -156,8 +156,7 @@ class Session:
         """Run a command; if it fails, show the reason over the picture."""
         try:
             command(self)
-        except MiniRTError as error:
-            self.failures.append(error)
+        except Exception as error:
             self.show_error(error)
 
     def show_error(self, error: Exception) -> None:
@@ -166,6 +165,7 @@ class Session:
             cause, error = error, RenderError(f"miniRT has an error, please report it: {type(error).__name__}: {error}")
             error.__cause__ = cause
             self.defect = self.defect or error
+        self.failures.append(error)
         self.say(error_summary(error))
 
     def say(self, message: str) -> None:

@@ -16,7 +16,8 @@ from minirt.materials import Attributes, Bump, Checker, Clouds, Compound, Glass,
 from minirt.materials.glass import BLACK
 from minirt.rendering.packing.features import FEATURES, features
 from minirt.rendering.packing.materials import pack_materials
-from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
+from minirt.rendering.settings import render
+from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, load
 from minirt.shapes import Plane, Shape, Sphere, Square
 from tests.kernel.pictures import EYE
 
@@ -95,6 +96,27 @@ def test_the_primitives_of_a_shape_have_its_row(tmp_path: Path) -> None:
     assert np.array_equal(packed.reflective[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.used, [0, 1, 1, 1])
+
+
+def test_a_material_that_no_face_uses_changes_nothing(tmp_path: Path) -> None:
+    """Wherever its mesh stands in the scene, and whatever the material is."""
+    every = "pattern:marble,0.5 checker:2 specular:1,9 glow:1 mirror:0.5 glass:1.5,0.2,3 tint:9,8,7 fresnel uv:2,2"
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+    (tmp_path / "a.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl none\nKd 0 1 0\nd 0.5\nKs 1 1 1\nNs 9\nillum 3\n")
+    texts = (
+        "",
+        f"mtllib a.mtl\n{corners}usemtl red\nf 1 2 3\n",
+        f"mtllib a.mtl\n{corners}usemtl none\nusemtl red\nf 1 2 3\n",
+    )
+    lines = "A 0.5 255,255,255", "C 0,0,-3 0,0,1 60", f"ob a.obj 0,0,0 1 255,255,255 {every}", "sp 0,0,9 1 9,9,9"
+    for order in (lines, lines[::-1]):
+        pictures = []
+        for text in (*texts[1:], texts[1] + "usemtl none\n"):
+            (tmp_path / "a.obj").write_text(text)
+            (tmp_path / "a.rt").write_text("\n".join(order))
+            pictures.append(render(load(tmp_path / "a.rt").scene, 16, 12).array)
+        assert pictures[0].any()
+        assert all(np.array_equal(each, pictures[0]) for each in pictures)
 
 
 def test_each_image_is_packed_once(folder: Path) -> None:

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from minirt.errors import SceneError
+from minirt.errors import RenderError, SceneError
 from minirt.scene import dump, load
 from minirt.viewer.app import desktop
 from minirt.viewer.app.commands import offer_found, open_another, save_scene
@@ -109,6 +109,50 @@ def test_a_broken_file_keeps_the_picture_and_shows_the_error_until_it_is_mended(
     notify(harness)
     assert harness.session.screen.banner == ""
     assert diameter(harness) == 7
+
+
+UNUSABLE = {  # lines of a file, and the beginning of what is said; a folder has files of these names
+    f"sp 0,0,0 2 1,2,3 texture:{'a' * 300}": "sphere texture must be a picture file",
+    f"ob {'a/' * 3000}b.obj 0,0,0 1 1,2,3": "mesh file must be a mesh file",
+    "bg /root\0/x.png": "must be text, got a NUL byte",
+    "sp 0,0,0 2 1,2,3 texture:dark.png": "sphere texture must be a picture file",
+    "ob deep.glb 0,0,0 1 1,2,3": "mesh file must be a mesh file",
+    "x " * 10_000: "unknown element 'x'",
+}
+
+
+@pytest.mark.parametrize("line", UNUSABLE, ids=range(len(UNUSABLE)))
+def test_nothing_that_a_watched_file_holds_ends_the_window(harness, path, line):
+    (path.parent / "dark.png").write_bytes(b"\x89PNG\r\n\x1a\n" + b"\xff" * 99)
+    (path.parent / "deep.glb").write_bytes(b"glTF" + b"\xff" * 99)
+    before = harness.session.state.scene
+    write(path, f"{TEXT}{line}\n")
+    notify(harness)
+    assert harness.session.state.scene is before
+    assert f": {UNUSABLE[line]}" in harness.session.screen.banner
+    write(path, OTHER)
+    notify(harness)
+    assert (diameter(harness), harness.session.screen.banner) == (7, "")
+
+
+@pytest.mark.parametrize("error", [IndexError("odd"), MemoryError(), RecursionError("deep"), OSError(5, "I/O error")])
+def test_an_error_in_a_reader_does_not_end_the_window_either(harness, path, monkeypatch, defects, error):
+    def fail(*_):
+        raise error
+
+    before = harness.session.state.scene
+    with monkeypatch.context() as patch:
+        patch.setattr("minirt.viewer.app.commands.load", fail)
+        write(path, OTHER)
+        notify(harness)
+    assert harness.session.state.scene is before
+    assert type(error).__name__ in harness.session.state.message
+    assert defects == [error]
+    assert isinstance(harness.session.defect, RenderError)
+    write(path, OTHER + "# once more\n")
+    notify(harness)
+    assert diameter(harness) == 7
+    defects.clear()
 
 
 def test_a_deleted_file_is_said_until_it_is_written_again(harness, path):

@@ -11,6 +11,7 @@ import pytest
 from minirt.errors import RenderError, ReplayError
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
+from minirt.scene import parse
 from minirt.viewer.app import desktop
 from minirt.viewer.app.desktop import run
 from minirt.viewer.app.replay import replay
@@ -18,7 +19,7 @@ from minirt.viewer.editing.editor import RATE
 from tests import processes
 from tests.paths import ROOT
 from tests.viewer.fake import TEXT, FakeRenderer, colour_of, played, scene
-from tests.waiting import HANG_LIMIT
+from tests.waiting import HANG_LIMIT, until
 
 STUCK = """
 from concurrent.futures import ThreadPoolExecutor
@@ -74,11 +75,20 @@ def test_escape_ends_with_0_and_prints_nothing(tmp_path, capfd):
     assert not [thread for thread in threading.enumerate() if thread.name == "minirt-painter"]
 
 
-def test_an_unexpected_exception_becomes_a_render_error(tmp_path):
-    renderer = FakeRenderer()
+def test_an_unexpected_exception_is_shown_and_raised_when_the_window_is_closed(tmp_path, defects):
+    """So nothing is lost: unsaved changes are kept, and the user can save them."""
+    renderer, memory, path = FakeRenderer(), script(), tmp_path / "scene.rt"
     renderer.error = ValueError("odd")
-    with pytest.raises(RenderError, match="ValueError: odd"):
-        run_program(script(), tmp_path / "scene.rt", renderer)
+    memory.tap(Key.D)
+    memory.do(lambda: (until(lambda: defects), memory.windows[0].display.wake()))
+    memory.tap(Key.CONTROL_L, Key.S)
+    memory.tap(Key.ESCAPE)
+    with pytest.raises(RenderError, match="miniRT has an error, please report it: ValueError: odd") as raised:
+        run_program(memory, path, renderer)
+    assert raised.value.__cause__ is renderer.error
+    assert parse(path.read_bytes(), path).scene != scene()
+    assert {id(each) for each in defects} == {id(renderer.error)}
+    defects.clear()
 
 
 @pytest.mark.parametrize(
