@@ -61,12 +61,37 @@ __version__ = "0.1.0"
 
 REGISTRIES = "minirt.shapes", "minirt.materials", "minirt.scene.elements"  # whose `PUBLIC` names are public here, too
 OWN = ("load",)
+# The modules of the names that the head of this file imports for type checkers. At run time they are imported on first
+# use, so that `miniRT --help` need not wait for them.
+HOMES = {
+    name: module
+    for module, names in {
+        "minirt.cluster.pictures": "render_all render_to",
+        "minirt.element": "Element",
+        "minirt.errors": "ElementError FileError MiniRTError MlxError Problem RenderError ReplayError SceneError",
+        "minirt.fields": "MeshFile Triple",
+        "minirt.helpers.system": "TooLargeError limit_memory",
+        "minirt.movie": "save_movie",
+        "minirt.notebook": "view",
+        "minirt.rendering": "Renderer",
+        "minirt.rendering.buffers": "Buffers buffers",
+        "minirt.rendering.image": "Image LinearImage",
+        "minirt.rendering.outcome": "Outcome",
+        "minirt.rendering.queries.rays": "Hits camera_rays trace",
+        "minirt.rendering.renderer": "renderer",
+        "minirt.rendering.settings": "DEFAULT_ERROR render",
+        "minirt.scene": "DEFAULT_SIZE Scene dumps loads size_of",
+        "minirt.scene.parser": "example examples",
+        "minirt.shapes": "Shape",
+    }.items()
+    for name in names.split()
+}
 
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        if name in homes():
-            return getattr(import_module(homes()[name]), name)
+        if name in HOMES:
+            return getattr(import_module(HOMES[name]), name)
         if name == "__all__":  # asked for by `from minirt import *`, and by pdoc, which then reads the names' values
             globals().update({each: getattr(sys.modules[__name__], each) for each in public_names()})
             return public_names()
@@ -81,20 +106,7 @@ def __dir__() -> list[str]:
 
 def public_names() -> list[str]:
     """All public names, in alphabetical order."""
-    return sorted({*OWN, *homes(), *registered()})
-
-
-@cache
-def homes() -> dict[str, str]:
-    """The modules of the names that the head of this file imports for type checkers.
-
-    At run time they are imported on first use, so that `miniRT --help` need not wait for them.
-    """
-    import re
-    from pathlib import Path
-
-    source = Path(__file__).read_text(encoding="utf-8")
-    return {name: module for module, name in re.findall(r"^    from (\S+) import (\w+) as", source, re.MULTILINE)}
+    return sorted({*OWN, *HOMES, *registered()})
 
 
 @cache

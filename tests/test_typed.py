@@ -35,6 +35,12 @@ def test_type_checkers_see_the_elements_of_each_kind() -> None:
     assert declared == [(kind.plural, kind.__name__) for kind in kinds]
 
 
+def test_names_for_type_checkers_are_those_of_the_running_program() -> None:
+    source = (PACKAGE / "__init__.py").read_text(encoding="utf-8")
+    declared = re.findall(r"^    from (\S+) import (\w+) as \2$", source, re.MULTILINE)
+    assert {name: module for module, name in declared} == minirt.HOMES
+
+
 def test_every_public_name_has_help() -> None:
     for name in set(minirt.__all__) - SETTINGS:
         thing = getattr(minirt, name)

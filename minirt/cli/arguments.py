@@ -16,10 +16,10 @@ from contextlib import suppress
 from functools import partial
 from io import TextIOWrapper
 from math import nan
-from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
 from minirt.errors import RenderError, did_you_mean, printable
+from minirt.helpers import package
 
 OK = 0  # exit statuses
 FAILED = 1  # an error in a scene, in rendering or in writing
@@ -112,7 +112,7 @@ class Arguments(argparse.ArgumentParser):
             tell(message.rstrip("\n"))
 
 
-OPTIONS = Path(__file__).with_name("options.txt").read_text(encoding="utf-8")
+OPTIONS = package.read(__name__, "options.txt").decode()
 # Defaults of options that are not off or unset without one.
 DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "camera": 1}
 KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from minirt.cli.arguments import DEFAULTS, MAX_SIDE
 from minirt.errors import FileError, did_you_mean
-from minirt.helpers import file_io
+from minirt.helpers import file_io, package
 
 # Options that the configuration file may set, those that a picture carries, and those of them that windows use, where
 # samples mean something else.
@@ -178,7 +178,7 @@ def completion(parser: argparse.ArgumentParser, shell: str) -> str:
         return "\n".join([*map(fish_line, actions), FISH_SCENES])
     cases = "\n".join(bash_case(action) for action in actions if action.nargs != 0)
     words = shlex.quote(" ".join(option for action in actions for option in action.option_strings))
-    script = Path(__file__).with_name("completion.bash").read_text(encoding="utf-8").rstrip("\n")
+    script = package.read(__name__, "completion.bash").decode().rstrip("\n")
     return (ZSH if shell == "zsh" else "") + script.replace("CASES", cases).replace("OPTIONS", words)
 
 

@@ -10,10 +10,11 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from itertools import islice
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
+from minirt.helpers import package
 
 COMMENT_OR_STRING = re.compile(rb'/\*.*?(?:\*/|\Z)|//[^\n]*+|"((?:[^"\\\n]++|\\.)*+)"', re.DOTALL)
 HEADER = re.compile(rb"\s*+(\d{1,9})\s+(\d{1,9})\s+(\d{1,9})\s+(\d{1,9})\b.*", re.DOTALL)
@@ -111,5 +112,5 @@ def colour(definition: bytes, number: int) -> int:
 @cache
 def names() -> dict[str, int]:
     """The colours 0xRRGGBB of X11 and CSS by their names, in lower case without spaces; X11's where both have one."""
-    lines = Path(__file__).with_name("x11_colours.txt").read_text("ascii").splitlines()
+    lines = package.read(__name__, "x11_colours.txt").decode().splitlines()
     return {name: int(colour, 16) for colour, name in map(str.split, lines)}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import threading
-from pathlib import Path
 from typing import Any, Unpack
 
 import anywidget
 import traitlets
 
 from minirt.errors import MiniRTError
+from minirt.helpers import package
 from minirt.mlx import Mlx
 from minirt.notebook.page_back_end import PageDisplay, deliver
 from minirt.rendering.image import Image
@@ -29,7 +29,7 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
     The session of the viewer runs in a thread, so that it also goes on while a cell runs.
     """
 
-    _esm = Path(__file__).with_name("viewer.js")
+    _esm = package.read(__name__, "viewer.js").decode()
     width = traitlets.Int().tag(sync=True)
     height = traitlets.Int().tag(sync=True)
 

@@ -2,7 +2,7 @@
 
 They are written into a folder of the package, where `minirt.kernel.machine_code.library` finds them. Kernels that
 are there already are not compiled again. With the argument `first` only those are compiled that draw a picture of any
-scene in double precision.
+scene in double precision, with `wheel` those for all processors that a wheel is for.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from minirt.errors import MiniRTError
 from minirt.helpers.progress import State, progress
 from minirt.kernel.machine_code.cache import SHIPPED, CodeCache
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
+from minirt.kernel.machine_code.fingerprint import V3, V4, fingerprint_of, is_linux_on_x86_64, processor
 from minirt.kernel.machine_code.library import Call, identity_of
 from minirt.rendering.kernels import generic_call, packing_calls, ray_query
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
@@ -57,9 +57,12 @@ def build(folder: Path, target: str, most: int | None = None) -> int:
 
 
 def main() -> int:
-    target = processor()
+    which, targets = sys.argv[1:], [processor()]
+    if which == ["wheel"]:
+        targets = [V3, V4] if is_linux_on_x86_64() else []
     try:
-        build(SHIPPED / target, target, FIRST if sys.argv[1:] == ["first"] else None)
+        for target in targets:
+            build(SHIPPED / target, target, FIRST if which == ["first"] else None)
     except (MiniRTError, OSError) as error:
         print(f"Error\n{error}", file=sys.stderr)
         return 1

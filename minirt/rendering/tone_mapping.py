@@ -18,12 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from io import BytesIO
 from math import nan, sqrt
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from minirt.helpers import package
 from minirt.rendering.outcome import ROUNDING
 from minirt.rendering.packing.camera import Crop, Request
 from minirt.rendering.threads import Run
@@ -72,7 +73,7 @@ def blue_noise() -> np.ndarray:
     The file has their ranks, made by Ulichney's void-and-cluster method (The void-and-cluster method for dither array
     generation, 1993).
     """
-    ranks: np.ndarray = np.load(Path(__file__).with_name("blue_noise.npy"))
+    ranks: np.ndarray = np.load(BytesIO(package.read(__name__, "blue_noise.npy")))
     return (ranks + 0.5) / (NOISE * NOISE)
 
 

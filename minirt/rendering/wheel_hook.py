@@ -1,11 +1,11 @@
-"""Build hook of hatchling: example scenes for wheels and, on x86-64 Linux, generic kernels compiled ahead of time.
+"""Build hook of hatchling: a wheel has the example scenes, and the kernels that were compiled for it before.
 
-The kernels fit every such machine whose processor has level v3 or v4 of x86-64, and every version of Python.
+The hook compiles nothing: pip runs it, without a word, to learn what a project depends on. `make wheel` compiles the
+generic kernels for levels v3 and v4 of x86-64 before. They fit every version of Python.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,26 +15,13 @@ TAG = "py3-none-manylinux_2_17_x86_64"  # the kernels need no library at all
 
 
 class ScenesAndKernels(BuildHookInterface):  # type: ignore[misc]
-    """Compiles before the files of a wheel are collected; `artifacts` in pyproject.toml names the results."""
+    """Runs before the files of a wheel are collected; `artifacts` in pyproject.toml names the kernels."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add them before files are collected, unless the installation is editable: there `make all` compiles."""
+        """Add the scenes, and the tag that kernels need, unless the installation is editable."""
         if version == "editable":
             return
         build_data["force_include"][str(Path(self.root, "scenes"))] = "minirt/scenes"  # `minirt.example`
-        sys.path.insert(0, self.root)
-        from minirt.errors import MiniRTError
-        from minirt.kernel.machine_code.cache import SHIPPED
-        from minirt.kernel.machine_code.fingerprint import V3, V4, is_linux_on_x86_64
-        from minirt.rendering.ahead_of_time import build
-
-        if not is_linux_on_x86_64():
-            return
-        try:
-            for level in (V3, V4):
-                build(Path(SHIPPED, level), level)
-        except MiniRTError as error:
-            self.app.display_warning(f"the wheel has no kernels, programs will compile them: {error}")
-            return
-        build_data["pure_python"] = False
-        build_data["tag"] = TAG
+        if any(Path(self.root, "minirt/kernel/ahead_of_time").glob("x86-64-v*/*.kernel")):
+            build_data["pure_python"] = False
+            build_data["tag"] = TAG

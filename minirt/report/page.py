@@ -10,10 +10,10 @@ from collections.abc import Collection, Iterable, Sequence
 from html import escape
 from io import StringIO
 from math import isfinite, isnan
-from pathlib import Path
 from typing import Annotated, Any, get_origin, get_type_hints
 
-FOLDER = Path(__file__).parent
+from minirt.helpers import package
+
 MARKS = {
     r"`(.+?)`": r"<code>\1</code>",
     r"\*\*(.+?)\*\*": r"<b>\1</b>",
@@ -28,8 +28,8 @@ def filled(title: str, values: dict[str, Any]) -> tuple[str, str]:
     A section that lacks a value is left out. Blocks that begin with "<div" are for HTML alone, those with "!" for
     Markdown.
     """
-    files = (FOLDER / f"page.{kind}" for kind in ("txt", "html", "css", "js"))
-    template, page, style, script = (file.read_text(encoding="utf-8") for file in files)
+    kinds = "txt", "html", "css", "js"
+    template, page, style, script = (package.read(__name__, f"page.{kind}").decode() for kind in kinds)
     markdown, html = list[str](), list[str]()
     for section in re.split(r"\n(?=## )", template):
         if all(values[name] for name in re.findall(r"{(\w+)}", section)):

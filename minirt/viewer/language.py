@@ -10,11 +10,11 @@ import ast
 import locale
 import os
 import re
+from contextlib import suppress
 from functools import lru_cache
-from pathlib import Path
 from unicodedata import normalize
 
-from minirt.helpers.file_io import is_file
+from minirt.helpers import package
 
 VARIABLES = "LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"  # of the environment, as gettext asks them
 GAP = "    "  # between groups of words
@@ -31,8 +31,10 @@ def language() -> str:
 @lru_cache(maxsize=4)
 def catalogue(code: str) -> tuple[dict[str, str], Patterns]:
     """Read the texts of a language, and those with {} as patterns, the longest first; none where there is no file."""
-    file = Path(__file__).with_name("locale") / f"{code}.po"
-    texts = read_po(file.read_text(encoding="utf-8")) if code.isalpha() and is_file(file) else {}
+    texts = dict[str, str]()
+    if code.isalpha():
+        with suppress(OSError):
+            texts = read_po(package.read(__name__, f"locale/{code}.po").decode())
     open_ended = sorted((text for text in texts if "{}" in text), key=len, reverse=True)
     patterns = [
         (re.compile("(.*?)".join(map(re.escape, text.split("{}"))), re.DOTALL), texts[text]) for text in open_ended

@@ -12,6 +12,7 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 
 from minirt.errors import printable
+from minirt.helpers import package
 from minirt.helpers.signals import ended_by_signals, held_signals, leave
 from minirt.helpers.system import gc_paused
 from minirt.mlx import Image, Mlx
@@ -120,7 +121,7 @@ def application_icons() -> list[Image]:
 
     They lie in one PNG file of one chunk of rows without filters, which needs no decoder, whose import takes 60 ms.
     """
-    rows = zlib.decompress(Path(__file__).with_name("icons.png").read_bytes()[41:-16])
+    rows = zlib.decompress(package.read(__name__, "icons.png")[41:-16])
     sheet = np.frombuffer(rows, np.uint8).reshape(64, -1)[:, 1:].reshape(64, -1, 4)[..., [2, 1, 0, 3]]
     return [Image(sheet[:size, left : left + size].copy()) for size, left in ((16, 96), (32, 64), (64, 0))]
 
