@@ -5,9 +5,11 @@ The programs run a copy of the package with kernels that compile in a tenth of t
 
 from __future__ import annotations
 
+import compileall
 import os
 import shutil
 import sys
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -52,6 +54,7 @@ image = minirt.render(scene, 8, 8)
 print(LIBRARY.cache and LIBRARY.cache.folder.name, len(LIBRARY.entries) - len(compiled), len(compiled),
       image.array[4, 4].tolist())
 """
+FOLDER = "from minirt.kernel.machine_code import cache; print(cache.folder().name)"
 FULL_DISK = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"  # every write to a file fails
 KERNELS = "7"  # compiled: that of the frame, four functions that pack it, and those of contrast and of levels
 LOADED = "4"  # those but that of contrast and those of a shape that moves and of threads, which a plain picture lacks
@@ -84,19 +87,37 @@ def copy(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def rendered(folder: Path, notice: str = "", cache: str = "cache", program: str = RENDER) -> list[str]:
-    """Render by the package in a folder, with kernels in its `cache`. Standard error must begin with `notice`.
+def rendered(
+    folder: Path, notice: str = "", cache: str = "cache", program: str = RENDER, package: str = ""
+) -> list[str]:
+    """Render by the package in a folder, or in a file of it, with kernels in its `cache`. Standard error must begin
+    with `notice`.
 
     Return the name of the folder of kernels, how many kernels were loaded and compiled, and a pixel.
     """
-    variables = {"XDG_CACHE_HOME": str(folder / cache), "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    command = [sys.executable, "-W", "error", "-c", program]
+    variables = {"XDG_CACHE_HOME": str(folder / cache), "PYTHONPATH": str(folder / package)}
+    variables["PYTHONDONTWRITEBYTECODE"] = "1"
+    command = [sys.executable, "-P", "-W", "error", "-c", program]
     ended = run(command, cwd=folder, env=os.environ | variables, text=True)
     assert ended.returncode == 0, ended.stderr
     assert ended.stderr.startswith(notice)
     assert len(ended.stderr.splitlines()) == bool(notice)
     fields: list[str] = ended.stdout.strip().split(" ", 3)
     return fields
+
+
+def without_sources(copy: Path, folder: str) -> None:
+    """Copy the package as bytecode alone."""
+    shutil.copytree(copy / "minirt", copy / folder / "minirt")
+    assert compileall.compile_dir(copy / folder, quiet=1, legacy=True)
+    for source in (copy / folder).rglob("*.py"):
+        source.unlink()
+
+
+def in_zip_file(copy: Path, file: str) -> None:
+    """Copy the package into a zip file."""
+    shutil.make_archive(str(copy / file), "zip", copy, "minirt")
+    (copy / f"{file}.zip").rename(copy / file)
 
 
 def modification_times(folder: Path) -> dict[Path, int]:
@@ -117,6 +138,21 @@ def test_the_next_program_loads_the_kernels_and_edited_sources_compile_them_anew
     edited, *counts = rendered(copy)
     assert edited != name
     assert counts == ["0", KERNELS, EDITED]
+
+
+@pytest.mark.parametrize("pack", [without_sources, in_zip_file])
+def test_a_package_without_sources_or_in_a_zip_file_keeps_its_own_kernels(
+    copy: Path, pack: Callable[[Path, str], None]
+) -> None:
+    pack(copy, "first")
+    name, *counts = rendered(copy, package="first")
+    assert counts == ["0", KERNELS, PIXEL]
+    assert rendered(copy, package="first") == [name, LOADED, "0", PIXEL]
+    edit(copy / "minirt")
+    pack(copy, "second")
+    (edited,) = rendered(copy, program=FOLDER, package="second")
+    assert edited.startswith("kernels-")
+    assert edited != name
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are neither modes nor such a limit")
