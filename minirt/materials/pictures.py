@@ -6,12 +6,15 @@ pixels and memory are limited before anything is decoded. XPM and Radiance pictu
 
 from __future__ import annotations
 
+import ctypes
 import io
+import logging
 import os
 import re
 import warnings
-from collections.abc import Callable
-from functools import wraps
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any
 
@@ -111,6 +114,18 @@ def check_size(path: Path, width: int, height: int) -> None:
     system.check_memory(need, f"a picture of {width}x{height} pixels needs", "smaller pictures need less")
 
 
+def check_headers(paths: Iterable[Path]) -> None:
+    """Check picture files by their headers, and that there is room for all of them together; FileError,
+    `TooLargeError`."""
+    pixels = 0
+    for path in paths:
+        data = file_io.read(path, file_io.LARGEST_ASSET)
+        if not data.startswith(XPM):
+            with opened_by_pillow(path, data) as image:
+                pixels += image.width * image.height
+    system.check_memory(3 * (1 + TEXEL) * pixels, "the pictures need", "smaller ones need less")
+
+
 def decode(path: Path) -> np.ndarray:
     """Decode a file: uint8 (h, w, 3), or uint16 (h, w) for 16-bit grey. FileError if it holds no picture."""
     data = file_io.read(path, file_io.LARGEST_ASSET)
@@ -159,22 +174,34 @@ class Parts(io.BytesIO):
 
 def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
     """Decode the bytes of a file, as `decode`; FileError."""
-    from PIL import Image as pillow  # noqa: N813
-    from PIL import ImageOps, UnidentifiedImageError
+    from PIL import ImageOps
 
+    with opened_by_pillow(path, data) as opened:
+        if opened.format == "JPEG" and data.count(SCAN) > MOST_SCANS:
+            raise TooLargeError(f"is a damaged picture (it has more than {MOST_SCANS:,} scans)")
+        image: Any = ImageOps.exif_transpose(opened)
+        note_transparency(path, image.convert("RGBA").getextrema()[3][0] if image.has_transparency_data else 255)
+        pixels = np.asarray(image if image.mode in DEEP_MODES else image.convert("RGB"))
+    return pixels if pixels.ndim == 3 else np.clip(pixels, 0, DEEP).astype(np.uint16)
+
+
+@contextmanager
+def opened_by_pillow(path: Path, data: bytes) -> Iterator[Any]:
+    """Open the bytes of a file, of which Pillow reads the header alone, and check the size; FileError for that and for
+    what goes wrong in the block."""
+    from PIL import Image as pillow  # noqa: N813
+    from PIL import UnidentifiedImageError
+
+    silence_decoders()
     if data.startswith(PLAIN_PNM):
         data = COMMENTS.sub(b"\n", data)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about oddities of a file that is decoded
             warnings.simplefilter("error", pillow.DecompressionBombWarning)
-            image: Any = pillow.open(Parts(data), formats=FORMATS)  # reads the header alone
+            image = pillow.open(Parts(data), formats=FORMATS)
             check_size(path, *image.size)
-            if image.format == "JPEG" and data.count(SCAN) > MOST_SCANS:
-                raise TooLargeError(f"is a damaged picture (it has more than {MOST_SCANS:,} scans)")
-            image = ImageOps.exif_transpose(image)
-            note_transparency(path, image.convert("RGBA").getextrema()[3][0] if image.has_transparency_data else 255)
-            pixels = np.asarray(image if image.mode in DEEP_MODES else image.convert("RGB"))
+            yield image
     except (FileError, TooLargeError):
         raise
     except (pillow.DecompressionBombError, pillow.DecompressionBombWarning):
@@ -186,4 +213,16 @@ def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
     except Exception as error:  # damaged files make decoders raise anything, and quote what they have read
         is_cut = isinstance(error, EOFError) or "truncated" in str(error)
         raise FileError(path, "is a damaged picture" + is_cut * ": the file ends too early") from None
-    return pixels if pixels.ndim == 3 else np.clip(pixels, 0, DEEP).astype(np.uint16)
+
+
+@cache
+def silence_decoders() -> None:
+    """Keep libtiff and Pillow from writing to standard error about damaged files, whose errors are raised anyway."""
+    from PIL import _imaging
+
+    logging.getLogger("PIL").addHandler(logging.NullHandler())  # without one, its errors go there
+    with suppress(AttributeError, OSError):  # Windows shows no functions of a library within another
+        for setter in ("TIFFSetErrorHandler", "TIFFSetWarningHandler"):
+            function = getattr(ctypes.CDLL(_imaging.__file__), setter)
+            function.argtypes, function.restype = [ctypes.c_void_p], ctypes.c_void_p
+            function(None)

@@ -30,8 +30,7 @@ MAX_LINES = 2**24  # of 16 bytes fill the largest file
 def parse(data: bytes, folder: Path | None = None) -> Triangles:
     """Parse a file; degenerate triangles are dropped. Materials are read beside it, in `folder`. ObjError when it is
     not a mesh."""
-    if (lines_in_all := data.count(b"\n")) > MAX_LINES:
-        raise ObjError(f"has {lines_in_all:,} lines, more than {MAX_LINES:,}")
+    check_lines(data)
     data, blocks = data.removeprefix(b"\xef\xbb\xbf"), []
     start, before, triangles = 0, [0, 0, 0], 0
     while start < len(data):
@@ -40,9 +39,20 @@ def parse(data: bytes, folder: Path | None = None) -> Triangles:
         blocks.append(block)
         start, before = end, [count + len(new) for count, new in zip(before, block[:3], strict=True)]
         triangles += int((block.sizes - 2).sum())
-        if triangles > MAX_TRIANGLES:
-            raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
+        check_triangles(triangles)
     return assemble(blocks, data, folder)
+
+
+def check_lines(data: bytes) -> None:
+    """Check how many lines a file has; ObjError."""
+    if (lines := data.count(b"\n")) > MAX_LINES:
+        raise ObjError(f"has {lines:,} lines, more than {MAX_LINES:,}")
+
+
+def check_triangles(count: int) -> None:
+    """Check how many triangles a mesh has; ObjError."""
+    if count > MAX_TRIANGLES:
+        raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
 
 
 def end_of_block(data: bytes, start: int) -> int:

@@ -1,0 +1,94 @@
+"""What trimesh gets of a glTF file, .gltf or .glb: its triangles, once they are within the limits."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping
+from operator import index, mul
+from typing import Any
+
+from minirt.fields import clamp
+from minirt.helpers import file_io
+from minirt.meshes.by_trimesh import WHITE, Files, Look
+from minirt.meshes.obj import check_triangles
+from minirt.meshes.obj_lines import ObjError
+
+MOST_VALUES = 2**22  # objects, arrays and commas of the JSON text, which take up to 100 bytes each in Python
+MOST_PLACED = 2**16  # primitives of nodes, for each of which trimesh takes a millisecond
+BINARY = "binary"  # the name of the bytes behind the JSON text of a .glb file
+WEBP = "EXT_texture_webp"
+LEFT_OUT = ("name", "extras", "extensions", "camera", "images", "textures")  # trimesh copies some of them for each node
+SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+
+
+def prepare(data: bytes, files: Files) -> tuple[bytes, dict[str, Look]]:
+    """Return a .gltf file for trimesh, and how its materials look, by their names in it; ObjError where the file is
+    beyond a limit, FileError where it names one that is, another error where it is damaged."""
+    text = data
+    if data.startswith(b"glTF"):
+        (length,) = struct.unpack_from("<I", data, 12)
+        text, files.contents[BINARY] = data[20 : 20 + length], data[28 + length :]
+    if sum(map(text.count, (b"{", b"[", b","))) > MOST_VALUES:
+        raise ObjError(f"has more than {MOST_VALUES:,} values")
+    tree = json.loads(text)
+    check(tree)
+    looks = {str(number): look_of(each, tree, files) for number, each in enumerate(tree.get("materials", ()))}
+    kept = json.loads(text, object_hook=bare) | {"materials": [{"name": name} for name in looks]}
+    kept["buffers"] = [{"uri": BINARY} | buffer for buffer in kept["buffers"]]
+    return json.dumps(kept).encode(), looks
+
+
+def bare(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values of an object that trimesh gets: no words, pictures, extensions or attributes of programs."""
+    return {name: value for name, value in values.items() if name not in LEFT_OUT and not name.startswith("_")}
+
+
+def check(tree: Mapping[str, Any]) -> None:
+    """Check the sizes of the arrays, and how much the nodes of the scene show; ObjError."""
+    counts = [abs(index(each["count"])) for each in tree["accessors"]]
+    widths = [SIZES[each["componentType"]] * WIDTHS[each["type"]] for each in tree["accessors"]]
+    views = sum(abs(index(view["byteLength"])) for view in tree["bufferViews"])
+    if max(views, sum(map(mul, counts, widths))) > file_io.LARGEST_ASSET:
+        raise ObjError(f"has arrays of more than {file_io.LARGEST_ASSET // 2**20} MiB")
+    corners, parts = [], [len(mesh["primitives"]) for mesh in tree["meshes"]]
+    for mesh in tree["meshes"]:
+        points = [each["attributes"]["POSITION"] for each in mesh["primitives"]]
+        order = [each.get("indices", point) for each, point in zip(mesh["primitives"], points, strict=True)]
+        corners.append(sum(max(counts[one], counts[other]) for one, other in zip(points, order, strict=True)))
+    shown, placed, seen = sum(corners), sum(parts), set()
+    waiting = [*tree["scenes"][tree.get("scene", 0)].get("nodes", ())]
+    while waiting:
+        number = waiting.pop()
+        if number in seen:
+            raise ObjError("has a node that is in two places, or within itself")
+        seen.add(number)
+        node = tree["nodes"][number]
+        waiting += node.get("children", ())
+        if "mesh" in node:
+            shown, placed = shown + corners[node["mesh"]], placed + parts[node["mesh"]]
+    check_triangles(shown // 3)
+    if placed > MOST_PLACED:
+        raise ObjError(f"has more than {MOST_PLACED:,} parts")
+
+
+def look_of(material: Mapping[str, Any], tree: Mapping[str, Any], files: Files) -> Look:
+    """Return how a material looks, whose picture becomes a file of its own; FileError where that is beyond a limit."""
+    look = material.get("pbrMetallicRoughness", {})
+    colour = tuple(float(clamp(share, 0, 1)) for share in look.get("baseColorFactor", WHITE)[:3])
+    if "baseColorTexture" not in look:
+        return Look(colour)
+    texture = tree["textures"][look["baseColorTexture"]["index"]]
+    number = texture.get("source", texture.get("extensions", {}).get(WEBP, {}).get("source"))
+    name = f"picture{number}"
+    if number is not None and name not in files.pictures:
+        image = tree["images"][number]
+        if "uri" in image:
+            files.add_picture(name, image["uri"])
+        else:
+            view = tree["bufferViews"][image["bufferView"]]
+            start = view.get("byteOffset", 0)
+            uri = tree["buffers"][view["buffer"]].get("uri", BINARY)
+            files.add_picture(name, uri, slice(start, start + view["byteLength"]))
+    return Look(colour, name)
