@@ -17,6 +17,7 @@ from minirt.fields import Field
 from minirt.materials import Compound
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
+from tests.library_page import library_reference
 from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT
 from tests.test_imports import MAY
@@ -109,7 +110,12 @@ def keys_markdown() -> str:
     return "\n".join(lines) + "\n"
 
 
-TABLES: dict[str, Callable[[], str]] = {"keys": keys_markdown, "elements": format_table, "diagram": diagram}
+TABLES: dict[str, Callable[[], str]] = {
+    "keys": keys_markdown,
+    "elements": format_table,
+    "diagram": diagram,
+    "library": library_reference,
+}
 
 
 def renewed(page: str) -> str:

@@ -93,7 +93,7 @@ def parse(
 
 
 def loads(text: str | bytes, lenient: bool | str = False) -> Scene:
-    """Read a scene from the text of a file; SceneError, with all of its problems, if the text is no valid scene.
+    r"""Read a scene from the text of a file; SceneError, with all of its problems, if the text is no valid scene.
 
     Textures and meshes are looked up in the current folder. `lenient` is as for `load`.
 

@@ -293,7 +293,9 @@ def check_scene(scene: object, function: str) -> None:
 def dumps(scene: Scene) -> str:
     """Return a scene as the text of a file, the same as `Scene.save` writes.
 
-    print(minirt.dumps(scene))
+    Comments and unchanged lines are as they were read.
+
+        print(minirt.dumps(scene))
     """
     check_scene(scene, "dumps")
     return writer.text_of(scene.pages)
