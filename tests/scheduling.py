@@ -39,6 +39,7 @@ SLOW = (
     "tests/cli/test_resume.py",
     "tests/cli/test_streams.py",
     "tests/cluster/",
+    "tests/faults/",
     "tests/fuzz/",
     "tests/kernel/",
     "tests/lanes/test_operators.py",

@@ -69,31 +69,34 @@ class Journal:
     def open_existing(self) -> None:
         """Open the file of an interrupted program, if there is one, and find its whole records."""
         try:
-            self.file = self.locked("r+b")
-        except FileNotFoundError:
-            return
-        except OSError as error:
-            raise RenderError(f"{self.path}: cannot be read: {error.strerror or error}") from None
-        start = self.file.read(len(self.start))
+            with file_io.told_errors(self.path, "cannot be read"), suppress(FileNotFoundError):
+                self.file = self.locked("r+b")
+                self.find_records(self.file)
+        except RenderError:
+            self.close()
+            raise
+
+    def find_records(self, file: IO[bytes]) -> None:
+        """Find the whole records of an open file, and cut the rest. RenderError where it is of other work; OSError."""
+        start = file.read(len(self.start))
         if not (self.keeps_all or self.start.startswith(start)):  # a part: of a program killed before the first band
-            self.file.close()
             raise RenderError(f"{self.path}: {OTHER_WORK}")
         if start != self.start:
-            self.file.seek(0)
-            self.file.truncate()
-            self.file.write(self.start)
-        end, size = self.file.tell(), os.fstat(self.file.fileno()).st_size
-        while len(head := self.file.read(HEAD.size)) == HEAD.size:
+            file.seek(0)
+            file.truncate()
+            write_all(file, self.start)
+        end, size = file.tell(), os.fstat(file.fileno()).st_size
+        while len(head := file.read(HEAD.size)) == HEAD.size:
             number, length, checksum = HEAD.unpack(head)
-            if length > size or zlib.crc32(self.file.read(length)) != checksum:
+            if length > size or zlib.crc32(file.read(length)) != checksum:
                 break
             self.places[number] = end + HEAD.size, length
-            end = self.file.tell()
-        self.file.truncate(end)
+            end = file.tell()
+        file.truncate(end)
 
     def locked(self, mode: str) -> IO[Any]:
         """Open the file, and lock it until it is closed; RenderError where another program has locked it. OSError."""
-        file = self.path.open(mode)
+        file = self.path.open(mode, buffering=0)  # else what a full disk does not take is written again with each seek
         if not file_io.lock(file.fileno()):
             file.close()
             raise RenderError(f"{self.path}: another program is at this work")
@@ -120,19 +123,25 @@ class Journal:
         """Write a record. OSError when it cannot be written."""
         if self.file is None:
             self.file = self.locked("x+b")
-            self.file.write(self.start)
+            write_all(self.file, self.start)
         start = self.file.seek(0, os.SEEK_END) + HEAD.size
-        self.file.write(HEAD.pack(number, len(data), zlib.crc32(data)) + data)
-        self.file.flush()
+        write_all(self.file, HEAD.pack(number, len(data), zlib.crc32(data)) + data)
         self.places[number] = start, len(data)
 
     def restore(self, band: Job) -> Made | None:
-        """Return what was made of a band; None where that is missing."""
+        """Return what was made of a band; None where that is missing. RenderError where it cannot be read."""
         if band.number not in self.places or self.file is None:
             return None
         start, length = self.places[band.number]
-        self.file.seek(start)
-        return unpacked(self.file.read(length), band)
+        with file_io.told_errors(self.path, "cannot be read"):
+            self.file.seek(start)
+            return unpacked(self.file.read(length), band)
+
+    def close(self) -> None:
+        """Close the file, if there is one."""
+        with suppress(OSError):
+            if self.file:
+                self.file.close()
 
     def __enter__(self) -> Journal:
         return self
@@ -140,13 +149,18 @@ class Journal:
     def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
         if self.file is None:  # there is none, or it is another program's
             return
-        with suppress(OSError):
-            self.file.close()
+        self.close()
         if error is None or not self.places:
             file_io.delete(self.path)
         else:
             kept = f"{len(self.places)} of {self.total} {self.what} are kept in {self.path}"
             error.add_note(f"{kept}; {self.again} goes on")
+
+
+def write_all(file: IO[bytes], data: bytes) -> None:
+    """Write data to a file without a buffer, in as many steps as the system needs. OSError."""
+    while data:
+        data = data[file.write(data) :]
 
 
 def packed(made: Made) -> bytes:

@@ -7,6 +7,7 @@ import os
 import re
 import stat
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import wraps
@@ -22,6 +23,9 @@ if sys.platform != "win32":
 Content = TypeVar("Content")
 Data = bytes | Callable[[BinaryIO], object]  # contents, or a function that writes them to a file, which can seek
 TEMPORARY = ".minirt-*.tmp"
+OF_KILLED = re.compile(r"\.minirt-[0-9a-f]{16}\.tmp")  # names of temporary files, of which a killed program leaves one
+KEPT = 24 * 3600  # seconds that such a file is kept, since the program may run
+SWEPT: set[str] = set()  # folders that were searched for them
 FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
 
 
@@ -86,6 +90,7 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
 def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> Iterator[Path]:
     """Write a temporary file, with no more than the given permissions, which the block renames; it is deleted when
     that fails."""
+    sweep(folder)
     path = folder / TEMPORARY.replace("*", os.urandom(8).hex())
     descriptor = os.open(path, FLAGS, 0o666 if permissions is None else permissions & PRIVATE_FILE)
     try:
@@ -100,6 +105,20 @@ def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> 
     except BaseException:
         delete(path)
         raise
+
+
+def sweep(folder: Path) -> None:
+    """Delete the old temporary files of killed programs in a folder, once in each process."""
+    name = os.path.abspath(folder)  # noqa: PTH100 - the folder is written to by this name
+    if name in SWEPT:
+        return
+    SWEPT.add(name)
+    with suppress(OSError), os.scandir(name) as entries:
+        for each in entries:
+            if OF_KILLED.fullmatch(each.name) and each.is_file(follow_symlinks=False):
+                written = each.stat(follow_symlinks=False).st_mtime
+                if written < time.time() - KEPT:
+                    delete(Path(each.path))
 
 
 def delete(*paths: Path) -> None:
@@ -135,6 +154,16 @@ def lock(descriptor: int) -> bool:
         except OSError:
             pass
     return True
+
+
+def unlock(descriptor: int) -> None:
+    """Close a locked file, and free the lock at once, also where a process was forked that has the file open. An error
+    of the disk does not matter."""
+    if sys.platform != "win32":
+        with suppress(OSError):
+            fcntl.flock(descriptor, fcntl.LOCK_UN)
+    with suppress(OSError):
+        os.close(descriptor)
 
 
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"

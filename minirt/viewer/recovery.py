@@ -87,7 +87,7 @@ class Recovery:
             if delete:
                 self._delete()
             elif self.path:
-                os.close(self._lock)
+                file_io.unlock(self._lock)
                 self.path = None
 
     def _write(self, version: Version) -> None:
@@ -109,7 +109,7 @@ class Recovery:
 
     def _delete(self) -> None:
         if self.path:
-            os.close(self._lock)
+            file_io.unlock(self._lock)
             file_io.delete(self.path, self.path.with_suffix(".lock"))
         self.path = None
 
@@ -172,7 +172,7 @@ def open_lock(path: Path) -> int:
     """Open and, if no running program has, lock the file that is locked while a program writes `path`. OSError."""
     descriptor = os.open(path.with_suffix(".lock"), os.O_RDWR | os.O_CREAT, file_io.PRIVATE_FILE)
     if not file_io.lock(descriptor):
-        os.close(descriptor)
+        file_io.unlock(descriptor)
         raise BlockingIOError
     return descriptor
 
@@ -183,7 +183,7 @@ def abandoned(file: Path, saved: float) -> Iterator[Path]:
         for lock in sorted(state_folder().glob(f"{name_of(file)}-*.lock")):
             path = lock.with_suffix(".rt")
             with suppress(OSError):
-                os.close(open_lock(path))  # which also frees the lock
+                file_io.unlock(open_lock(path))
                 if not path.exists() or path.stat().st_mtime >= min(saved, time.time() - KEPT):
                     yield path
                 else:

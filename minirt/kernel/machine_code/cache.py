@@ -12,7 +12,6 @@ import hashlib
 import logging
 import os
 import shutil
-import sys
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -22,9 +21,6 @@ from typing import NamedTuple
 from minirt.helpers import file_io
 from minirt.helpers.file_io import PRIVATE_FOLDER, is_private, user_folder
 from minirt.kernel.machine_code.fingerprint import PACKAGE, fingerprint_of, processor
-
-if sys.platform != "win32":
-    import fcntl
 
 SHIPPED = PACKAGE / "kernel" / "ahead_of_time"  # folders of the kernels that came with the package
 OTHER_VERSIONS = 8  # folders of other sources that are not deleted, so that versions can be used in turn
@@ -88,12 +84,13 @@ class CodeCache:
         """
         with ExitStack() as stack:
             with suppress(OSError):
-                file = stack.enter_context(self.file_of(identity).with_suffix(".lock").open("wb"))
+                file = os.open(
+                    self.file_of(identity).with_suffix(".lock"), os.O_WRONLY | os.O_CREAT, file_io.PRIVATE_FILE
+                )
+                stack.callback(file_io.unlock, file)
                 end = time.monotonic() + PATIENCE
-                while not file_io.lock(file.fileno()) and time.monotonic() < end:
+                while not file_io.lock(file) and time.monotonic() < end:
                     time.sleep(POLL)
-                if sys.platform != "win32":  # closing is not enough where a process was forked that has the file open
-                    stack.callback(fcntl.flock, file.fileno(), fcntl.LOCK_UN)
             yield
 
 
