@@ -93,6 +93,7 @@ def trial(
     """
     number, moment = chance.choice(SIGNALS), chance.uniform(0.0, share * KINDS[kind].longest)
     arguments = chance.choice(KINDS[kind].arguments)
+    is_for_all = chance.random() < 0.5  # processes of the program, as Ctrl+C in a terminal, its end and `timeout`
     with ExitStack() as stack:
         home, folder = (Path(stack.enter_context(tempfile.TemporaryDirectory())) for _ in range(2))
         for each in ("tmp", "state"):
@@ -119,7 +120,7 @@ def trial(
             return End(number, True, 0.0, [f"ended by itself: {process.returncode}\n{told}"])
         is_handled = handles(process.pid, number)
         start = time.monotonic()
-        if number == signal.SIGINT:  # as Ctrl+C in a terminal
+        if is_for_all:
             processes.kill_group(process, number)
         else:
             process.send_signal(number)
@@ -127,7 +128,7 @@ def trial(
         seconds = time.monotonic() - start
         told = (home / "errors").read_text()
         faults += check_traces(folder, home, arguments, told)
-        about = f"{signal.Signals(number).name} after {moment:.3f} s of {' '.join(arguments)}"
+        about = f"{signal.Signals(number).name}{' to all' * is_for_all} after {moment:.3f} s of {' '.join(arguments)}"
         told = "\n".join(told.splitlines()[-60:])
         return End(number, is_handled, seconds, [f"{about}: {'; '.join(faults)}\n{told}"] if faults else [])
 

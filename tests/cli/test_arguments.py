@@ -175,9 +175,11 @@ def test_an_error_names_file_line_and_column_and_shows_the_line(run: Run, folder
     ]
 
 
-def test_check_renders_nothing(run: Run, folder: Path) -> None:
-    assert run("ball.rt", "--check", "-o", "x.png") == (0, b"ball.rt: no errors, 2 shapes, 1 lights\n", "")
-    assert not (folder / "x.png").exists()
+def test_the_configuration_file_may_have_options_without_effect(run: Run, folder: Path) -> None:
+    (folder / "miniRT.toml").write_text('size = "8x6"\nwatch = false\nquality = 50\n')
+    told = (0, b"ball.rt: no errors, 2 shapes, 1 lights\n", "")
+    assert run("ball.rt", "--check", "--config", "miniRT.toml") == told
+    assert run("ball.rt", "--check", "--config", "miniRT.toml", "--quality", "51").status == 2
 
 
 def test_the_example_of_the_subject_is_read_and_a_camera_that_shows_it_is_named(run: Run, folder: Path) -> None:

@@ -161,5 +161,5 @@ def test_elements_are_added_before_the_last_blank_line_and_removed() -> None:
     more = scene.add(*OTHERS)
     assert more.items == (CAMERA, BALL, *OTHERS, "")
     assert more.remove(BALL, OTHERS[1]) == Scene([CAMERA, BALL, OTHERS[2], ""])
-    with pytest.raises(ValueError, match="not in"):
+    with pytest.raises(ValueError, match="the scene has no"):
         scene.remove(OTHERS[1])

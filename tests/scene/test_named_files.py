@@ -241,15 +241,16 @@ def test_files_of_folders_without_permission_are_errors_and_end_no_program(folde
     (folder / "closed").mkdir()
     (folder / "closed" / "map.ppm").write_bytes(PLAIN)
     path = scene(folder, "sp 0,0,9 1 9,9,9 texture:closed/map.ppm")
-    for each in (folder, *folder.parents[:2]):
-        each.chmod(0o755)
+    load(path)
+    folder.chmod(0o755)
     (folder / "closed").chmod(0)
 
     def read() -> None:
+        os.chdir(folder)  # whose own folders may be closed, too
         if os.geteuid() == 0:  # who may look everywhere
             os.setuid(65534)
         with pytest.raises(SceneError, match=r"map\.ppm': cannot be read: permission denied"):
-            load(path)
+            load(path.name)
 
     try:
         assert in_child(read) == 0
