@@ -10,9 +10,10 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field
 from functools import partial
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from minirt import cli
 from minirt.cli import render
 from minirt.cluster import job, journal
 from minirt.errors import MiniRTError
+from minirt.helpers import file_io
 from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY
@@ -93,6 +95,13 @@ def session() -> int:
         return cli.failed(error)
 
 
+def leave_changes() -> int:
+    """Leave unsaved changes, as a program does that is killed."""
+    saved, kept = load("scene.rt").scene, recovery.Recovery()
+    kept.keep(recovery.Version(saved.replace(saved.spheres[0], diameter=3.0), saved, Path("scene.rt")))
+    return 0
+
+
 class ImmediateTimer:
     """A timer that does not wait."""
 
@@ -118,6 +127,7 @@ def surroundings(folder: Path) -> Iterator[pytest.MonkeyPatch]:
         patch.setattr(job, "RAYS", 8 * 16 * 4)
         patch.setattr(journal, "SHARE", 1e9)
         patch.setattr(recovery.threading, "Timer", ImmediateTimer)
+        patch.setattr(file_io, "SWEPT", set())
         yield patch
 
 
@@ -158,19 +168,14 @@ class Laboratory:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "work"
-        self.base: Files = {
-            "scene.rt": SCENE.encode(),
-            "corner.obj": CORNER,
-            "config/minirt/config.toml": b"threads = 1\n",
-        }
-        picture = minirt.render(minirt.loads("A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 255,0,0\n"), 8, 8)
-        self.base["dots.png"] = picture.encode()
+        dots = minirt.render(minirt.loads("A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 255,0,0\n"), 8, 8).encode()
+        self.base: Files = {"scene.rt": SCENE.encode(), "corner.obj": CORNER, "dots.png": dots}
+        self.base["config/minirt/config.toml"] = b"threads = 1\n"
 
     def workloads(self) -> list[Workload]:
         """Return all workloads. They are done once in this process, so that nothing is imported in a child."""
         olds = {f"out{each}": OLD for each in (".png", ".gif", ".tif", "-0001.png", "-0002.png", "-0003.png")}
         journals = (".out.*.journal",)
-        resume = [partial(each, "--resume") for each in (PICTURE, FILM, NUMBERED)]
         replay = partial(program, "--size", "32x24", "--replay", "keys.txt")
         simple = [
             Workload("picture", PICTURE, olds, journals),
@@ -181,13 +186,13 @@ class Laboratory:
         ]
         for each in simple:
             self.do_here(each)
-        return [*simple, *self.resumed(resume, olds), *self.with_cache(olds), self.in_window()]
+        return [*simple, *self.resumed(olds), *self.with_cache(olds), self.in_window()]
 
-    def resumed(self, resume: list[Callable[[], int]], olds: Files) -> Iterator[Workload]:
+    def resumed(self, olds: Files) -> Iterator[Workload]:
         """Yield workloads that go on with what an interrupted program has left, whole or torn."""
-        works = zip(("picture", "film", "numbered", "streamed"), (PICTURE, FILM, NUMBERED, streamed),
-                    (*resume, streamed), strict=True)  # fmt: skip
-        for name, first, again in works:
+        works = {"picture": PICTURE, "film": FILM, "numbered": NUMBERED, "streamed": streamed}
+        for name, first in works.items():
+            again = streamed if first is streamed else partial(first, "--resume")
             files = self.after(partial(interrupted, first, 3), olds)
             (kept,) = (each for each in files if each.endswith(".journal"))
             yield Workload(f"resumed {name}", again, files, (kept,))
@@ -211,18 +216,9 @@ class Laboratory:
 
     def in_window(self) -> Workload:
         """Return the session in a window."""
-        left = self.after(self.leave_changes, {})
-        found = Workload("session", session, left, ("*/unsaved/*.lock",), "*", is_exact=False)
+        found = Workload("session", session, self.after(leave_changes, {}), ("*/unsaved/*.lock",), "*", is_exact=False)
         self.do_here(found)
         return found
-
-    @staticmethod
-    def leave_changes() -> int:
-        """Leave unsaved changes, as a program does that is killed."""
-        saved, kept = load("scene.rt").scene, recovery.Recovery()
-        changed = saved.replace(saved.spheres[0], diameter=3.0)
-        kept.keep(recovery.Version(changed, saved, Path("scene.rt")))
-        return 0
 
     def prepare(self, files: Files) -> Path:
         """Let the folder hold these files alone, besides the scene and what it names; return it."""
@@ -236,7 +232,7 @@ class Laboratory:
     def do_here(self, workload: Workload) -> None:
         """Do a workload in this process; it must end well."""
         folder = self.prepare(workload.files)
-        with surroundings(folder) as patch:
+        with surroundings(folder) as patch, redirect_stdout(StringIO()):
             patch.chdir(folder)
             assert workload.work() == 0, workload.name
 
