@@ -120,7 +120,7 @@ def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
             line = line_from(start + at + 1, sources[start + at])
             block[at] = read_leniently(line, seen, log, colours) if log.lenient else read_line(line, seen, log)
             if len(log.errors) + (dialects.unread_lines(log) if log.lenient else 0) >= MAX_ERRORS:
-                log.error(line, "too many errors: the rest of the file is not read", 1)
+                log.error(line, "too many errors: the rest of the file is not read", line.end + 1)
                 return runs
         runs.append([item for item in block if item is not None])
     if log.lenient:
