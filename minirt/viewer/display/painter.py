@@ -194,12 +194,12 @@ class BackgroundPainter(Painter):
 
     def _render(self, job: Job) -> Outcome | None:
         """Render a job, or its preview while its kernel is missing; None if it has neither."""
-        if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
-            try:
+        try:
+            if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
                 pixels = self.renderer.preview(job.scene, job.width, job.height)
-            except Exception as error:
-                return Outcome(job, error=error)
-            return None if pixels is None else Outcome(job, pixels, preview=True)
+                return None if pixels is None else Outcome(job, pixels, preview=True)
+        except Exception as error:  # the file of a texture may be gone meanwhile
+            return Outcome(job, error=error)
         single, start = self._precision.is_single(urgent=job.urgent), time.perf_counter()
         renderer = self._precision.single if single else self.renderer
         outcome = paint(renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))

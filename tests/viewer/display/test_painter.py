@@ -101,6 +101,20 @@ def test_an_exception_is_an_outcome_and_the_painter_goes_on(harness):
     assert harness.outcomes(1)[0].pixels is not None
 
 
+def test_an_error_before_the_picture_is_an_outcome_and_the_next_one_is_rendered(harness, monkeypatch):
+    """A texture may be gone when the kernels for the scene are looked for."""
+
+    def fail(_):
+        raise RenderError("dots.png: cannot be read: no such file or directory")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(harness.renderer, "is_ready", fail)
+        harness.painter.request(JOB)
+        assert isinstance(harness.outcomes(1)[0].error, RenderError)
+    harness.painter.request(JOB)
+    assert harness.outcomes(1)[0].error is None
+
+
 class TestWithoutAKernel:
     """Pictures while `prepare` compiles the kernel."""
 
