@@ -39,7 +39,8 @@ class Dispatcher:
         if getattr(current_process(), "_inheriting", False):  # as multiprocessing marks one that imports the script
             os._exit(UNGUARDED)
         self.is_own = callable(workers) and not hasattr(workers, "submit")
-        made = workers() if self.is_own else workers
+        with terminal_signals_blocked():  # which multiprocessing's tracker of resources would get, too
+            made = workers() if self.is_own else workers
         self.client: Any = made if hasattr(made, "get_executor") else getattr(made, "_client", None)
         self.executor: Any = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
@@ -120,7 +121,7 @@ class Dispatcher:
         arguments = version(), self.last[1 if self.has_late else 2], scene.camera
         how = {} if self.client is None else {"pure": False}  # dask makes the same again
         try:
-            with held_signals(), ctrl_c_blocked():  # the first task starts the processes of a pool
+            with held_signals(), terminal_signals_blocked():  # the first task starts the processes of a pool
                 task = self.executor.submit(work, *arguments, band._replace(scene=nowhere, settings=settings), **how)
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
@@ -183,12 +184,13 @@ def local_pool() -> Executor:
 
 
 @contextmanager
-def ctrl_c_blocked() -> Iterator[None]:
-    """Let processes that the block starts never get Ctrl+C, which a terminal sends to all, even while they start."""
+def terminal_signals_blocked() -> Iterator[None]:
+    """Let processes that the block starts never get Ctrl+C, nor SIGHUP: a terminal sends them to all, and this process
+    ends the others."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGHUP])
     try:
         yield
     finally:

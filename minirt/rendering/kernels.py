@@ -151,14 +151,16 @@ class Kernels:
         if not scene.runs:
             return
         *packing, drawing = self.specialised(scene)
-        with ThreadPoolExecutor(1) as pool:
+        pool = ThreadPoolExecutor(1)
+        try:
             first = pool.submit(LIBRARY.compile, packing, self.packing_process)
-            try:
-                LIBRARY.compile([drawing], self.compile_process)
-                first.result()
-            except BaseException:  # such as an interrupt, which should not wait for the other process
-                self.packing_process.stop()
-                raise
+            LIBRARY.compile([drawing], self.compile_process)
+            first.result()
+        except BaseException:  # such as an interrupt, which should not wait for the other process
+            self.packing_process.stop()
+            raise
+        finally:
+            pool.shutdown(wait=False)
 
     def stop(self) -> None:
         self.compile_process.stop()

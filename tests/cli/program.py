@@ -56,10 +56,10 @@ def program(folder: Path, *arguments: str) -> Result:
     return Result(ended.returncode, ended.stdout, ended.stderr.decode())
 
 
-def interrupt(process: subprocess.Popen[bytes], screen: Terminal) -> tuple[int, bytes]:
-    """Send SIGINT, as Ctrl+C does, to the program and its children; return its exit status and standard output. Its
-    standard error, the terminal, is in `screen.text`."""
-    os.killpg(process.pid, signal.SIGINT)
+def interrupt(process: subprocess.Popen[bytes], screen: Terminal, number: int = signal.SIGINT) -> tuple[int, bytes]:
+    """Send SIGINT, as Ctrl+C does, or another signal to the program and its children; return its exit status and
+    standard output. Its standard error, the terminal, is in `screen.text`."""
+    os.killpg(process.pid, number)
     screen.wait_for_end()
     out, _ = process.communicate(timeout=HANG_LIMIT)
     return process.returncode, out

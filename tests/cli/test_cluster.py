@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -80,13 +81,16 @@ def test_an_error_is_reached_and_told(run: Run, folder: Path, output: str) -> No
         assert (ended.status, "notice: no more samples" in ended.err) == (1, True)
 
 
-def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])])
+def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: Path, number: int) -> None:
     how = "--size", "640x1600", "--samples", "16384", "--threads", "1", "-o", "a.tif"
     with terminal() as screen, start(folder, "ball.rt", *how, *LOCAL, stderr=screen.end) as running:
         screen.leave()
         until(lambda: bool(re.search(rb"([4-9]|1\d) of 64 bands", screen.read())) or running.poll() is not None, "work")
         assert running.poll() is None, "the work ended before it could be interrupted"
-        assert interrupt(running, screen)[0] == 130  # after the end of all processes, which have the terminal open
+        assert (
+            interrupt(running, screen, number)[0] == 128 + number
+        )  # after the end of all processes, which have the terminal open
     assert b"Traceback" not in screen.text
     assert re.search(
         rb"\d+ of 64 bands of the picture are kept in .a.tif.journal; the same command or call goes on", screen.text

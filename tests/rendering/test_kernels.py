@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from threading import Lock
+from threading import Event, Lock
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,7 @@ from minirt.shapes import Cylinder, Mesh, Sphere
 from tests.kernel.pictures import EYE
 from tests.meshes.examples import GREY, named
 from tests.skipping import skip_incomplete
-from tests.waiting import until
+from tests.waiting import HANG_LIMIT, until
 
 VIEW = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\n"
 BALL = parse(f"{VIEW}sp 0,0,0 2 255,60,60\n").scene
@@ -312,3 +312,19 @@ def test_an_error_is_told_and_leaves_no_file(
     assert ahead_of_time.main() == 1
     assert capsys.readouterr().err == "Error\nno compiler\n"
     assert list(tmp_path.rglob("*.kernel")) == []
+
+
+def test_an_interrupt_waits_for_no_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The kernels that pack a scene are compiled in another process, or are those that another program compiles."""
+    chosen, goes_on = Kernels("double", DEPTH), Event()
+
+    def compile_(_: object, process: CompileProcess) -> None:
+        if process is chosen.compile_process:
+            raise KeyboardInterrupt
+        goes_on.wait(HANG_LIMIT)
+
+    monkeypatch.setattr(kernels.LIBRARY, "compile", compile_)
+    with pytest.raises(KeyboardInterrupt):
+        chosen.compile(parse("A 1 9,9,9\nC 0,0,-9 0,0,1 60\nsp 0,0,0 1 9,9,9\n").scene)
+    assert chosen.packing_process.stopped
+    goes_on.set()
