@@ -236,10 +236,10 @@ def test_of_edges_no_paths_are_made(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 SAMPLES = struct.pack("<HHIH", 277, 3, 1, 3)  # a pixel of a TIFF has three
-EMPTY = b"ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nend_header\n"
 INFINITE = bytes(80) + struct.pack("<I12fH", 1, 0, 0, 0, *[float("inf")] * 5, *[-3e38] * 4, 0)
 TIFF = ("RGB", "tiff_lzw"), ("RGB", "jpeg"), ("RGB", "tiff_adobe_deflate"), ("1", "group4")
 READ_ALL = """
+import logging
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -249,6 +249,7 @@ from minirt.meshes import load_mesh
 for path in sorted(Path(sys.argv[1]).iterdir()):
     with suppress(FileError):
         (picture if path.suffix == ".tif" else load_mesh)(path)
+logging.getLogger("trimesh.util").warning("unable to convert colors!")
 """
 
 
@@ -276,7 +277,6 @@ def test_nothing_is_written_about_damaged_files(tmp_path: Path) -> None:
     deflated = bytearray(encoded("TIFF", compression="tiff_adobe_deflate"))
     deflated[40:42] = b"\0\0"
     (tmp_path / "deflated.tif").write_bytes(deflated)
-    (tmp_path / "empty.ply").write_bytes(EMPTY)
     (tmp_path / "infinite.stl").write_bytes(INFINITE)
     ended = processes.run([sys.executable, "-c", READ_ALL, str(tmp_path)], text=True)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
