@@ -176,7 +176,7 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     require_matplotlib()
-    is_new = not Path(folder).exists()
+    is_new = not file_io.found(folder)
     with file_io.told_errors(folder, "cannot be made"):
         Path(folder).mkdir(parents=True, exist_ok=True)
     measurement = Measurement(scene, name, QUICK if quick else FULL, threads)
