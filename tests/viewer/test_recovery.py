@@ -260,3 +260,20 @@ def test_the_title_has_the_time_of_day_and_of_another_day_the_date(path, monkeyp
     assert "-" not in found._replace(time=time.time()).title
     monkeypatch.undo()
     time.tzset()
+
+
+@pytest.mark.parametrize("delete", [True, False])
+def test_a_disk_that_fails_at_the_end_does_not_matter(recovery, path, monkeypatch, delete):
+    saved, close = load(path).scene, os.close
+    keep(recovery, grown(saved, 3.0), saved, path)
+    text = dump(grown(saved, 3.0))
+
+    def failing(descriptor):
+        close(descriptor)
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "close", failing)
+        recovery.close(delete=delete)
+    assert [each.read_text() for each in state_folder().glob("*.rt")] == ([] if delete else [text])
+    assert recovery.path is None
