@@ -46,7 +46,7 @@ KINDS = {
     "start": Kind((("--size", "4000x3000", "--samples", "64", "-o", "x.png"),), 0.3),
     "film": Kind(tuple((*FILM, "-o", f"x.{each}") for each in ("gif", "mp4", "webp", "png")), 12.0),
     "cluster": Kind((("--size", "20000x9000", *CLUSTER, "x.tif"), (*FILM, *CLUSTER, "x.gif")), 16.0),
-    "report": Kind((("--report", "report", "--quick"),), 20.0),
+    "report": Kind((("--report", "report", "--quick"),), 10.0),
     "replay": Kind((("--replay", "keys.txt", "--size", "640x360", "-o", "x.gif"),), 8.0),
     "window": Kind(((), ("--size", "1280x720")), 4.0),
 }
