@@ -30,6 +30,7 @@ from minirt.meshes.obj_lines import ObjError
 
 WHITE = (1.0, 1.0, 1.0)
 PLY_PICTURE = "picture"
+LINE_ENDS = bytes.maketrans(b"\r\v\f\x1c\x1d\x1e\x85\xa8\xa9", b"\n" * 9)  # of Unicode, at which trimesh splits a text
 LONGEST_HEADER = 2**20  # bytes of a .ply file
 FACES = re.compile(rb"^\s*element\s+face\s+(\d{1,18})", re.MULTILINE)
 EDGES = re.compile(rb"^(\s*element\s+)edge\b", re.MULTILINE)
@@ -126,6 +127,8 @@ def as_obj(path: Path) -> tuple[bytes, Path]:
                 kind, (data, looks) = "gltf", gltf.prepare(data, files)
             elif kind == "ply":
                 data = prepare_ply(data, files)
+            else:
+                check_lines(data)
             files.check_pictures()
             usual = Look(picture=PLY_PICTURE * (PLY_PICTURE in files.pictures))
             scene = trimesh.load_scene(
@@ -160,7 +163,7 @@ def prepare_ply(data: bytes, files: Files) -> bytes:
     if faces := FACES.search(header):
         check_triangles(int(faces[1]))
     if b"ascii" in header:
-        check_lines(data)
+        check_lines(data.translate(LINE_ENDS))
     if picture := PICTURE.search(header):
         files.add_picture(PLY_PICTURE, picture[1].decode("utf-8", "replace"))
     return EDGES.sub(rb"\1none", header) + data[len(header) :]  # trimesh takes minutes to make paths of edges

@@ -227,6 +227,10 @@ def test_a_ply_file_and_its_picture_are_checked(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(obj, "MAX_LINES", 20)
     path.write_text(PLY.format(1) + "  ")
     assert refusal(path) == "has 21 lines, more than 20"
+    path.write_text(PLY.format(1).replace("\n0 1\n", "\v0 1\v") + "\r")  # each makes a line of its own
+    assert refusal(path) == "has 22 lines, more than 20"
+    (tmp_path / "a.stl").write_text("vertex 0 0 0\n" * 21)
+    assert refusal(tmp_path / "a.stl") == "has 21 lines, more than 20"
 
 
 def test_of_edges_no_paths_are_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
