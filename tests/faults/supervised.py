@@ -57,7 +57,7 @@ def run(work: Callable[[], int], folder: Path, fault: Fault | None = None) -> En
         if not descriptors:
             os.waitpid(child, 0)
             output.seek(0)
-            raise OSError(output.read().decode())
+            raise OSError(output.read().decode().strip().rpartition("\n")[2])
         try:
             operations = supervise(child, descriptors[0], str(folder), fault)
         finally:
