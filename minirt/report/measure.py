@@ -170,7 +170,7 @@ def report(
     """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
 
     With `ablation` it tells what each absent feature and kind of shape would cost, each of which needs a kernel of its
-    own. KeyboardInterrupt ends the measurements: what was measured until then is written, standard error says so, and
+    own. KeyboardInterrupt ends the measurements: what was measured until then is written, a note of it says so, and
     it is raised again. RenderError if the scene has no shapes, matplotlib is missing or a file cannot be written.
     """
     if not scene.shapes:

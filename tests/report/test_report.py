@@ -205,17 +205,15 @@ def test_before_the_first_figure_there_is_nothing_to_keep(folder: Path) -> None:
     assert [*folder.glob("out/*")] == []
 
 
-def test_what_was_measured_is_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_was_measured_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(_: object, variant: Variant) -> Part:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Ablation, "part", interrupted)
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt) as interrupt:
         report(ALL, "all.rt", tmp_path, (32, 20), 1, quick=True)
     remark = "Interrupted while measuring tiles and their cones without: this and all that would have followed is"
-    told = capsys.readouterr().err
+    (told,) = interrupt.value.__notes__
     assert remark in told
     assert f"The report is in {tmp_path}/report.html" in told
     assert remark in (tmp_path / "report.html").read_text()
