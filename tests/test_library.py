@@ -70,7 +70,6 @@ def test_one_side_keeps_the_proportions_of_the_scenes_size(
 ) -> None:
     sized = minirt.Scene((*([Resolution(*own)] if own else []), *scene.items))
     assert minirt.render(sized, **asked).array.shape == (*expected[::-1], 3)
-    assert minirt.buffers(sized, **asked).distance.shape == expected[::-1]
 
 
 @pytest.mark.parametrize(
