@@ -10,7 +10,7 @@ from typing import Any
 
 from minirt.fields import clamp
 from minirt.helpers import file_io
-from minirt.meshes.by_trimesh import WHITE, Files, Look
+from minirt.meshes.named_files import WHITE, Files, Look
 from minirt.meshes.obj import check_triangles
 from minirt.meshes.obj_lines import ObjError
 
