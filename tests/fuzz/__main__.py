@@ -20,13 +20,14 @@ from contextlib import suppress
 from pathlib import Path
 
 from tests import environment
-from tests.fuzz import inputs, scenes
+from tests.fuzz import inputs, names, scenes
 from tests.fuzz.mutations import Fuzzer, seeded
 from tests.guards import must_end
 from tests.paths import ROOT
 
 FUZZERS = {
     "scenes": scenes.SCENES,
+    "names": names.NAMES,
     "meshes": inputs.MESHES,
     "pictures": inputs.PICTURES,
     "replays": inputs.REPLAYS,

@@ -18,6 +18,7 @@ from tests.fuzz.__main__ import FUZZERS
 from tests.fuzz.mutations import Fuzzer, seeded
 from tests.skipping import skip_incomplete
 
+NEW = ("extremes", "names")  # of which each run tries new inputs
 FRAME = "A 1 9,9,9\nC 0,0,0 0,0,1 60\n"
 
 
@@ -32,7 +33,7 @@ def run(name: str, seed: int = 0) -> set[str]:
 
 @pytest.mark.parametrize("name", FUZZERS)
 def test_no_input_crashes_the_program_or_gets_a_wrong_verdict(name: str) -> None:
-    seed = random.SystemRandom().randint(1, 10**9) if name == "extremes" else 0  # each run tries new scenes
+    seed = random.SystemRandom().randint(1, 10**9) if name in NEW else 0
     assert len(run(name, seed)) > 1, "all inputs had the same fate"
 
 
@@ -61,6 +62,8 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
         ("scenes", LONG, "minirt.fields.scalars.LONGEST", 302, AssertionError),
         ("scenes", "", "minirt.scene.dialects.complete", lambda items, *_: items.reverse(), AssertionError),
         ("scenes", "", "minirt.scene.parser.MISSING", "missing: ", AssertionError),  # which is no comment
+        ("names", "", "minirt.helpers.file_io.found", Path.stat, (OSError, ValueError)),
+        ("names", "", "minirt.meshes.mtl.is_file", Path.is_file, (OSError, ValueError)),
         ("meshes", "", "minirt.meshes.obj_bytes.NOWHERE", 0, AssertionError),
         ("pictures", "", "minirt.materials.pictures.decode_by_pillow", refuse, AssertionError),
         ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),
@@ -70,7 +73,12 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
     ],
 )
 def test_a_wrong_program_is_found(
-    name: str, text: str, where: str, wrong: object, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+    name: str,
+    text: str,
+    where: str,
+    wrong: object,
+    error: type[Exception] | tuple[type[Exception], ...],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """By an input, or by those of the short run."""
     monkeypatch.setattr(where, wrong)
