@@ -59,7 +59,7 @@ class Record(Immutable):
             if each.keyed and value is each.default:
                 continue
             try:
-                checked = each.check(each.meant(value))
+                checked = each.check(each.of_flag(value) if isinstance(value, bool) else value)
             except FieldError as error:
                 raise ElementError(f"{self.title} {each.title} {error}") from None
             if checked is not value:

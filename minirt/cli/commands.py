@@ -49,19 +49,12 @@ def check_as_json(options: argparse.Namespace) -> int:
         told = [("notice", each) for each in read_scene(options).notices]
     except SceneError as error:
         told = [("error", each) for each in error.problems]
-    say(
-        json.dumps(
-            [
-                {
-                    **{name: getattr(each, name) for name in ("file", "line", "column", "length")},
-                    "severity": severity,
-                    "message": each.message,
-                    "hint": meant(each.line, each.text) if severity == "error" and each.line else "",
-                }
-                for severity, each in told
-            ]
-        )
-    )
+    problems = []
+    for severity, each in told:
+        place = {name: getattr(each, name) for name in ("file", "line", "column", "length")}
+        hint = meant(each.line, each.text) if severity == "error" and each.line else ""
+        problems.append({**place, "severity": severity, "message": each.message, "hint": hint})
+    say(json.dumps(problems))
     return FAILED if any(severity == "error" for severity, _ in told) else OK
 
 

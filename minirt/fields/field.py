@@ -71,11 +71,9 @@ class Field(Immutable):
         """`value` in its normal form, such as a direction of unit length; FieldError if it is out of range."""
         return value
 
-    def meant(self, value: Any) -> Any:
-        """The value that a program means: by True that of the key alone, as in a file; FieldError where none may stand
+    def of_flag(self, value: bool) -> Any:
+        """The value that a program means by True: that of the key alone, as in a file; FieldError where none may stand
         alone, since True is the number 1, too."""
-        if not isinstance(value, bool):
-            return value
         if value and self.bare:
             return self.parse(self.bare)
         example = f", as in '{self.notation}'" if self.keyed else ""

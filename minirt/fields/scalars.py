@@ -194,7 +194,7 @@ class Flag(Field):
     def check(self, value: bool) -> bool:
         return bool(value)
 
-    def meant(self, value: bool) -> bool:
+    def of_flag(self, value: bool) -> bool:
         return value
 
     def nudge(self, value: bool, steps: float) -> bool:
