@@ -32,6 +32,7 @@ shapes: list[minirt.Shape] = [
     minirt.Torus((6, 6, 9), UP, 2, 0.5, RED, clouds=minirt.Clouds(1, RED)),
     minirt.Ellipsoid((6, 9, 9), UP, (1, 2, 3), RED, tint=minirt.Tint(RED)),
     minirt.Mesh(minirt.MeshFile(str(FOLDER / "corner.obj")), (0, 0, 8), 2, RED),
+    minirt.Mesh.from_arrays(np.eye(3), [[0, 1, 2]], position=(9, 9, 9), colour=RED, mirror=0.5),
 ]
 lamps: list[minirt.Lamp] = [
     minirt.Light((5, 5, -5), 0.5),
@@ -50,6 +51,7 @@ made.save(FOLDER / "made.rt")
 scene: minirt.Scene = minirt.load(FOLDER / "made.rt", lenient=True)
 text: str = minirt.dumps(minirt.loads(minirt.dumps(scene)))
 first: minirt.Sphere = scene.spheres[0]
+centre: minirt.Triple = first.centre
 diameters: list[float] = [each.diameter for each in scene.spheres]
 colours = [shape.colour for shape in scene.shapes] + [lamp.colour for lamp in scene.lights]
 element: minirt.Element = scene.elements[0]
@@ -65,12 +67,13 @@ mean: float = float(picture.linear.mean())
 bytes_of_png: bytes = picture.encode()
 array: NDArray[np.uint8] = np.asarray(picture)
 auto = minirt.render(scene, 32, 18, samples="auto", error=0.1, linear=False)
-error: float = auto.reached.error if auto.reached else 0.0
+outcome: minirt.Outcome | None = auto.reached
+error: float = outcome.error if outcome else 0.0
 plain: minirt.Image = picture
 plain.save(FOLDER / "picture.png")
 minirt.limit_memory(2**32)
 minirt.limit_memory(None)
-written: list[Path] = minirt.save_movie([plain, auto], FOLDER / "movie.gif", fps=10)
+written: list[Path] = minirt.save_movie([plain, auto.array], FOLDER / "movie.gif", fps=10)
 reached = minirt.render_to(FOLDER / "large.tif", scene, 8, 6, samples="auto", error=0.1, executor=ThreadPoolExecutor(1))
 goal: float = reached.goal if reached else 0.0
 frames: list[minirt.Image] = list(minirt.render_all([scene, scene], 8, 6))
@@ -91,8 +94,10 @@ done: bool = renderer.render(scene, frame)
 
 try:
     minirt.load("absent.rt")
-except minirt.SceneError as problem:
-    lines: list[int] = [each.line for each in problem.problems]
+except minirt.SceneError as refused:
+    problems: tuple[minirt.Problem, ...] = refused.problems
+except (minirt.TooLargeError, minirt.ElementError):
+    raise
 except (minirt.RenderError, minirt.FileError, minirt.ReplayError, minirt.MlxError, minirt.MiniRTError):
     raise
 
