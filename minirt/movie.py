@@ -95,7 +95,9 @@ def image_of(picture: Image | np.ndarray) -> Image:
     array = np.asarray(picture)
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != 3 or not array.size:
         what = f"an array {array.shape} of {array.dtype}" if array.ndim else repr(picture)
-        raise RenderError(f"a film takes pictures of minirt.render, or arrays (h, w, 3) of uint8, got {what:.60}")
+        raise RenderError(
+            f"a film takes pictures of minirt.render, or arrays (h, w, 3) of uint8 from 0 to 255, got {what:.60}"
+        )
     return Image(array)
 
 

@@ -173,7 +173,7 @@ NO_ELEMENTS: list[tuple[Any, str]] = [
     (5, "5"),
     (None, "None"),
     ("sp 0,0,5 2 255,0,0", "'sp 0,0,5 2 255,0,0'"),
-    ([minirt.Sphere((0, 0, 5), 2, (255, 0, 0))], r"a list: give them one by one, or with a \* before it"),
+    ([minirt.Sphere((0, 0, 5), 2, (255, 0, 0))], r"a list: {function}\(\*elements\) takes them one by one"),
     (minirt.Mirror(0.5), r"Mirror\(share=0.5\)"),
     (minirt.Sphere, "<class 'minirt.shapes.sphere.Sphere'>"),
 ]
@@ -188,10 +188,14 @@ def test_what_is_no_element_is_refused_at_once(scene: minirt.Scene, wrong: Any, 
         "replace": lambda: scene.replace(wrong, ball),
         "Scene": lambda: minirt.Scene([*scene.items, wrong]),
     }.items():
-        with pytest.raises(TypeError, match=f"^{function} takes elements such as minirt.Sphere, got {named}$"):
+        with pytest.raises(
+            TypeError, match=f"^{function} takes elements such as minirt.Sphere, got {named.format(function=function)}$"
+        ):
             call()
     if wrong is not None:
-        with pytest.raises(TypeError, match=f"^replace takes elements such as minirt.Sphere, got {named}$"):
+        with pytest.raises(
+            TypeError, match=f"^replace takes elements such as minirt.Sphere, got {named.format(function='replace')}$"
+        ):
             scene.replace(ball, wrong)
 
 
@@ -208,17 +212,17 @@ def test_true_means_what_the_key_alone_means_in_a_file_and_is_no_number() -> Non
         (read,) = minirt.loads(f"A 1 9,9,9\nC 0,0,0 0,0,1 60\nsp 0,0,5 2 1,2,3 glass:1.5 {name}\n").spheres
         assert minirt.Sphere((0, 0, 5), 2, (1, 2, 3), glass=1.5, **{name: True}) == read
     assert minirt.Plane((0, 0, 0), (0, 1, 0), (1, 2, 3), checker=True).checker == minirt.Checker(1.0)
-    for name, example in (
-        ("glass", "glass:ior"),
-        ("mirror", "mirror:share"),
-        ("glow", "glow:share"),
-        ("roll", "roll:"),
-    ):
-        with pytest.raises(
-            minirt.ElementError, match=f"^sphere {name} must be a value, as in '{example}.*', got True$"
-        ):
+    for name, wanted in {
+        "glass": "number or a minirt.Glass",
+        "mirror": "number or a minirt.Mirror",
+        "specular": "minirt.Specular",
+        "glow": "number",
+        "roll": "number",
+        "texture": "value",
+    }.items():
+        with pytest.raises(minirt.ElementError, match=f"^sphere {name} must be a {wanted}, got True$"):
             minirt.Sphere((0, 0, 5), 2, (1, 2, 3), **{name: True})
-    with pytest.raises(minirt.ElementError, match=r"^sphere diameter must be a value, got True$"):
+    with pytest.raises(minirt.ElementError, match=r"^sphere diameter must be a number, got True$"):
         minirt.Sphere((0, 0, 5), True, (1, 2, 3))
     assert minirt.Specular(0.5, 9, blinn=True).blinn is True
 

@@ -171,7 +171,7 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
     is_headless = output or options.check or options.bench or options.report
     streams = [*filter(is_nameless, scenes)]
     if streams and (not is_headless or options.replay or len(streams) > len(set(streams))):
-        parser.error("a scene on standard input needs -o or --check, and is read once")
+        parser.error(f"{streams[0]} is a stream, which is read once: it needs -o or --check")
     if len(scenes) == 1 or options.check:
         return
     found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}"

@@ -127,9 +127,9 @@ def without_effect(parser: argparse.ArgumentParser, options: argparse.Namespace)
         if getattr(options, action.dest) != parser.get_default(action.dest) and not commands & has_effect:
             if action.dest in COMMANDS:
                 return f"{COMMANDS[action.dest]} does not go with {COMMANDS[command]}"
-            where = f"with {COMMANDS[command]}" if command in COMMANDS else "in the window"
-            names = [COMMANDS.get(name, "the window") for name in (*COMMANDS, "window") if name in has_effect]
-            return f"{action.option_strings[-1]} has no effect {where}: it is for {' and '.join(names)}"
+            needed = [COMMANDS[name] for name in COMMANDS if name in has_effect]
+            where = f"with {COMMANDS[command]}" if "window" in has_effect else f"without {' or '.join(needed)}"
+            return f"{action.option_strings[-1]} has no effect {where}"
     return ""
 
 

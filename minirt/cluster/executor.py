@@ -29,7 +29,7 @@ SILENT, DESERTED = 60.0, 300.0  # seconds without an answer of the scheduler, an
 WATCH = 1.0  # seconds between two looks at what is late
 COLLECTING = 1.0  # seconds for the exit statuses of processes
 UNGUARDED = 87  # exit status of a process of a pool that runs the script which has started it
-GUARD = "it ran this script once more; what starts processes belongs below \"if __name__ == '__main__':\""
+GUARD = "it ran this script once more: put the call below \"if __name__ == '__main__':\""
 
 
 class Dispatcher:

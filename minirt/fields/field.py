@@ -43,6 +43,7 @@ class Field(Immutable):
 
     width: ClassVar[int] = 1  # components, with commas between them
     kind: ClassVar[type[float] | None] = None  # of number that a component is; None if it is another value
+    sort_of_value: ClassVar[str] = "a value"  # in messages
 
     doc: str
     unit: str = ""
@@ -76,8 +77,7 @@ class Field(Immutable):
         alone, since True is the number 1, too."""
         if value and self.bare:
             return self.parse(self.bare)
-        example = f", as in '{self.notation}'" if self.keyed else ""
-        raise FieldError(f"must be a value{example}, got {value}")
+        raise FieldError(f"must be {self.sort_of_value}, got {value}")
 
     def remark(self, value: Any) -> str:
         """A notice about a value that is in range but unusual; empty if there is none."""

@@ -77,6 +77,7 @@ class Scalar(Field):
     """A number in [low, high]."""
 
     kind: ClassVar[type[float]] = float
+    sort_of_value: ClassVar[str] = "a number"
 
     low: float = -FARTHEST
     high: float = FARTHEST

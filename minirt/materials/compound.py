@@ -47,6 +47,16 @@ class Compound(Field):
 
     record: type[Material]
 
+    @property
+    def sort_of_value(self) -> str:  # type: ignore[override]
+        """What a program gives, in messages."""
+        return f"{'a number or ' if self.is_one_number else ''}a minirt.{self.record.__name__}"
+
+    @property
+    def is_one_number(self) -> bool:
+        """Whether the values behind the first may be left out."""
+        return not any(field.required for field in fields_of(self.record)[1:])
+
     def parse(self, text: str) -> Material:
         words, start, values = text.split(","), 0, {}
         for field in fields_of(self.record):
@@ -73,7 +83,7 @@ class Compound(Field):
         return ",".join(spelled)
 
     def check(self, value: Any) -> Material:
-        if isinstance(value, float | int) and not any(field.required for field in fields_of(self.record)[1:]):
+        if isinstance(value, float | int) and self.is_one_number:
             try:
                 return self.record(value)
             except ValueError as error:

@@ -335,6 +335,6 @@ def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
 
 
 def meant(number: int, text: str) -> str:
-    """Return what a line that a strict reader refuses may mean, '' where that is unknown."""
+    """Return what a line that a strict reader refuses may mean, '' where that is unknown or the line itself."""
     translation = translated(line_from(number, text), colours={}, folder=None)
-    return translation.text if translation else ""
+    return translation.text if translation and translation.text.split() != text.split() else ""

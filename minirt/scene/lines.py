@@ -94,7 +94,7 @@ class Log:
         if of_line == MAX_ERRORS_OF_LINE:
             return
         if of_line == MAX_ERRORS_OF_LINE - 1:
-            message = "too many errors: those of this line from here on are left out"
+            message = "too many errors in this line: further ones are left out"
         self.errors.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def notice(self, line: Line, message: str, column: int, length: int = 1) -> None:

@@ -278,7 +278,7 @@ def check_elements(function: str, *elements: object) -> None:
         if not isinstance(each, Element):
             is_list = isinstance(each, list | tuple)
             found = (
-                f"a {type(each).__name__}: give them one by one, or with a * before it" if is_list else f"{each!r:.60}"
+                f"a {type(each).__name__}: {function}(*elements) takes them one by one" if is_list else f"{each!r:.60}"
             )
             raise TypeError(f"{function} takes elements such as minirt.Sphere, got {found}")
 

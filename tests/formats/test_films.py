@@ -212,7 +212,7 @@ def test_arrays_are_pictures_of_a_film(tmp_path: Path, name: str) -> None:
     ],
 )
 def test_a_film_says_what_it_takes(tmp_path: Path, picture: Any, found: str) -> None:
-    message = rf"^a film takes pictures of minirt.render, or arrays \(h, w, 3\) of uint8, got {found}$"
+    message = rf"^a film takes pictures of minirt.render, or arrays \(h, w, 3\) of uint8 from 0 to 255, got {found}$"
     for name in ("a.gif", "a.png"):
         with pytest.raises(RenderError, match=message):
             save_movie([picture], tmp_path / name)

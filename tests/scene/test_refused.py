@@ -115,7 +115,7 @@ def test_no_field_but_the_colour_of_a_light_may_be_left_out_or_doubled(line: str
 def test_a_line_has_at_most_20_errors() -> None:
     found = problems(scene_with(f"{SPHERE}{' mirror:0.5' * 90}"))
     assert [each.line for each in found] == [3] * MAX_ERRORS_OF_LINE
-    assert found[-1].message == "too many errors: those of this line from here on are left out"
+    assert found[-1].message == "too many errors in this line: further ones are left out"
     assert {each.line for each in problems(scene_with("sp x", "sp y"))} == {3, 4}
 
 
