@@ -107,7 +107,7 @@ class Arguments(argparse.ArgumentParser):
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print a help text or an error; argparse calls this, and would not notice that it cannot be written."""
         if file is sys.stdout:
-            say(message.encode(sys.stdout.encoding, "backslashreplace"))  # which may have colours
+            say(message, is_own=True)
         else:
             tell(message.rstrip("\n"))
 
@@ -200,11 +200,14 @@ def prepare_streams() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")  # as standard error does
 
 
-def say(text: object) -> None:
-    """Print lines to standard output without control characters, or bytes as they are; RenderError when that fails."""
+def say(text: object, is_own: bool = False) -> None:
+    """Print lines to standard output without control characters; bytes, and a text of the program's own that may have
+    colours, as they are. RenderError when that fails."""
     try:
         if isinstance(text, bytes):
             sys.stdout.buffer.write(text)
+        elif is_own:
+            print(text, end="")
         else:
             print_lines(text, sys.stdout)
         sys.stdout.flush()

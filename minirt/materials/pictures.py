@@ -6,9 +6,7 @@ pixels and memory are limited before anything is decoded. XPM and Radiance pictu
 
 from __future__ import annotations
 
-import ctypes
 import io
-import logging
 import os
 import re
 import warnings
@@ -218,6 +216,9 @@ def opened_by_pillow(path: Path, data: bytes) -> Iterator[Any]:
 @cache
 def silence_decoders() -> None:
     """Keep libtiff and Pillow from writing to standard error about damaged files, whose errors are raised anyway."""
+    import ctypes
+    import logging
+
     from PIL import _imaging
 
     logging.getLogger("PIL").addHandler(logging.NullHandler())  # without one, its errors go there

@@ -19,7 +19,6 @@ from minirt.fields import MeshFile
 from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, in_notebooks
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
-from minirt.meshes.from_arrays import digest
 from minirt.records import Immutable, record
 from minirt.rendering.image import Image, LinearImage, rgb_of
 from minirt.rendering.packing.camera import cut_for
@@ -194,6 +193,8 @@ def identity(scene: Scene, settings: str) -> str:
     read."""
     found = hashlib.sha256(f"{fingerprint_of(V3)} {settings} {scene.shown}\n{dump(scene)}".encode())
     found.update(repr([mesh.triangles.materials for mesh in scene.meshes]).encode())
+    from minirt.meshes.from_arrays import digest
+
     for mesh in (mesh for mesh in scene.meshes if mesh.file.is_new):
         found.update(digest(mesh.triangles).encode())
     for name in sorted({name for element in scene.elements for name in files_of(element)}):

@@ -11,7 +11,6 @@ from typing import Any
 from minirt.element import Element, fields_of
 from minirt.fields import Field, MeshFile
 from minirt.helpers import file_io
-from minirt.meshes.from_arrays import obj_text
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
@@ -118,6 +117,8 @@ def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:
 
 def write_mesh(path: Path, file: MeshFile) -> None:
     """Write the file of a mesh of arrays; SceneError when that fails, or where another file has its name."""
+    from minirt.meshes.from_arrays import obj_text
+
     data = obj_text(file.triangles)
     try:
         file_io.create(path, data)

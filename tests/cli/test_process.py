@@ -87,6 +87,7 @@ def test_numpy_starts_no_threads_of_its_own_unless_asked(folder: Path, asked: st
 def test_help_and_version_start_fast(folder: Path, option: str) -> None:
     """Only the standard library and a few modules of the program are imported."""
     allowed = {"minirt", "minirt.cli", "minirt.cli.arguments", "minirt.errors"}
+    allowed |= {"minirt.helpers", "minirt.helpers.package"}  # which reads the list of options
     loaded = modules(f"{QUIETLY}    with contextlib.suppress(SystemExit): main(['{option}'])", folder)
     loaded -= modules("import contextlib, io", folder)
     assert {each for each in loaded if each.split(".")[0] not in sys.stdlib_module_names} == allowed

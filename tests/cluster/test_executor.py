@@ -95,8 +95,8 @@ def test_a_script_without_the_guard_is_told_to_have_it(tmp_path: Path, is_made: 
     ended = run([sys.executable, "script.py"], cwd=tmp_path, env=environment(), text=True)
     *_, last = ended.stderr.splitlines()
     assert ended.returncode == 1
-    assert last.startswith("minirt.errors.RenderError: rows 0 to 47: its worker died: it ran this script once more; ")
-    assert last.endswith("belongs below \"if __name__ == '__main__':\"")
+    assert last.startswith("minirt.errors.RenderError: rows 0 to 47: its worker died: it ran this script once more: ")
+    assert last.endswith("put the call below \"if __name__ == '__main__':\"")
     assert ended.stderr.count("Traceback") <= 2  # of this process, and none of the worker
 
 

@@ -96,7 +96,7 @@ def test_slopes_are_those_of_differences_of_50_digits(kind: Any) -> None:
 
 def packed(shape: Any) -> Patterns:
     """Return the patterns of one shape."""
-    return pack_patterns([(0, shape)], np.zeros(1, np.int64), {"patterns"}, Colours())
+    return pack_patterns([(0, shape)], 1, np.zeros(1, np.int64), {"patterns"}, Colours())
 
 
 def colours(shape: Any, points: np.ndarray) -> np.ndarray:
@@ -187,7 +187,7 @@ def test_many_samples_show_a_far_floor_as_it_is(kind: Any) -> None:
 def test_a_mesh_of_many_primitives_has_one_row() -> None:
     ball = Sphere((0, 0, 0), 1, WHITE, marble=Marble(1.0))
     shapes = [(1, ball), (3, ball.replace(**ALL_PATTERNS))]
-    found = pack_patterns(shapes, np.array([0, 1, 1, 2, 3]), {"patterns"}, Colours())
+    found = pack_patterns(shapes, 4, np.array([0, 1, 1, 2, 3]), {"patterns"}, Colours())
     assert found.ranges.tolist() == [[0, 0], [0, 1], [0, 1], [0, 0], [1, 4]]
     assert found.rows.shape == (4, patterns.COLUMNS)
     assert found.heights is None
