@@ -34,21 +34,28 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of standard output has closed it
         return FAILED
     except KeyboardInterrupt as error:  # SIGINT, or another signal, whose number it has
-        tell_notes(error)
-        status = 128 + int(*error.args or [SIGINT])
-        if argv is not None:
-            return status
+        return interrupted(error, int(*error.args or [SIGINT]), is_program=argv is None)
+    except Exception as error:
+        from minirt.helpers.signals import ended
+
+        if ended:  # Python, or a library, has made another error of the interrupt
+            return interrupted(error, ended[0], is_program=argv is None)
+        message = NO_MEMORY if isinstance(error, MemoryError) else ""
+        if str(error) == "can't start new thread":  # of Python
+            message = NO_THREADS
+        if not (message or isinstance(error, MiniRTError)):
+            raise
+        return failed(error, message)
+
+
+def interrupted(error: BaseException, number: int, is_program: bool) -> int:
+    """Print what is kept of the work that a signal has ended; end the program, or return the exit status."""
+    tell_notes(error)
+    if is_program:
         from minirt.helpers.signals import leave
 
-        leave(status)
-    except MiniRTError as error:
-        return failed(error)
-    except MemoryError as error:
-        return failed(error, NO_MEMORY)
-    except RuntimeError as error:
-        if str(error) != "can't start new thread":  # of Python
-            raise
-        return failed(error, NO_THREADS)
+        leave(128 + number)
+    return 128 + number
 
 
 def failed(error: BaseException, message: str = "") -> int:

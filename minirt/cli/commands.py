@@ -14,6 +14,7 @@ from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say
 from minirt.errors import MlxError, SceneError
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
+from minirt.helpers.signals import ended_by_signals, leave_at_once
 from minirt.scene import Scene, size_of
 
 MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
@@ -93,23 +94,25 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
     `saved` is the scene of the file, where options have changed it.
     """
     from minirt.rendering.renderer import renderer
-    from minirt.viewer.app import desktop
 
     chosen = renderer(options.threads, options.precision or "double", options.depth, options.dither)
     chosen.moves_in_single = options.precision is None
     try:
-        return desktop.run(
-            scene,
-            path=options.scene[0],
-            size=options.size,
-            keys=options.keys,
-            lenient=options.lenient,
-            samples=options.samples or WINDOW_SAMPLES,
-            watch=options.watch,
-            text_scale=options.text_scale,
-            saved=saved,
-            renderer=chosen,
-        )
+        with ended_by_signals(leave_at_once):  # until the window is open, and once it is closed
+            from minirt.viewer.app import desktop
+
+            return desktop.run(
+                scene,
+                path=options.scene[0],
+                size=options.size,
+                keys=options.keys,
+                lenient=options.lenient,
+                samples=options.samples or WINDOW_SAMPLES,
+                watch=options.watch,
+                text_scale=options.text_scale,
+                saved=saved,
+                renderer=chosen,
+            )
     except MlxError as error:
         if not options.fallback:
             raise

@@ -40,6 +40,11 @@ def exit_at_once(number: int) -> None:
         os._exit(128 + number)
 
 
+def leave_at_once(number: int) -> None:
+    """End the process, which has only temporary files to delete: no exception is raised, which a library may drop."""
+    leave(128 + number)
+
+
 def interrupt(number: int) -> None:
     """End the work by KeyboardInterrupt with the number of the signal."""
     if not ended:
@@ -169,7 +174,7 @@ def leave(status: int) -> NoReturn:
 
     atexit._run_exitfuncs()  # which delete temporary files
     for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, ValueError, AttributeError):  # full, or closed
+        with suppress(OSError, ValueError, AttributeError, RuntimeError):  # full, closed, or being written to
             stream.flush()
     os._exit(status)
 

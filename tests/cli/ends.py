@@ -112,13 +112,15 @@ def trial(
         def is_time() -> bool:
             looks.append(round(used(process.pid), 2))  # a thread that watches the file uses less
             is_over = looks[-1] >= moment or looks[-AT_REST:] == looks[-1:] * AT_REST
-            return process.poll() is not None or (is_over and (share == 1 or handles(process.pid, number)))
+            # Python itself has a handler of Ctrl+C.
+            is_handled = handles(process.pid, signal.SIGTERM)
+            return process.poll() is not None or (is_over and (share == 1 or is_handled))
 
         until(is_time, "the moment of a signal")
         if process.poll() is not None:
             told = (home / "errors").read_text()
             return End(number, True, 0.0, [f"ended by itself: {process.returncode}\n{told}"])
-        is_handled = handles(process.pid, number)
+        is_handled = handles(process.pid, signal.SIGTERM)
         start = time.monotonic()
         if is_for_all:
             processes.kill_group(process, number)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import minirt
+from minirt.helpers.signals import ENDING
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, PROGRAM, environment, program, start
 from tests.cli.test_output import pixels
@@ -141,6 +142,40 @@ def test_a_signal_ends_the_program_while_it_imports_a_module(folder: Path, modul
     variables = environment() | {"PYTHONPATH": os.pathsep.join((str(folder), str(ROOT)))}
     ended = run([*PROGRAM, "ball.rt", "-o", "x.png"], cwd=folder, env=variables)
     assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, b"", b"")
+
+
+DROPPED = """
+import signal, sys
+from minirt import __main__ as program
+from minirt.cli import render
+from minirt.viewer.app import desktop
+
+def drop(*_, **__):
+    try:
+        signal.raise_signal({number})
+    except BaseException:
+        return 0
+
+def change(*_):
+    try:
+        signal.raise_signal({number})
+    except BaseException as error:
+        raise RuntimeError("an error of a library") from error
+
+desktop.open_session, render.render_output = drop, change
+sys.exit(program.main())
+"""
+
+
+@pytest.mark.parametrize("number", ENDING)
+@pytest.mark.parametrize("arguments", [["ball.rt"], ["ball.rt", "-o", "x.png"]], ids=["dropped", "changed"])
+def test_a_signal_counts_though_a_library_drops_or_changes_its_exception(
+    folder: Path, arguments: list[str], number: int
+) -> None:
+    """As a bare `except` does, and a class whose making is interrupted. Where a window opens none is raised."""
+    command = [sys.executable, "-c", DROPPED.format(number=int(number)), *arguments]
+    ended = run(command, cwd=folder, env=environment(), text=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")
 
 
 def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:
