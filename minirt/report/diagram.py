@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from io import StringIO
 from itertools import cycle
 from math import isfinite
@@ -35,9 +34,14 @@ LEAST_RANGE, MANY = 6.0, 200.0  # least ratio of the ends of an axis; beyond `MA
 
 
 def require_matplotlib() -> None:
-    """RenderError, which tells how to install it, if matplotlib is missing."""
-    if not find_spec("matplotlib"):
-        raise RenderError("--report draws its diagram with matplotlib: install it (pip install 'minirt[report]')")
+    """Import what draws, which takes most of a second, so that the end of an interrupted report need not wait for it.
+    RenderError, which tells how to install it, if matplotlib is missing."""
+    try:
+        import matplotlib.backends.backend_svg
+        import matplotlib.ticker  # noqa: F401
+    except ImportError:
+        message = "--report draws its diagram with matplotlib: install it (pip install 'minirt[report]')"
+        raise RenderError(message) from None
 
 
 def draw(found: Findings, size: tuple[float, float]) -> str:

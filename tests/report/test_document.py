@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import sys
 from dataclasses import replace
 from math import nan
 from pathlib import Path
@@ -115,7 +116,7 @@ def test_a_diagram_without_points_is_drawn() -> None:
 
 
 def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(diagram, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "matplotlib.backends.backend_svg", None)
     with pytest.raises(RenderError, match=r"pip install 'minirt\[report\]'"):
         diagram.require_matplotlib()
 
