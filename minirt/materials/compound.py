@@ -49,7 +49,7 @@ class Compound(Field):
 
     @property
     def sort_of_value(self) -> str:  # type: ignore[override]
-        """What a program gives, in messages."""
+        """The kinds of value that a program may give, for messages."""
         return f"{'a number or ' if self.is_one_number else ''}a minirt.{self.record.__name__}"
 
     @property

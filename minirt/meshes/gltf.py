@@ -1,4 +1,4 @@
-"""What trimesh gets of a glTF file, .gltf or .glb: its triangles, once they are within the limits."""
+"""Prepare glTF files, .gltf or .glb, for trimesh: it gets the triangles, once they are within the limits."""
 
 from __future__ import annotations
 

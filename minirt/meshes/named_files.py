@@ -1,4 +1,4 @@
-"""What .ply and glTF files have besides triangles: files that they name, pictures, and materials that name these."""
+"""Files that .ply and glTF files name, the pictures in them, and the materials that these pictures belong to."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ class Look:
 
     def to_obj(self, name: str) -> tuple[dict[str, bytes], str]:
         """Return files of materials by their names, and the name of the material in them."""
-        lines = [f"newmtl {name}", "Kd {} {} {}".format(*self.colour), *[f"map_Kd {self.picture}"] * bool(self.picture)]
+        lines = [f"newmtl {name}", "Kd {} {} {}".format(*self.colour)]
+        if self.picture:
+            lines.append(f"map_Kd {self.picture}")
         return {f"{name}.mtl": "\n".join(lines).encode()}, name
 
     def copy(self) -> Look:

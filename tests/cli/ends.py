@@ -58,7 +58,7 @@ REPORTED = re.compile(r"^Interrupted while measuring .* is missing\.\n(?:.*\n)+?
 
 
 class End(NamedTuple):
-    """How a program has ended, and what is wrong with that."""
+    """The end of a program after a signal: its time, and the faults of that end."""
 
     number: int  # of the signal
     is_handled: bool  # whether the program, and not the system, had a handler of the signal

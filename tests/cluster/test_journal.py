@@ -81,7 +81,7 @@ def test_a_journal_that_cannot_be_read_is_one_sentence(
 
 
 def test_a_disk_that_is_full_ends_keeping_and_not_reading(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the disk has not taken must not be written again by the next read."""
+    """Data that the disk has not taken is not written again by the next read."""
     output = tmp_path / "x.gif"
     interrupted(output, 0, 1)
     resource = pytest.importorskip("resource", reason="no limit of the size of files")

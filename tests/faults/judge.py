@@ -1,4 +1,4 @@
-"""What the files and the output of faulty work must be."""
+"""Judge of the files and the output of faulty work."""
 
 from __future__ import annotations
 

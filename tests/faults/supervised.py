@@ -29,7 +29,7 @@ CRASHED = 99  # exit status after an exception
 
 
 class Fault(NamedTuple):
-    """What happens to an operation: the name of an error, which with + all that follow have, too; a write of half of
+    """Fault of an operation: the name of an error, which with + all that follow have, too; a write of half of
     the bytes, after which the disk is full; or the end of the process."""
 
     number: int  # from 1
