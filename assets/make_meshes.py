@@ -1,11 +1,13 @@
 """Writes the meshes of scenes/meshes: python assets/make_meshes.py
 
-A ball of twenty faces and one that was made round from it, a knot, a pot from a lathe, and Newell's teapot.
+A ball of twenty faces and one that was made round from it, a knot, a pot and a wine glass from a lathe, and Newell's
+teapot.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,19 @@ GOLDEN = (1 + 5**0.5) / 2
 POT = [(0, 1.32), (0.09, 1.3), (0.13, 1.2), (0.06, 1.1), (0.1, 1.04), (0.4, 0.95), (0.6, 0.87)]
 POT += [(0.66, 0.86), (0.7, 0.8), (0.86, 0.62), (1.0, 0.35), (1.02, 0.1), (0.9, -0.2), (0.7, -0.38), (0.62, -0.45)]
 POT += [(0.66, -0.52), (0.64, -0.56), (0.4, -0.56), (0, -0.54)]
+
+# Radius and height along the outline of a wine glass, from the bottom of its bowl up the inside, over the rim, and down the
+# outside to the foot. Both sides of the bowl are paraboloids, so that a paraboloid of wine fits into it.
+STEM = [(0.12, 1.3), (0.075, 1.2), (0.06, 0.9), (0.06, 0.5), (0.08, 0.25), (0.3, 0.11), (0.6, 0.06)]
+FOOT = [(0.65, 0.03), (0.6, 0), (0.3, 0), (0, 0)]
+
+
+def bowl(bottom: float, top: float, radius: float) -> list[tuple[float, float]]:
+    """Radius and height along the outline of a paraboloid, from its vertex to its rim."""
+    return [(radius * k / 8, bottom + (top - bottom) * (k / 8) ** 2) for k in range(9)]
+
+
+GLASS = [*bowl(1.37, 2.98, 0.71), (0.735, 3), *bowl(1.31, 2.98, 0.75)[:1:-1], *STEM, *FOOT]
 
 
 def icosahedron() -> tuple[Array, Array]:
@@ -89,9 +104,9 @@ def knot(u: Array, v: Array) -> Array:
     return line(v) + 0.22 * (np.cos(turn) * aside + np.sin(turn) * np.cross(along, aside))
 
 
-def pot(u: Array, v: Array) -> Array:
-    """A pot turned on a lathe; u goes around it, v from its foot to its knob."""
-    outline = np.array(POT[::-1])
+def turned(line: list[tuple[float, float]], u: Array, v: Array) -> Array:
+    """A smooth outline turned on a lathe; u goes around it, v from the end of the outline to its beginning."""
+    outline = np.array(line[::-1])
     at = np.clip(v, 0, 1) * (len(outline) - 1)
     i = np.clip(at.astype(int), 0, len(outline) - 2)
     t = (at - i)[..., None]
@@ -136,7 +151,8 @@ def main() -> None:
         points, corners = rounder(points, corners)
     save("icosphere.obj", "A ball of 1,280 faces", points, nothing, nothing, corners)
     save("knot.obj", "A trefoil knot, round and with places of a picture", *wrapped(knot, 18, 110, closed=True))
-    save("pot.obj", "A pot, round and with places of a picture", *wrapped(pot, 40, 54, closed=False))
+    save("pot.obj", "A pot, round and with places of a picture", *wrapped(partial(turned, POT), 40, 54, closed=False))
+    save("wineglass.obj", "A wine glass, round", *wrapped(partial(turned, GLASS), 40, len(GLASS) - 1, closed=False))
     save_teapot("teapot.obj")
 
 
