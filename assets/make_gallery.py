@@ -1,6 +1,9 @@
-"""Render the gallery, and write its table in scenes/README.md: python assets/make_gallery.py [SCENE ...]
+"""Render the pictures of scenes/README.md, and write the table of its gallery.
 
-A time is the processor time of one thread, without reading the scene and compiling.
+    python assets/make_gallery.py [SCENE ...]
+
+Without names of scenes it also renders the example of the page and its chart of u and v. A time is the processor time
+of one thread, without reading the scene and compiling.
 """
 
 from __future__ import annotations
@@ -32,8 +35,7 @@ def row(name: str) -> str:
     file = f"{name.split('-', 1)[-1]}.jpg"
     picture.save(ROOT / "assets" / f"gallery-{file}")
     caption = (scene.file.read_text().splitlines()[0] if scene.file else "").removeprefix("# ")
-    command = f"miniRT scenes/{name}.rt --size {WIDTH}x{HEIGHT} --samples {SAMPLES} -o {file}"
-    return f"| ![{caption}](../assets/gallery-{file}) | {caption}<br>`{command}`<br>{seconds:.1f} s |"
+    return f"| ![{name}](../assets/gallery-{file}) | {caption}<br>`{name}.rt`, {seconds:.1f} s |"
 
 
 def write(name: str, text: str) -> None:
@@ -41,12 +43,21 @@ def write(name: str, text: str) -> None:
     table = PAGE.read_text(encoding="utf-8")
     start = table.index("| | |\n", table.index("## Gallery"))  # the last part of the page
     rows = table[start:].rstrip().splitlines()
-    former = [i for i, each in enumerate(rows) if f"`miniRT scenes/{name}.rt " in each]
+    former = [i for i, each in enumerate(rows) if f"`{name}.rt`" in each]
     rows[former[0] if former else len(rows) : former[0] + 1 if former else len(rows)] = [text]
     PAGE.write_text(table[:start] + "\n".join(rows) + "\n", encoding="utf-8")
 
 
+def illustrate() -> None:
+    """Render the first example of the page, and the chart of u and v."""
+    example = PAGE.read_text(encoding="utf-8").partition("```\n")[2].partition("```")[0]
+    minirt.render(minirt.loads(example), 480, 270, samples=SAMPLES).save(ROOT / "assets" / "first.png")
+    minirt.render(minirt.example("uv"), 960, 420, samples=SAMPLES).save(ROOT / "assets" / "uv.jpg")
+
+
 if __name__ == "__main__":
+    if not sys.argv[1:]:
+        illustrate()
     for name in sys.argv[1:] or SHOWN:
         text = row(name)
         print(text, flush=True)

@@ -22,8 +22,8 @@ POT = [(0, 1.32), (0.09, 1.3), (0.13, 1.2), (0.06, 1.1), (0.1, 1.04), (0.4, 0.95
 POT += [(0.66, 0.86), (0.7, 0.8), (0.86, 0.62), (1.0, 0.35), (1.02, 0.1), (0.9, -0.2), (0.7, -0.38), (0.62, -0.45)]
 POT += [(0.66, -0.52), (0.64, -0.56), (0.4, -0.56), (0, -0.54)]
 
-# Radius and height along the outline of a wine glass, from the bottom of its bowl up the inside, over the rim, and down the
-# outside to the foot. Both sides of the bowl are paraboloids, so that a paraboloid of wine fits into it.
+# Radius and height along the outline of a wine glass, from the bottom of its bowl up the inside, over the rim, and down
+# the outside to the foot. Both sides of the bowl are paraboloids, so that a paraboloid of wine fits into it.
 STEM = [(0.12, 1.3), (0.075, 1.2), (0.06, 0.9), (0.06, 0.5), (0.08, 0.25), (0.3, 0.11), (0.6, 0.06)]
 FOOT = [(0.65, 0.03), (0.6, 0), (0.3, 0), (0, 0)]
 

@@ -1,7 +1,8 @@
 """Draws the pictures of scenes/textures: python assets/make_textures.py [FOLDER]
 
-A planet and bricks with their heights, water, and skies in the evening and at night. All of it is drawn from noise with
-fixed seeds, so that the same pictures come out again, and those that are wrapped around something have no seam.
+A planet and bricks with their heights, water, and skies in the evening and at night are drawn from noise with fixed
+seeds, so that the same pictures come out again, and those that are wrapped around something have no seam. A chart shows
+how u and v run.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 FOLDER = Path(__file__).parent.parent / "scenes" / "textures"
 FACTORS, SEEDS = (73856093, 19349663, 83492791), 2654435761  # hash factors for each axis, and for the seed
@@ -211,6 +212,27 @@ def evening(width: int = 1024, height: int = 512) -> Array:
     return colour + above * (near**600 * 400 + near**40 * 60) * np.array([1, 0.85, 0.6])
 
 
+def chart(size: int = 512, cells: int = 8) -> Array:
+    """Draw u, to the right and red, and v, upwards and green: lines for eighths, two arrows, and the corners' u,v."""
+    at = (np.arange(size) + 0.5) / size
+    u, v = np.meshgrid(at, at[::-1])
+    even = (np.floor(u * cells) + np.floor(v * cells)) % 2 == 0
+    colours = np.stack([60 + 170 * u, 60 + 170 * v, np.full_like(u, 60)], axis=-1) + 25.0 * even[..., None]
+    line = (np.minimum(u * cells % 1, v * cells % 1) * size / cells < 2)[..., None]
+    picture = Image.fromarray(np.where(line, 25, colours).astype(np.uint8))
+    pen, middle, end, edge = ImageDraw.Draw(picture), size // 2, size * 3 // 4, 10
+    for x, left in ((0, "l"), (1, "r")):
+        for y, low in ((0, "s"), (1, "t")):
+            place = (edge, size - edge)[x], (size - edge, edge)[y]
+            pen.text(place, f"{x},{y}", "white", ImageFont.load_default(44), left + low)
+    pen.line([middle, size - end, middle, middle, end, middle], "white", 10)
+    pen.polygon([end + 30, middle, end - 10, middle - 22, end - 10, middle + 22], "white")
+    pen.polygon([middle, size - end - 30, middle - 22, size - end + 10, middle + 22, size - end + 10], "white")
+    pen.text((end - 30, middle + 56), "u", "white", ImageFont.load_default(80), "mm")
+    pen.text((middle - 50, size - end + 20), "v", "white", ImageFont.load_default(80), "mm")
+    return np.asarray(picture)
+
+
 def save(folder: Path, name: str, pixels: Array, colours: int = 0) -> None:
     """Write a picture, reduced to `colours` colours unless that is 0."""
     image = Image.fromarray(np.rint(np.clip(pixels, 0, 255)).astype(np.uint8))
@@ -233,6 +255,7 @@ def main(folder: Path = FOLDER) -> None:
     save(folder, "water-height.png", 255 * waves)
     save(folder, "evening.png", evening())
     save(folder, "stars.png", stars(), 64)
+    save(folder, "uv.png", chart())
 
 
 if __name__ == "__main__":

@@ -9,13 +9,15 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from minirt.cli.arguments import argument_parser
-from minirt.element import Element, fields_of, pattern
+from minirt.element import Element, fields_of
 from minirt.fields import Field
 from minirt.materials import Compound
 from minirt.scene.registry import ELEMENTS
+from minirt.shapes.shape import Shape
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
 from tests.library_page import library_reference
 from tests.pages import PAGES, block, name, read
@@ -49,55 +51,74 @@ def node(part: str) -> str:
     return "library[__init__]" if part == "__init__" else part
 
 
-# The tables of the pages about the scene format, from the fields of the elements.
+# The tables of the page about the scene format, from the fields of the elements.
+
+SUBJECT = [kind for kind in ELEMENTS.values() if kind.code in ("A", "C", "L", "sp", "pl", "cy")]
+FURTHER = [kind for kind in ELEMENTS.values() if kind not in SUBJECT]
+# Ranges that the page states before the tables: of positions, lengths, components, colours, shares and turns.
+USUAL = {f"[{ends}]" for ends in ("-1e+15, 1e+15", "1e-50, 1e+15", "0, 1e+15", "-1, 1", "0, 255", "0, 1", "-360, 360")}
 
 
-def format_table() -> str:
-    """Return two Markdown tables: all elements of a scene file, and the attributes shared by all shapes."""
-    shared = {field.name: field for kind in ELEMENTS.values() for field in fields_of(kind) if field.sort}
-    elements = ["| line | element | fields |", "|---|---|---|", *map(element_row, ELEMENTS.values()), ""]
-    attributes = ["| attribute | of | meaning |", "|---|---|---|", *map(attribute_row, shared.values()), ""]
-    return "\n".join(elements + attributes)
+def element_table(kinds: list[type[Element]]) -> str:
+    """Return a Markdown table of elements and their fields, without attributes."""
+    return "\n".join(["| line | element | fields |", "|---|---|---|", *map(element_row, kinds)])
 
 
 def element_row(kind: type[Element]) -> str:
-    """Return the table row of an element."""
-    own = (field for field in fields_of(kind) if not field.sort)
-    return f"| `{pattern(kind)}` | {name_and_count(kind)} | {'<br>'.join(map(field_entry, own))} |"
-
-
-def attribute_row(field: Field) -> str:
-    """Return the table row of a shared attribute."""
-    parts = fields_of(field.record) if isinstance(field, Compound) else ()
-    entries = (f"`{part.placeholder or part.notation}` {description(part)}" for part in parts)
-    text = "<br>".join([description(field), *entries])
-    alone = f", or `{field.keyword}` for `{field.keyword}:{field.bare}`" if field.bare else ""
-    for kind in ELEMENTS.values():
-        own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
-        alone += f" ({kind.plural}: `{field.keyword}:{own.bare}`)" if own else ""
-    return f"| `{field.notation}`{alone} | {field.sort} | {text} |"
+    """Return the table row of an element; one with the fields of another says so."""
+    own = [field for field in fields_of(kind) if not field.keyed]
+    line = " ".join([kind.code, *(field.notation if field.required else f"[{field.notation}]" for field in own)])
+    same = next((f"those of `{base.code}`" for base in SUBJECT if issubclass(kind, base) and kind is not base), "")
+    entries = same or "; ".join(filter(None, map(field_entry, own)))
+    return f"| `{line}` | {name_and_count(kind)} | {entries} |"
 
 
 def name_and_count(kind: type[Element]) -> str:
     """Return an element's name with how many a scene may have, or with the aliases of its identifier."""
     if kind.once:
-        return f"{kind.title} ({'exactly one' if kind.required else 'at most one'})"
+        return f"{kind.title}, {'exactly one' if kind.required else 'at most one'}"
     return f"{kind.title} (also {', '.join(f'`{alias}`' for alias in kind.aliases)})" if kind.aliases else kind.title
 
 
+def attribute_table() -> str:
+    """Return the Markdown table of all attributes: those of shapes, then those of cameras and lights."""
+    rows: dict[tuple[str, str], dict[str, None]] = {}
+    for kind in sorted(ELEMENTS.values(), key=lambda kind: not issubclass(kind, Shape)):
+        for field in fields_of(kind):
+            if field.keyed:
+                owners = rows.setdefault((field.notation, attribute_meaning(field)), {})
+                owners[field.sort or f"`{kind.code}`"] = None
+    lines, above = ["| attribute | of | meaning |", "|---|---|---|"], [""]
+    for (notation, text), owners in rows.items():
+        entries = text.split("; ")
+        shown = [*entries[:-2], "the rest as above"] if entries[-2:] == above[-2:] else entries
+        lines.append(f"| `{notation}` | {' '.join(owners)} | {'; '.join(shown)} |")
+        above = entries
+    return "\n".join(lines)
+
+
+def attribute_meaning(field: Field) -> str:
+    """Return the meaning of an attribute and of the parts of its value, and what its key alone stands for."""
+    parts = fields_of(field.record) if isinstance(field, Compound) else ()
+    fields = (each for kind in ELEMENTS.values() for each in fields_of(kind) if each.name == field.name)
+    alone = ", ".join(dict.fromkeys(f"`{each.keyword}:{each.bare}`" for each in fields if each.bare))
+    return "; ".join([meaning(field), *map(field_entry, parts), *([f"alone: {alone}"] if alone else [])])
+
+
 def field_entry(field: Field) -> str:
-    """Return a field's notation and description."""
-    return f"`{field.notation}` {description(field)}"
+    """Return a field's name and meaning; nothing where the name says all."""
+    name, text = field.placeholder or field.notation, meaning(field)
+    return f"`{name}` {text.removeprefix(f'{name} ')}" if text else ""
 
 
-def description(field: Field) -> str:
-    """Return a field's meaning, range, unit and default."""
-    limits = field.range if field.range.startswith(">") or not field.range else f"in {field.range}"
-    unit = f"unit: {field.unit}" if field.unit else ""
+def meaning(field: Field) -> str:
+    """Return a field's meaning, its range where that is unusual, and its default."""
+    doc = "" if field.doc in (field.notation, "colour") else field.doc
+    low, _, high = field.range.strip("[]").partition(", ")
+    limits = f"from {low} to {high}" if high and field.range not in USUAL else ""
     has_default = field.default is not None and field.default is not False
-    left_out = f"{field.format(field.default)} when left out" if has_default else ""
-    doc = "" if field.doc == field.name == field.notation else field.doc
-    return ", ".join(filter(None, (doc, limits, unit, left_out)))
+    default = f"default {field.format(field.default)}" if has_default else ""
+    return ", ".join(filter(None, (doc, limits, field.unit.partition(", ")[2], default)))
 
 
 def keys_markdown() -> str:
@@ -112,7 +133,9 @@ def keys_markdown() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "keys": keys_markdown,
-    "elements": format_table,
+    "subject": partial(element_table, SUBJECT),
+    "further": partial(element_table, FURTHER),
+    "attributes": attribute_table,
     "diagram": diagram,
     "library": library_reference,
 }

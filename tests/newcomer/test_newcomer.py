@@ -91,12 +91,12 @@ import numpy as np
 import minirt
 from minirt.rendering.packing.features import features
 from minirt.scene import dump, parse
-from tests.make_tables import format_table
+from tests.make_tables import FURTHER, attribute_table, element_table
 
 assert minirt.Gate((0, 0, 0), 2, (1, 2, 3)).side == 2
 assert {"Gate", "Sheen"} <= set(minirt.__all__)
-assert "| `ga x,y,z side R,G,B` | gate |" in format_table()
-assert "`sheen:share`" in format_table()
+assert "| `ga x,y,z side R,G,B` | gate |" in element_table(FURTHER)
+assert "`sheen:share`" in attribute_table()
 
 TEXT = "A 0.1 255,255,255\\nC 0,0,-9 0,0,1 40\\nL 0,0,-9 0.6 255,255,255\\nga 0,0,0 4 200,90,50\\n"
 TEXTS = TEXT, TEXT.replace("90,50", "90,50 sheen:0.3")
