@@ -181,22 +181,25 @@ def test_with_one_sample_the_picture_is_the_library_s_and_a_window_that_watches_
         assert viewer.end() == (0, "", "")
 
 
+def shows_tone(viewer: Viewer, tone: str) -> None:
+    """Wait until the window shows the scene of the file with this tone, and dithered."""
+    scene = minirt.load(viewer.path)
+    toned = scene.replace(scene.camera, tone=tone, exposure=1)
+    expected = minirt.render(toned, *SIZE, dither=True).array
+    assert not np.array_equal(expected, minirt.render(toned, *SIZE).array)
+    viewer.shows(expected)
+
+
 def test_the_window_shows_the_tone_and_the_dithering_of_the_file_and_a_key_changes_the_tone(desktop, tmp_path):
     options = ("--samples", "1", "--tone", "filmic", "--exposure", "1", "--dither")
     with viewing(desktop, tmp_path / "scene.rt", options=options) as viewer:
-        scene = minirt.load(viewer.path)
         viewer.key("i", "i")
-        for tone in ("filmic", "plain", "srgb"):
-            toned = scene.replace(scene.camera, tone=tone, exposure=1)
-            expected = minirt.render(toned, *SIZE, dither=True).array
-            assert not np.array_equal(expected, minirt.render(toned, *SIZE).array)
-            if tone == "plain":  # another program changes the file: the tone that the options gave stays
-                viewer.path.write_text(viewer.path.read_text() + "# changed\n")
-                viewer.key("t")
-            elif tone == "srgb":
-                viewer.key("t")
-            viewer.key("i", "i", "i")
-            viewer.shows(expected)
+        shows_tone(viewer, "filmic")
+        viewer.path.write_text(viewer.path.read_text() + "bg 90,120,200\n")  # as another program does
+        shows_tone(viewer, "filmic")
+        for tone in ("plain", "srgb"):
+            viewer.key("t", "i", "i", "i")  # which hides what the window says about the tone
+            shows_tone(viewer, tone)
         viewer.key("Escape")
         status, out, err = viewer.end()
         assert (status, err) == (0, "")
