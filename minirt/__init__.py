@@ -119,8 +119,12 @@ def load(path: str | os.PathLike[str], lenient: bool | str = False, left_handed:
     """Read a scene file. SceneError, with all of its problems, if the file is not a valid scene.
 
     `lenient` accepts older spellings (several `L`, blanks around commas, colours with decimals) and translates lines of
-    other programs; `scene.missing` has the lines of shapes that it could not read. "base" and "angle" read, besides,
-    cones whose point is the centre of the base, or whose diameter stands for half the angle at the apex, in degrees.
+    other programs; `scene.missing` has the lines of shapes that it could not read. A text of words does so, and reads
+    fields in another way. Cones: "base", whose point is the centre of the base; "angle", whose diameter is half the
+    angle at the apex, in degrees. Cameras: "reversed", whose direction points backwards; "angles", whose direction is
+    three angles, by which a camera along +z is turned about x, y and z (shares of 180 degrees; where one is beyond 1
+    radians, beyond 2 pi degrees); "z-up", rolled so that z is up in the picture. ValueError for other words.
+
     `left_handed` mirrors pictures of the scene, as renderers with left-handed coordinates do.
     """
     from minirt.scene import load as read

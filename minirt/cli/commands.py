@@ -31,11 +31,10 @@ def command_for(options: argparse.Namespace) -> Command:
 def check(scene: Scene, options: argparse.Namespace) -> int:
     """Print that the scene was read without errors, and the number of its shapes and lights."""
     say(f"{options.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
-    if sum(shape.bounds() is not None for shape in scene.shapes) > 1:  # one of which another may hide
-        from minirt.rendering.queries.preview import hidden_shapes
+    from minirt.rendering.notices import notices_about
 
-        for notice in hidden_shapes(scene):
-            say(f"notice: {notice}")
+    for notice in notices_about(scene, None, options.size or size_of(scene)):
+        say(f"notice: {notice}")
     return OK
 
 

@@ -32,7 +32,8 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
     from minirt.scene.parser import example, load_for_window
 
     path = options.scene[0]
-    options.lenient = options.cone or options.lenient
+    words = (options.cone, options.camera_as, options.up and f"{options.up}-up")
+    options.lenient = " ".join(filter(None, words)) or options.lenient
     with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
         if options.example:
             reading = Reading(example(options.example), ())

@@ -14,6 +14,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 
+MOST_NAMED = 3  # shapes in a notice
 NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for these sources and this processor"
 
 
@@ -56,6 +57,12 @@ def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -
 def plurals(elements: set[type[Shape]]) -> str:
     """List the names of some kinds of shapes, in the order of the registry: spheres, planes."""
     return ", ".join(kind.element.plural for kind in ALL_KINDS if kind.element in elements)
+
+
+def names_of(shapes: Sequence[Shape], indices: Sequence[int]) -> str:
+    """Name the first of some shapes."""
+    names = ", ".join(shape_name(shapes, index) for index in indices[:MOST_NAMED])
+    return names + ", ..." * (len(indices) > MOST_NAMED)
 
 
 def shape_name(shapes: Sequence[Shape], index: int) -> str:

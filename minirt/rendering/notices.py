@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from minirt.rendering.packing.features import features
-from minirt.rendering.queries.preview import hidden_shapes, notice_about
+from minirt.rendering.queries.unseen import notice_about, without_effect
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.settings import RenderSettings, rendered
 from minirt.rendering.tone_mapping import clipped_pixels
@@ -17,10 +17,14 @@ NOT_COMPUTED = "a notice about the picture cannot be computed"
 
 
 def notices_about(
-    scene: Scene, pixels: np.ndarray, size: tuple[int, int], single: Packing | None = None, samples: object = None
+    scene: Scene,
+    pixels: np.ndarray | None,
+    size: tuple[int, int],
+    single: Packing | None = None,
+    samples: object = None,
 ) -> Iterator[str]:
-    """Yield sentences about a picture of this size, or a region of it, (h, w, channels). The packing is that of a
-    picture in single precision which this process has rendered, with so many samples a pixel.
+    """Yield sentences about a picture of this size, or a region of it, (h, w, channels), None without it. The packing
+    is that of a picture in single precision which this process has rendered, with so many samples a pixel.
 
     A notice costs nobody the picture: numbers that leave the range of a float64 or of a field are told in its place.
     """
@@ -30,11 +34,11 @@ def notices_about(
 
             for each in lost_in_single(scene, single, *size):
                 yield f"single precision cannot show {each}"
-        if pixels.shape[1::-1] == size and (text := notice_about(scene, pixels)):
+        if (pixels is None or pixels.shape[1::-1] == size) and (text := notice_about(scene, size, pixels)):
             yield text
         if samples == 1 and features(scene) & {"soft", "lens"}:
             yield "with one sample a pixel the size of a light or lens has no effect: try --samples auto"
-        yield from hidden_shapes(scene)
+        yield from without_effect(scene, size)
     except (ArithmeticError, ValueError) as error:
         yield f"{NOT_COMPUTED}: {error}"
 

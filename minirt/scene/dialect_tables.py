@@ -6,13 +6,12 @@ Other first words are those of elements if they have another case, or if the tit
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import radians, tan
+from math import atan2, degrees, pi, radians, tan
 from pathlib import Path
 from typing import Any
 
-from minirt.fields import clamp
+from minirt.fields import Triple, clamp, cos_and_sin, neat, upright
 from minirt.scene.elements import linear_combination
-from minirt.shapes import Cone
 
 # Sorts of changes, as notices tell them.
 LEFT_OUT = "words without a meaning here are left out"
@@ -33,7 +32,7 @@ SLASHES = "comments behind // become comments behind #"
 DARK = "there is no ambient light, and what no light reaches is black"
 ORDER = "fields in another order become those of this format, without turns and second axes"
 APEX = "cones begin at their apex and have a diameter; --cone base or --cone angle reads them in another way"
-CONVENTION = "cones are read as --cone says"
+CONVENTION = "{} are read as {} says"
 RENAMED = "elements of other names become those of this format"
 SECOND = "cameras after the first become further ones"
 EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
@@ -144,11 +143,31 @@ ROWS: tuple[tuple[str, Callable[..., str], str], ...] = (
 )
 GUESSES = EXPONENT, REFLECTIVITY
 
-# Fields of cones as programs mean them whose point is the centre of the base, or whose diameter is half the angle.
-CONES: dict[str, Callable[[Cone], dict[str, Any]]] = {
-    "base": lambda cone: {
+
+def turned(angles: Triple) -> Triple:
+    """Turn (0, 0, 1) about x, y and z, in this order and right-handed: by shares of half a turn where no number is
+    beyond 1, by radians where none is beyond 2 pi, and by degrees otherwise."""
+    largest = max(map(abs, angles))
+    unit = 180.0 if largest <= 1 else 180 / pi if largest <= 2 * pi else 1.0
+    (a, b), (c, d), (e, f) = (cos_and_sin(unit * angle) for angle in angles)
+    x, y, z = a * d, -b, a * c
+    return neat((x * e - y * f, x * f + y * e, z))
+
+
+# Fields of cones whose point is the centre of the base, or whose diameter is half the angle; of cameras whose direction
+# is angles or points backwards, or whose picture shows z upright. The second argument is the direction as written.
+Meanings = dict[str, Callable[[Any, Triple], dict[str, Any]]]
+CONES: Meanings = {
+    "base": lambda cone, _: {
         "apex": linear_combination(1.0, cone.apex, cone.height, cone.axis),
         "axis": linear_combination(-1.0, cone.axis, 0.0, cone.axis),
     },
-    "angle": lambda cone: {"diameter": 2 * cone.height * tan(radians(cone.diameter))},
+    "angle": lambda cone, _: {"diameter": 2 * cone.height * tan(radians(cone.diameter))},
 }
+CAMERAS: Meanings = {
+    "angles": lambda _, written: {"direction": turned(written)},
+    "reversed": lambda camera, _: {"direction": linear_combination(-1.0, camera.direction, 0.0, camera.direction)},
+    "z-up": lambda camera, _: {"roll": round(degrees(atan2(*(z + 0.0 for _, _, z in upright(*camera.direction)))), 9)},
+}
+OPTIONS = {"base": "--cone base", "angle": "--cone angle", "angles": "--camera-as angles"}
+OPTIONS |= {"reversed": "--camera-as reversed", "z-up": "--up z"}

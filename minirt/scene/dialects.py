@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, positional_fields
 from minirt.errors import FieldError, FileError, Problem, printable, quoted
-from minirt.fields import Colour, Direction, Field, Length, Real, Three, clamp, unit
+from minirt.fields import Colour, Direction, Field, Length, Real, Three, Triple, clamp, unit
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
 from minirt.materials import pictures
@@ -293,7 +293,7 @@ def unread_lines(log: Log) -> int:
 def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
     """Do what takes all lines of a file: choose its camera, give it an ambient light, tell cones and missing shapes."""
     promote_camera(items, seen, log)
-    read_cones(items, log)
+    apply_conventions(items, log)
     unread = [*log.changes.get(tables.MISSING, ()), *log.changes.get(tables.INCOMPLETE, ())]
     if unread and not any(isinstance(item, SHAPES) for item in items):
         line, code = unread[0]
@@ -314,17 +314,38 @@ def promote_camera(items: list[Any], seen: dict[str, int], log: Log) -> None:
         log.change(line_from(seen[first.code], first.source), tables.RENAMED, first.code)
 
 
-def read_cones(items: list[Any], log: Log) -> None:
-    """Give cones the meaning that was asked for, or say which one they have in a file that is in a dialect."""
-    cones = [(number, item) for number, item in enumerate(items, 1) if isinstance(item, Cone)]
-    meant = tables.CONES.get(str(log.lenient))
-    for number, cone in cones if meant or log.changes else ():
-        line = line_from(number, cone.source)
-        log.change(line, tables.CONVENTION if meant else tables.APEX, cone.code)
-        try:
-            items[number - 1] = cone.replace(**meant(cone)) if meant else cone
-        except ValueError as error:
-            log.error(line, f"{error} (--cone {log.lenient})", 1)
+def apply_conventions(items: list[Any], log: Log) -> None:
+    """Give cones and cameras the meaning that was asked for, or say which one cones have in a file in a dialect.
+
+    ValueError for a word that asks for nothing.
+    """
+    words = log.lenient.split() if isinstance(log.lenient, str) else []
+    if unknown := [word for word in words if word not in tables.OPTIONS]:
+        raise ValueError(f"lenient must be a bool, or some of {' '.join(tables.OPTIONS)}, got {quoted(unknown[0])}")
+    is_dialect = bool(log.changes)
+    for number, item in enumerate(items, 1):
+        if not isinstance(item, Cone | Camera):
+            continue
+        line = line_from(number, item.source)
+        table = tables.CONES if isinstance(item, Cone) else tables.CAMERAS
+        meant = [word for word in table if word in words]
+        if is_dialect and isinstance(item, Cone) and not meant:
+            log.change(line, tables.APEX, item.code)
+        for word in meant:
+            log.change(line, tables.CONVENTION.format(item.plural, tables.OPTIONS[word]), item.code)
+            before, written = items[number - 1], direction_as_written(line, log)
+            try:
+                items[number - 1] = before.replace(**table[word](before, written))
+            except ValueError as error:
+                log.error(line, f"{error} ({tables.OPTIONS[word]})", 1)
+
+
+def direction_as_written(line: Line, log: Log) -> Triple:
+    """Return the second three numbers of a line, before they were scaled to a direction."""
+    scaled = (words for each, words in log.changes.get(tables.SCALED, ()) if each.number == line.number)
+    text = next(scaled, "") or TRIPLE.findall(line.text)[1]
+    x, y, z = map(float, re.findall(NUMBER, text)[:3])
+    return x, y, z
 
 
 def suggestions(problems: Iterable[Problem]) -> Iterator[str]:

@@ -74,8 +74,7 @@ def parse(
     Textures and meshes are looked for in `folder`, by default that of the file.
 
     `lenient` translates lines of older scenes (several `L`, blanks around commas) and of other programs, with notices
-    (`minirt.scene.dialects`). "base" and "angle" do so, too, and read cones whose
-    point is the centre of the base, or whose diameter stands for half the angle at the apex, in degrees.
+    (`minirt.scene.dialects`). A text of words does so, too, and reads fields as the words say, see `minirt.load`.
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):

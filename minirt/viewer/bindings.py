@@ -105,7 +105,7 @@ BINDINGS = (
     once(LOOK, "pan", "slide the camera", "middle drag"),
     in_steps(LOOK, "nearer", "camera: nearer; other elements: increase the active value", "wheel up"),
     in_steps(LOOK, "farther", "camera: farther; other elements: decrease the active value", "wheel down"),
-    once(LOOK, "look at", "bring the selected element into view", "F"),
+    once(LOOK, "look at", "bring the selected element into view; the camera: the scene", "F"),
     once(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
     once(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
     once(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),

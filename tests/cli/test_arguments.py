@@ -187,7 +187,9 @@ def test_the_example_of_the_subject_is_read_and_a_camera_that_shows_it_is_named(
     path = str(ROOT / "scenes" / "subject-as-printed.rt")
     ended = run(path, "--check")
     assert ended.status == 0
-    assert ended.out.endswith(b"no errors, 3 shapes, 1 lights\n")
+    found, told = ended.out.splitlines()
+    assert found.endswith(b"no errors, 3 shapes, 1 lights")
+    assert told.startswith(b"notice: nothing is in view; this line would show the scene: C ")
     assert ended.err.startswith("notice: ")
     ended = run(path, "-o", "printed.png", "--size", "32x18")
     assert ended.status == 0

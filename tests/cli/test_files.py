@@ -332,6 +332,19 @@ def test_standard_input_that_is_closed_is_an_error(run: Run, monkeypatch: pytest
     assert (ended.status, ended.err) == (1, "Error\nstandard input: cannot be read: it is closed\n")
 
 
+def test_a_scene_that_shows_nothing_names_options_that_show_it(run: Run, folder: Path) -> None:
+    (folder / "away.rt").write_text("A 0.2 255,255,255\nC 0,0,9 0,0.5,0 60\nsp 0,9,9 2 255,0,0\nsp 3,9,9 1 9,9,9\n")
+    assert b"in view" not in run("away.rt", "--check").out
+    told = run("away.rt", "--check", "--camera-as", "reversed").out.decode()
+    assert "notice: nothing is in view: all is behind the eye; this line would show the scene: C " in told
+    (folder / "away.rt").write_text("A 0.2 255,255,255\nC 0,0,9 0,0.5,0 60\nsp 9,0,9 2 255,0,0\nsp 9,0,8 1 9,9,9\n")
+    assert "; --camera-as angles shows 2 of 2; " in run("away.rt", "--check").out.decode()
+    ended = run("away.rt", "-o", "a.png", "--size", "64x36", "--camera-as", "angles", "--up", "z")
+    assert "cameras are read as --camera-as angles says: C" in ended.err
+    assert "in view" not in ended.err
+    assert "C 0,0,9 1,0,0 60 roll:90" in pillow.open(folder / "a.png").text["miniRT scene"]
+
+
 def test_the_error_of_a_file_in_a_dialect_says_what_its_lines_may_mean(run: Run, folder: Path) -> None:
     (folder / "other.rt").write_text("A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nsp 0,0,0 2,5 red 100\nqd 1,2,3 4 5,6,7\n")
     status, _, errors = run("other.rt", "-o", "a.png")

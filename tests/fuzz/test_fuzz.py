@@ -69,7 +69,7 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
         ("replays", "wait x", "minirt.mlx.recording.Line.seconds", lambda self, at: float(self.words[at]), ValueError),
         ("arguments", "", "minirt.cli.MiniRTError", SceneError, MiniRTError),
         ("extremes", LENS, "minirt.rendering.packing.camera.CLOSEST", 0.0, Warning),
-        ("extremes", "", "minirt.rendering.queries.preview.FARTHEST", inf, AssertionError),
+        ("extremes", "", "minirt.rendering.queries.unseen.FARTHEST", inf, AssertionError),
     ],
 )
 def test_a_wrong_program_is_found(

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from minirt.errors import SceneError
+from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import dialect_tables as dialects
 from minirt.scene import dump, load, loads, parse
 from tests.paths import ROOT
@@ -170,6 +171,49 @@ def test_cones_are_read_as_the_program_means_them_that_the_file_is_from() -> Non
     assert loads(dump(loads(text, lenient="base"))).cones == by_base
     with pytest.raises(SceneError, match="diameter must be > 0"):
         loads(scene_with("co 0,0,0 0,1,0 100 4 9,8,7"), lenient="angle")
+
+
+HALF = 0.5**0.5
+DIRECTIONS = {  # as written, the words of `lenient`, and what they mean
+    ("0,0,1", "reversed"): (0, 0, -1),
+    ("0.5,0,0", "angles"): (0, -1, 0),  # shares of 180 degrees
+    ("0,0.25,0", "angles"): (HALF, 0, HALF),
+    ("0,1,0", "angles"): (0, 0, -1),
+    ("-90,0,90", "angles"): (-1, 0, 0),  # degrees: up about x, and then about z
+    ("0, 1.5707963267948966, 0", "angles"): (1, 0, 0),  # radians, with blanks
+    ("0 45 0", "angles reversed"): (-HALF, 0, -HALF),
+    ("0,0,0", "angles"): (0, 0, 1),
+}
+
+
+@pytest.mark.parametrize(("written", "words"), DIRECTIONS)
+def test_directions_of_cameras_are_read_as_the_program_means_them(written: str, words: str) -> None:
+    text = f"A 1 255,255,255\nC 0,1,0 {written} 70\nc 0,1,0 {written} 70\n{BALL}\n"
+    scene, notices = parse(text, lenient=words)
+    assert scene.camera.direction == pytest.approx(DIRECTIONS[written, words], abs=1e-9)
+    assert [each.direction for each in scene.cameras] == [scene.camera.direction] * 2
+    assert f"cameras are read as --camera-as {words.rsplit(maxsplit=1)[-1]} says: C" in [
+        each.message for each in notices
+    ]
+    assert loads(dump(scene)).cameras == scene.cameras
+
+
+ROLLS = {"1,0,0": 90, "-1,0,0": -90, "0,1,0": 0, "0,-1,0": 180, "0,0,1": 0, "0,0,-1": 0}  # along z there is no up
+
+
+@pytest.mark.parametrize(("direction", "roll"), ROLLS.items())
+def test_z_is_up_in_the_picture_that_asks_for_it(direction: str, roll: float) -> None:
+    (camera,) = loads(f"A 1 255,255,255\nC 0,1,0 {direction} 70\n{BALL}\n", lenient="z-up").cameras
+    assert camera.roll == roll
+    _, up, forward = camera_frame(camera)
+    assert up[2] == pytest.approx((1 - forward[2] ** 2) ** 0.5)
+
+
+def test_a_word_of_the_lenient_reader_that_is_unknown_is_named() -> None:
+    with pytest.raises(
+        ValueError, match="lenient must be a bool, or some of base angle angles reversed z-up, got 'up'"
+    ):
+        loads(f"A 1 255,255,255\nC 0,1,0 0,0,1 70\n{BALL}\n", lenient="angles up")
 
 
 def test_pictures_are_found_beside_the_file(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ newer than the picture: those of a new scene are drawn with its first picture, o
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 
 from minirt.errors import MiniRTError, RenderError
@@ -17,6 +18,7 @@ from minirt.rendering.queries.pick import Picked
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.bindings import Keymap
+from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
@@ -146,11 +148,15 @@ class Session:
         if latest.job.scene is not self.saved and latest.job.scene is not self.opened:
             return
         self._judged = self.saved
-        if latest.pixels is not None and not self.state.message:
+        if latest.pixels is not None:
             from minirt.rendering.notices import notices_about
+            from minirt.rendering.queries.unseen import SHOWN_BY
 
             height, width = latest.pixels.shape[:2]
-            self.say(next(notices_about(latest.job.scene, latest.pixels[..., :3], (width, height)), ""))
+            before = f"{self.state.message}\n" if self.state.message else ""
+            for notice in islice(notices_about(latest.job.scene, latest.pixels[..., :3], (width, height)), 1):
+                why, can_be_shown, _ = notice.partition(SHOWN_BY)
+                self.say(before + (f"{why}; {named('F')} brings the scene into view" if can_be_shown else notice))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""

@@ -24,7 +24,8 @@ WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0,
 LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
 LENS = 1 / 40  # diameter of a new lens by the distance in focus
 MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border
-ASPECT = 9 / 16  # height / width of a usual window
+USUAL_SIZE = 16, 9  # of a window, in any unit
+ASPECT = USUAL_SIZE[1] / USUAL_SIZE[0]
 APPROACH = 1 / 10  # of the distance to the scene's centre: a step of the wheel
 NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
 POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
@@ -170,8 +171,13 @@ def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
 
 
 def look_at(state: State, _amount: float, now: float) -> State:
-    """Move the camera, without turning it, so that the selected element is centred and fills the picture."""
+    """Move the camera, without turning it, so that the selected element is centred and fills the picture; if the camera
+    is selected itself, move and turn it so that it shows the scene."""
+    from minirt.rendering.queries.unseen import showing_camera
+
     element, camera = state.element, state.scene.camera
+    if isinstance(element, Camera) and (showing := showing_camera(state.scene, USUAL_SIZE)):
+        return state.edit_camera(showing, "", now)
     bounds = extent(element)
     if bounds is None:
         return state.with_message(f"select an element with a position to look at: {element.title} has none")

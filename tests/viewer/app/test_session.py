@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from minirt.errors import FileError, RenderError
 from minirt.mlx import Button, Cursor, Key
+from minirt.rendering.queries.pick import pick
 from minirt.scene import Camera
 from minirt.shapes import Shape
+from minirt.viewer.app import commands
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.marks import GOLD, bgra, outline_pixels
 from minirt.viewer.display.overlay import HudLevel
@@ -130,12 +133,35 @@ def test_a_first_picture_with_nothing_in_view_is_remarked_on_once():
     session.update()
     while harness.painter.busy:
         harness.finish(0.001)
-    told = "nothing is in view: all is behind the eye; this line would show the scene: C "
-    assert session.state.message.startswith(told)
+    assert session.state.message == "nothing is in view: all is behind the eye; F brings the scene into view"
     harness.play("press d")
     assert session.state.message == ""
     harness.finish(0.001)
     assert session.state.message == ""
+
+
+def test_a_key_brings_a_scene_in_a_dialect_into_view_of_which_nothing_is_seen(tmp_path: Path) -> None:
+    harness = SessionHarness()
+    session, path = harness.session, tmp_path / "other.rt"
+    path.write_text("A 0.2 255,255,255\nC 0, 0, 9 0,0,1 60\nL 0,9,0 1\nsp 0,0,0 2 255,0,0\nsp 3,0,0 1 9,9,9\n")
+    commands.open_another(session, path)
+    session.update()
+    while harness.painter.busy:
+        harness.finish(0.001)
+    _, translated, notice = session.state.message.split("\n")
+    assert translated == commands.TRANSLATED.format("other.rt")
+    assert notice == (
+        "nothing is in view: all is behind the eye; --camera-as reversed shows 2 of 2; F brings the scene into view"
+    )
+    before = session.state.scene.camera
+    harness.play("press f")
+    camera = session.state.scene.camera
+    assert camera != before
+    assert {id(pick(session.state.scene, 64, 36, x, y)[0]) for x in range(0, 64, 2) for y in range(0, 36, 2)} >= {
+        *map(id, session.state.scene.spheres)
+    }
+    harness.play("press Ctrl+z")
+    assert session.state.scene.camera == before
 
 
 @pytest.mark.parametrize(

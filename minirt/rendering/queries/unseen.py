@@ -1,0 +1,263 @@
+"""Notices about what of a scene is not seen, with a camera that would show it, and about what has no effect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from itertools import chain, islice, product
+from math import atan2, ceil, cos, dist, floor, log10, pi, radians, sin, tan
+
+import numpy as np
+
+from minirt.errors import MiniRTError
+from minirt.fields import FARTHEST, Triple, spelled
+from minirt.rendering.notes import names_of, shape_name
+from minirt.rendering.packing.camera import camera_frame, slopes_at_edges
+from minirt.rendering.packing.lights import emitting_lights
+from minirt.rendering.packing.materials import encloses
+from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
+from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.scene import Camera, Scene, describe, load
+from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere
+
+# Places in a picture at which rays look for shapes, (n, 2), in shares of its width and height: some find one in most
+# pictures. The last ones are for the rectangle around one shape, and begin in its middle.
+MANY, SOME = ((np.argwhere(np.ones(counts)) + 0.5) / counts for counts in ((32, 18), (8, 5)))
+AIMED = (0.5 + np.arange(64)[:, None] * (0.7548776662, 0.5698402910)) % 1.0
+MOST_PRIMITIVES = 20_000  # that are looked for: in a second
+TESTS = 4_000_000  # of rays against primitives, which choose a camera
+AZIMUTHS, ELEVATIONS = 8, (25.0, -25.0, 70.0)  # degrees: places around the scene from which a camera may look
+NARROWEST, WIDEST, USUAL = 20.0, 100.0, 60.0  # degrees of the field of view: others are replaced by the usual one
+MARGIN = 1.15  # of the distance at which the bounding ball of the scene fills the picture
+IN_PLANE = 1e-9  # distance from a plane, relative to the coordinates of the eye
+CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid)
+UNBOUNDED = ((-np.inf,) * 3, (np.inf,) * 3)  # box of a plane
+MOST_COMPARED = 200  # shapes of which one may be inside of another
+CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
+DIGITS = 3  # of coordinates, relative to the size of the scene
+PLACES = 4  # decimals of directions
+SHOWN_BY = "; this line would show the scene: "
+
+
+def notice_about(scene: Scene, size: tuple[int, int], pixels: np.ndarray | None = None) -> str:
+    """Return why a picture of that size, or its pixels (h, w, channels) where it is rendered, has one colour or shows
+    none of the bounded shapes, and which camera would show the scene; empty for any other."""
+    is_even = pixels is not None and is_blank(pixels)
+    if not scene.runs:
+        return "the scene has no shapes" if is_even else ""
+    arrays = arrays_of(scene)
+    if arrays is None:
+        return ""
+    bounded = is_bounded(arrays)
+    seen = visible_shapes(arrays, scene.camera, size, MANY if is_even else SOME)
+    if not bounded[seen].any():
+        seen = np.union1d(visible_shapes(arrays, scene.camera, size), aimed_shapes(arrays, scene.camera, size))
+    if len(seen) and not is_lit(scene):
+        return "no light is on: all that is in view is black" + ", but for the background" * bool(scene.background)
+    reason, options = around_eye(scene, arrays, is_even), ""
+    if not reason:
+        if not is_even and (bounded[seen].any() or not bounded.any()):
+            return ""
+        reason, options = reason_for(scene, arrays, seen), "".join(other_readings(scene, arrays, size))
+    camera = showing_camera(scene, size) if len(seen) < len(scene.shapes) else None
+    return reason + options + (SHOWN_BY + line_of(camera) if camera else "")
+
+
+def arrays_of(scene: Scene) -> ShapeArrays | None:
+    """Return the shapes of a scene for rays that look for them; None where that would take too long."""
+    if sum(map(len, scene.runs)) > MOST_PRIMITIVES or sum(each.parts for each in scene.shapes) > MOST_PRIMITIVES:
+        return None
+    arrays = ShapeArrays()
+    arrays.update(*scene.runs)
+    return arrays
+
+
+def is_bounded(arrays: ShapeArrays) -> np.ndarray:
+    """Return which shapes are bounded, (s,)."""
+    return np.array([not shape.infinite for shape in arrays.shapes], bool)
+
+
+def is_lit(scene: Scene) -> bool:
+    """Whether anything gives light to shapes, or one of them shows the light of the background."""
+    ambient, background = scene.ambient, scene.background
+    is_ambient = bool(ambient and ambient.brightness and any(ambient.colour))
+    is_bright = bool(background and (isinstance(background.paint, str) or any(background.paint)))
+    shows_light = (each.glow or (is_bright and (each.mirror or each.glass)) for each in scene.shapes)
+    return is_ambient or bool(emitting_lights(scene)) or any(shows_light)
+
+
+def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
+    """Return which shape the eye is in, if that hides other shapes or the picture is even."""
+    eye, bounded, (starts, ends) = np.array(scene.camera.position), is_bounded(arrays), arrays.boxes.swapaxes(0, 1)
+    for index in np.flatnonzero(~bounded | ((starts <= eye) & (eye <= ends)).all(axis=1)).tolist():
+        shape, hides = arrays.shapes[index], ""
+        if flat := shape.flat():
+            is_in = is_even and abs(np.dot(np.subtract(eye, flat[0]), flat[1])) <= IN_PLANE * (1 + np.abs(eye).max())
+        elif is_in := encloses(shape, eye):
+            outside = np.flatnonzero(bounded & ((starts > ends[index]) | (ends < starts[index])).any(axis=1)).tolist()
+            hides = f", which hides {names_of(scene.shapes, outside)}" if outside and not shape.glass else ""
+        if is_in and (is_even or hides):
+            return f"the eye is in{'' if flat else 'side'} {shape_name(scene.shapes, index)}{hides}"
+    return ""
+
+
+def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
+    """Return why a picture has one colour or no bounded shape, in which the shapes with the indices `seen` are."""
+    bounded = is_bounded(arrays)
+    if bounded[seen].any() or (len(seen) and not bounded.any()):
+        return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene.shapes, seen.tolist())}"
+    if len(seen):
+        kinds = [type(scene.shapes[index]) for index in seen.tolist()]
+        names = " and ".join(kind.title if kinds.count(kind) == 1 else kind.plural for kind in dict.fromkeys(kinds))
+        others = f"none of the {bounded.sum()} shapes" if bounded.sum() > 1 else "no shape"
+        return f"{others} but the {names} is in view"
+    eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
+    depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
+    return "nothing is in view" + ": all is behind the eye" * bool(depths.max() < 0 and bounded.all())
+
+
+def other_readings(scene: Scene, arrays: ShapeArrays, size: tuple[int, int]) -> Iterator[str]:
+    """Yield which options read the camera of the scene's file in another way, so that it sees bounded shapes; none if
+    it was read so already."""
+    from minirt.scene.dialect_tables import CAMERAS, OPTIONS
+
+    bounded, ways = is_bounded(arrays), list[bool | str]((True, *CAMERAS))
+    with suppress(MiniRTError, IndexError):  # the file was changed or deleted since
+        as_written, *others = (load(scene.file or "", way).scene.cameras[scene.shown] for way in ways)
+        for word, camera in zip(CAMERAS, others, strict=True) if as_written.direction == scene.camera.direction else ():
+            if count := bounded[visible_shapes(arrays, camera, size)].sum():
+                yield f"; {OPTIONS[word]} shows {count} of {bounded.sum()}"
+
+
+def is_blank(pixels: np.ndarray) -> bool:
+    """Whether all pixels have the same colour, up to a level of dithering."""
+    coarse = pixels[::32, ::32]
+    return bool(np.ptp(coarse, axis=(0, 1)).max() <= 1 and np.ptp(pixels, axis=(0, 1)).max() <= 1)
+
+
+def visible_shapes(arrays: ShapeArrays, camera: Camera, size: tuple[int, int], places: np.ndarray = MANY) -> np.ndarray:
+    """Return the indices of the shapes that are seen at some places of a picture of that size."""
+    x, y = (places * size).T
+    _, primitives = nearest_hits(arrays, *camera_ray(camera, *size, x, y))
+    return np.unique(arrays.owner[primitives[primitives >= 0]])
+
+
+def aimed_shapes(arrays: ShapeArrays, camera: Camera, size: tuple[int, int]) -> np.ndarray:
+    """Return the indices of the shapes that rays at all bounded ones hit first; all where that takes too long."""
+    low, high = np.clip(rectangles(camera, size, arrays.boxes[is_bounded(arrays)]), 0.0, 1.0)[:, :, None]
+    places = (low + AIMED * (high - low))[(low < high).all(axis=(1, 2))].reshape(-1, 2)
+    is_quick = len(places) * len(arrays.slots) <= TESTS
+    return visible_shapes(arrays, camera, size, places) if is_quick else np.arange(len(arrays.shapes))
+
+
+def rectangles(camera: Camera, size: tuple[int, int], boxes: np.ndarray) -> np.ndarray:
+    """Return the least and the greatest x and y of boxes (n, 2, 3) in a picture, in shares of its width and height,
+    (2, n, 2): -1 for a box behind the eye, 0 and 1 for one that is so in part."""
+    right, up, forward = camera_frame(camera)
+    corners = boxes[:, [*product((0, 1), repeat=3)], [0, 1, 2]] - camera.position
+    depths = (corners @ forward)[..., None]
+    with np.errstate(all="ignore"):
+        slopes = corners @ np.transpose([right, np.negative(up)]) / depths
+        places = 0.5 + 0.5 * slopes / slopes_at_edges(camera, *size)
+    ends = [(depths > 0).all(axis=1), (depths <= 0).all(axis=1)]
+    return np.stack([np.select(ends, [places.min(1), -1.0], 0.0), np.select(ends, [places.max(1), -1.0], 1.0)])
+
+
+def showing_camera(scene: Scene, size: tuple[int, int]) -> Camera | None:
+    """Return the first camera that shows most of the bounded shapes, if there are any; None where none shows one."""
+    arrays = arrays_of(scene)
+    if not arrays or not len(arrays.shapes):
+        return None
+    bounded = is_bounded(arrays)
+    wanted = bounded | ~bounded.any()
+    low, high = arrays.boxes[wanted, 0].min(axis=0), arrays.boxes[wanted, 1].max(axis=0)
+    x, y, z = ((low + high) / 2).tolist()
+    cameras = candidates(scene.camera, (x, y, z), dist(low, high) / 2 or 1.0, size[1] / size[0])
+    cameras = cameras[: max(1, TESTS // (len(MANY) * len(arrays.slots)))]
+    shown = [wanted[visible_shapes(arrays, camera, size)].sum() for camera in cameras]
+    return cameras[np.argmax(shown)] if max(shown, default=0) else None
+
+
+def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> list[Camera]:
+    """Return cameras all around a ball that see it whole, those near to where the camera is first, and none beyond the
+    range of coordinates; the last one turns to the ball where the camera is."""
+    fov = camera.fov if NARROWEST <= camera.fov <= WIDEST else USUAL
+    half = tan(radians(fov) / 2) * min(1.0, aspect)
+    distance = MARGIN * radius / sin(atan2(half, 1.0))
+    x, _, z = (eye - middle for eye, middle in zip(camera.position, centre, strict=True))
+    start = atan2(x, z) if x or z else pi
+    digits = DIGITS - 1 - floor(log10(radius))
+    turns = [(-1) ** i * ceil(i / 2) * 2 * pi / AZIMUTHS for i in range(AZIMUTHS)]
+    cameras = []
+    for elevation in map(radians, ELEVATIONS):
+        for azimuth in (start + turn for turn in turns):
+            towards = cos(elevation) * sin(azimuth), sin(elevation), cos(elevation) * cos(azimuth)
+            eye = tuple(round(a + distance * b, digits) for a, b in zip(centre, towards, strict=True))
+            if max(map(abs, eye)) > FARTHEST:
+                continue
+            direction = tuple(round(-b, PLACES) for b in towards)
+            cameras.append(camera.replace(position=eye, direction=direction, fov=fov, roll=0.0))
+    if away := dist(centre, camera.position):  # walls may hide the scene from all sides
+        direction = tuple(round((b - a) / away, PLACES) for a, b in zip(camera.position, centre, strict=True))
+        cameras.append(camera.replace(direction=direction, fov=fov, roll=0.0))
+    return cameras
+
+
+def line_of(camera: Camera) -> str:
+    code, position, _, *others = describe(camera).split()
+    direction = ",".join(spelled(round(part, PLACES)) for part in camera.direction)
+    return " ".join((code, position, direction, *others))
+
+
+# Notices about what has no effect. Only what is certain is told, of the first `MOST_COMPARED` shapes.
+
+
+def covers(shape: Shape) -> bool:
+    """Whether one square of a checkerboard covers all of a shape whose u and v run from 0 to 1."""
+    is_usual = not (shape.infinite or shape.uv or isinstance(shape, Mesh))
+    return bool(is_usual and shape.checker and shape.checker.size >= 1)
+
+
+def is_clear(shape: Shape) -> bool:
+    """Whether a shape with an inside is of clear glass, which does not show its colour."""
+    is_glass = bool(shape.glass and shape.glass.share == 1 and not shape.tint)
+    return is_glass and shape.solid and not shape.infinite and len({*shape.colour}) > 1
+
+
+LOST: dict[str, Callable[[Shape], bool]] = {
+    "the checker: of {} is not seen: a square with sides of 1 covers the shape, try 0.125": covers,
+    "the colour of {} is not seen: it is of clear glass, which tint:R,G,B colours": is_clear,
+}
+
+
+def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
+    """Yield sentences about what has no effect on a picture of that size."""
+    shapes = [*islice(chain.from_iterable(scene.runs), MOST_COMPARED)]
+    boxes = np.array([shape.bounds() or UNBOUNDED for shape in shapes]).reshape(-1, 2, 3)
+    yield from hidden(scene, shapes, boxes)
+    bounded = np.flatnonzero(np.isfinite(boxes).all(axis=(1, 2)))
+    low, high = rectangles(scene.camera, size, boxes[bounded])
+    tiny = (((high - low) * size < 1) & (low > 0) & (high < 1)).all(axis=1)
+    if tiny.any():
+        yield f"smaller than a pixel: {names_of(shapes, bounded[tiny].tolist())}"
+    for sentence, is_lost in LOST.items():
+        if found := [index for index, shape in enumerate(shapes) if is_lost(shape)]:
+            yield sentence.format(names_of(shapes, found))
+
+
+def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str]:
+    """Yield sentences about shapes and lamps inside an opaque convex shape that the eye is not in: the corners of their
+    bounding boxes, grown, are inside."""
+    eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights, 1) if lamp.position]
+    told = [f"{shape_name(shapes, index)} is never seen" for index in range(len(shapes))]
+    told += [f"light {number} lights nothing" for number, _ in lamps]
+    extents = [np.add(lamp.position or 0.0, np.multiply(lamp.size or 0.0, [[-0.5], [0.5]])) for _, lamp in lamps]
+    starts, ends = np.concatenate([boxes, np.reshape(extents, (-1, 2, 3))]).swapaxes(0, 1)
+    grown = CERTAIN * (ends - starts)
+    for outer, shape in enumerate(shapes):
+        if isinstance(shape, CONVEX) and not shape.glass and not scene.camera.lens and not encloses(shape, eye):
+            within = (starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)
+            for index in np.flatnonzero(within).tolist():
+                corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
+                if index != outer and all(encloses(shape, np.array(at)) for at in corners):
+                    yield f"{told[index]}: it is inside {shape_name(shapes, outer)}, which is opaque"
