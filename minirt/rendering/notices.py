@@ -17,11 +17,7 @@ NOT_COMPUTED = "a notice about the picture cannot be computed"
 
 
 def notices_about(
-    scene: Scene,
-    pixels: np.ndarray | None,
-    size: tuple[int, int],
-    single: Packing | None = None,
-    samples: object = None,
+    scene: Scene, image: np.ndarray | None, size: tuple[int, int], single: Packing | None = None, samples: object = None
 ) -> Iterator[str]:
     """Yield sentences about a picture of this size, or a region of it, (h, w, channels), None without it. The packing
     is that of a picture in single precision which this process has rendered, with so many samples a pixel.
@@ -34,7 +30,7 @@ def notices_about(
 
             for each in lost_in_single(scene, single, *size):
                 yield f"single precision cannot show {each}"
-        if (pixels is None or pixels.shape[1::-1] == size) and (text := notice_about(scene, size, pixels)):
+        if (image is None or image.shape[1::-1] == size) and (text := notice_about(scene, size, image)):
             yield text
         if samples == 1 and features(scene) & {"soft", "lens"}:
             yield "with one sample a pixel the size of a light or lens has no effect: try --samples auto"
