@@ -109,5 +109,5 @@ def text_of(data: bytes, longest: int) -> bytes:
         except zlib.error:
             raise PngError("the PNG picture is damaged: its text cannot be decompressed") from None
     if len(text) > longest:
-        raise PngError(f"the text in the PNG picture is larger than {longest // 2**20} MiB")
+        raise PngError(f"the text in the PNG picture is larger than {longest // 2**10:,} KiB")
     return text

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import BinaryIO, TypeVar
 
 from minirt.errors import FileError, RenderError
-from minirt.helpers.system import ForkSafeLock
+from minirt.helpers.system import ForkSafeLock, size_in_words
 
 if sys.platform != "win32":
     import fcntl
@@ -67,7 +67,8 @@ def told_errors(path: str | os.PathLike[str], what: str = "cannot write") -> Ite
     try:
         yield
     except OSError as error:
-        raise RenderError(f"{os.fspath(path)}: {what}: {error.strerror or error}") from None
+        reason = "there is no such folder" if isinstance(error, FileNotFoundError) else error.strerror or error
+        raise RenderError(f"{os.fspath(path)}: {what}: {reason}") from None
 
 
 def create(path: str | os.PathLike[str], data: bytes) -> None:
@@ -135,7 +136,7 @@ def status_of_existing(target: Path) -> os.stat_result | None:
     except FileNotFoundError:
         return None
     if not stat.S_ISREG(status.st_mode):
-        raise OSError(errno.EINVAL, "not a regular file")
+        raise OSError(errno.EINVAL, "it is a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file")
     if not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     return status
@@ -287,7 +288,7 @@ def stamps(*paths: str | os.PathLike[str]) -> list[tuple[int, ...]]:
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:
     """Check that a file has at most `largest` bytes; FileError otherwise."""
     if size > largest:
-        raise FileError(path, f"larger than {largest // 2**20} MiB")
+        raise FileError(path, f"larger than {size_in_words(largest)}")
 
 
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH

@@ -97,9 +97,13 @@ class TooLargeError(RenderError):
     """Something needs more memory than is allowed."""
 
 
-def size_in_words(size: int) -> str:
+def size_in_words(size: float) -> str:
     """Return a number of bytes in the unit that suits it."""
-    return f"{size / 2**30:.1f} GiB" if size >= 2**30 else f"{size / 2**20:.0f} MiB"
+    for unit in ("B", "KiB", "MiB"):
+        if size < 1024:
+            return f"{size:.0f} {unit}"
+        size /= 1024
+    return f"{size:.1f} GiB"
 
 
 # Of all threads a child process has only the one that forked. Thread pools are therefore without threads, and a lock

@@ -93,7 +93,8 @@ def check_name(path: str | os.PathLike[str]) -> None:
         raise file_error(path, "a scene is not written over its picture; Ctrl+Shift+S in the window writes a copy")
     name = Path(path).name
     if not name.endswith(SUFFIX) or name == SUFFIX:
-        raise file_error(path, f"the name of a scene file ends in '{SUFFIX}'")
+        is_folder = name and file_io.is_folder(path)
+        raise file_error(path, "is a folder" if is_folder else f"the name of a scene file ends in '{SUFFIX}'")
 
 
 def read(path: str | os.PathLike[str]) -> bytes:

@@ -81,7 +81,7 @@ def test_a_picture_is_rendered_again_from_itself(run: Run, folder: Path, setting
     (folder / "ball.rt").unlink()
     assert run("first.png", "-o", "again.png").status == 0
     assert (folder / "again.png").read_bytes() == (folder / "first.png").read_bytes()
-    assert run("first.png", "--check").out == b"first.png: no errors, 2 shapes, 1 lights\n"
+    assert run("first.png", "--check").out == b"first.png: no errors, 2 shapes, 1 light\n"
     assert len(minirt.load("first.png").shapes) == 2
 
 
@@ -149,7 +149,7 @@ def test_a_scene_of_strangers_is_parsed_as_any_other(run: Run, folder: Path) -> 
     assert (ended.status, ended.out) == (1, b"")
     assert ended.err.startswith("Error\nstrange.png:6:10: sphere diameter must be > 0, got -1\n")
     ended = run(stranger(folder, scene=SCENE + "#" * 70_000_000), "--check")
-    assert ended == (1, b"", "Error\nstrange.png: the text in the PNG picture is larger than 64 MiB\n")
+    assert ended == (1, b"", "Error\nstrange.png: the text in the PNG picture is larger than 65,536 KiB\n")
 
 
 @pytest.mark.parametrize("at", [*range(0, 60, 7), 90])

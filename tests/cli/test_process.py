@@ -189,7 +189,7 @@ def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:
 def test_no_message_has_control_characters(folder: Path) -> None:
     (folder / "b\x1b[31m\x07.rt").write_text((folder / "ball.rt").read_text())
     ended = program(folder, "b\x1b[31m\x07.rt", "-o", "missing/{name}.png", "--size", "8x8")
-    assert (ended.status, ended.err) == (1, "Error\nmissing/b [31m .png: cannot write: No such file or directory\n")
+    assert (ended.status, ended.err) == (1, "Error\nmissing/b [31m .png: cannot write: there is no such folder\n")
 
 
 def test_a_closed_pipe_gives_no_traceback(folder: Path) -> None:

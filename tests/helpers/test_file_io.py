@@ -108,5 +108,5 @@ def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None
     if size <= 1000:
         assert file_io.read(path, 1000) == path.read_bytes()
     else:
-        with pytest.raises(FileError, match="larger than"):
+        with pytest.raises(FileError, match="larger than 1000 B"):
             file_io.read(path, 1000)

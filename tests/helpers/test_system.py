@@ -93,6 +93,21 @@ def test_a_tiff_file_that_does_not_fit_is_written_in_bands(tmp_path: Path, monke
     assert b"II+\0" == Path("bands.tif").read_bytes()[:4] != Path("whole.tif").read_bytes()[:4]  # BigTIFF, and Pillow's
 
 
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (0, "0 B"),
+        (1000, "1000 B"),
+        (2**16, "64 KiB"),
+        (2**20 - 512, "1024 KiB"),
+        (2**28, "256 MiB"),
+        (3 * 2**29, "1.5 GiB"),
+    ],
+)
+def test_a_size_is_never_rounded_to_nothing(size: int, words: str) -> None:
+    assert system.size_in_words(size) == words
+
+
 def write_textures(folder: Path, side: int) -> None:
     """Write four pictures, the last of them a link to the first."""
     for number in range(3):
@@ -118,5 +133,7 @@ def test_too_large_a_texture_is_refused_with_its_place(tmp_path: Path) -> None:
     write_textures(tmp_path, 1024)
     (tmp_path / "x.rt").write_text(TEXTURED)
     minirt.limit_memory(MIB)
-    with pytest.raises(minirt.SceneError, match=r"x.rt:3:.*need.? about .* MiB of memory, allowed 0 MiB"):
+    with pytest.raises(
+        minirt.SceneError, match=r"x.rt:3:.*need.? about .* MiB of memory, allowed 0 B \(what is left of 1 MiB\)"
+    ):
         minirt.load(tmp_path / "x.rt")

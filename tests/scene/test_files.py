@@ -74,7 +74,8 @@ def test_a_path_without_a_file_is_refused(tmp_path: Path) -> None:
 
 def test_a_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.rt").mkdir()
-    assert refusal(tmp_path / "folder.rt").message == "is a folder"
+    for path in (tmp_path / "folder.rt", tmp_path):
+        assert refusal(path).message == "is a folder"
 
 
 def test_a_fifo_or_a_device_does_not_hang(tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.
 def test_paths_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.rt").mkdir()
     os.mkfifo(tmp_path / "fifo.rt")
-    assert "not a regular file" in refusal(tmp_path / "folder.rt")
+    assert "it is a folder" in refusal(tmp_path / "folder.rt")
     assert "not a regular file" in refusal(tmp_path / "fifo.rt")
     assert "cannot be written: no such file or directory" in refusal(tmp_path / "missing" / "scene.rt")
     assert "cannot be written: not a directory" in refusal(tmp_path / "fifo.rt" / "scene.rt")
