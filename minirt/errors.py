@@ -57,6 +57,11 @@ def quoted(text: str, width: int = 40) -> str:
     return repr(text if len(text) <= width else text[: width - 1] + "…")
 
 
+def counted(count: int, what: str) -> str:
+    """Return a number of things: `1 camera`, `2 cameras`."""
+    return f"{count} {what}{'s' * (count != 1)}"
+
+
 def nearest(word: str, known: Iterable[str], cutoff: float = 0.6, count: int = 1) -> list[str]:
     """Return the known words whose spelling is most like a word's, the most similar first, `count` at most."""
     from difflib import get_close_matches

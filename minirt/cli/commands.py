@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say
-from minirt.errors import MlxError, SceneError
+from minirt.errors import MlxError, SceneError, counted
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 from minirt.helpers.signals import ended_by_signals, leave_at_once
@@ -30,7 +30,8 @@ def command_for(options: argparse.Namespace) -> Command:
 
 def check(scene: Scene, options: argparse.Namespace) -> int:
     """Print that the scene was read without errors, and the number of its shapes and lights."""
-    say(f"{options.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
+    shapes, lights = counted(len(scene.shapes), "shape"), counted(len(scene.lights), "light")
+    say(f"{options.scene[0]}: no errors, {shapes}, {lights}")
     from minirt.rendering.notices import notices_about
 
     for notice in notices_about(scene, None, options.size or size_of(scene)):
@@ -114,6 +115,7 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
             )
     except MlxError as error:
         if not options.fallback:
+            error.add_note("-o FILE renders a picture without one")
             raise
         from minirt.cli.render import render_output
 

@@ -22,7 +22,7 @@ from minirt.helpers.file_io import is_file
 from minirt.mlx import recording
 from minirt.mlx.api import Mlx
 from minirt.mlx.arguments import Host, Integer, MaybeNone, integer
-from minirt.mlx.display import ADVICE, Display
+from minirt.mlx.display import NO_WINDOW, Display
 from minirt.mlx.memory import Headless
 from minirt.mlx.window import Window
 
@@ -53,6 +53,7 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
         description="Run a program for the official Python wrapper of MiniLibX (from mlx import Mlx), unchanged.",
         epilog=f"Scripts of events:\n{(recording.__doc__ or '').split(chr(10), 2)[2]}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
     )
     parser.add_argument("--headless", action="store_true", help="open no window; time is simulated")
     parser.add_argument("--events", type=Path, metavar="SCRIPT", help="the events of a headless program")
@@ -115,7 +116,8 @@ def install(backend: Display | None, *, strict: bool) -> None:
             return super().mlx_string_put(mlx_ptr, win_ptr, x, y, swapped, string)
 
         def _mlx_failed(self, error: MlxError) -> MaybeNone:
-            return super()._mlx_failed(MlxError(str(error).replace(ADVICE, "--headless runs without one")))
+            advice = "; --headless runs without one" if str(error).startswith(NO_WINDOW) else ""
+            return super()._mlx_failed(MlxError(f"{error}{advice}"))
 
     WrapperMlx.__name__ = WrapperMlx.__qualname__ = "Mlx"
     WrapperMlx.__module__ = "mlx.mlx"

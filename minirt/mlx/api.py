@@ -20,7 +20,7 @@ from minirt.errors import MlxError
 from minirt.helpers.signals import signal_handlers
 from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, integer, set_hook
 from minirt.mlx.calls import Calls
-from minirt.mlx.display import ADVICE, Display
+from minirt.mlx.display import NO_WINDOW, Display
 from minirt.mlx.events import Cursor, Event, Modifier
 from minirt.mlx.text import draw_text
 from minirt.mlx.window import Window
@@ -237,5 +237,5 @@ def _pyglet_display() -> Display:
     except Exception as error:  # any error of the window system means that there is no window
         missing = type(error).__name__ == "NoSuchDisplayException" and not os.environ.get("DISPLAY")
         reason = "there is no display" if missing else str(error) or type(error).__name__
-        raise MlxError(f"no window can be opened ({reason}); {ADVICE}") from error
+        raise MlxError(f"{NO_WINDOW} ({reason})") from error
     return PygletDisplay()

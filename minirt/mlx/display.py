@@ -10,7 +10,7 @@ from minirt.mlx.events import Event
 from minirt.mlx.window import Window
 
 TICK = 1 / 60  # seconds between two turns of a busy loop
-ADVICE = "-o FILE renders without one"  # the end of an error where no window can be opened
+NO_WINDOW = "no window can be opened"  # the beginning of an error
 
 
 class Display(Host):

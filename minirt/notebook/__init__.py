@@ -62,8 +62,9 @@ def view(
             if status == desktop.INTERRUPTED:
                 raise KeyboardInterrupt
             return session.state.scene
-        except MlxError:
+        except MlxError as error:
             if notebook is False or not in_notebook():
+                error.add_note('minirt.render(scene, 640, 480).save("picture.png") needs no window')
                 raise
     try:
         from minirt.notebook.widget import Viewer

@@ -162,7 +162,7 @@ def test_without_a_display_the_fallback_file_is_rendered(
         raise MlxError("no display")
 
     monkeypatch.setattr(desktop, "run", no_window)
-    assert run("ball.rt") == (1, b"", "Error\nno display\n")
+    assert run("ball.rt") == (1, b"", "Error\nno display\n-o FILE renders a picture without one\n")
     ended = run("ball.rt", "--fallback", "x.png", "--size", "8x6")
     assert (ended.status, ended.err) == (0, "")
     assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6, samples=16))

@@ -194,14 +194,14 @@ def test_the_import_loads_no_window_library() -> None:
     assert run_without_screen(program) == "[]\n"
 
 
-def test_no_display_is_an_error_with_advice_each_time() -> None:
+def test_no_display_is_an_error_each_time() -> None:
     program = """
 from minirt.mlx import Mlx, MlxError
 for _ in range(2):
     try:
         Mlx(strict=True).mlx_init()
     except MlxError as error:
-        print("-o FILE" in str(error), "no display" in str(error))
+        print(error)
 """
     if sys.platform == "linux":
-        assert run_without_screen(program) == "True True\n" * 2
+        assert run_without_screen(program) == "no window can be opened (there is no display)\n" * 2

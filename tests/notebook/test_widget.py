@@ -54,8 +54,9 @@ def test_what_cells_show_beside_pictures_is_one_line(scene: minirt.Scene) -> Non
 
 @pytest.mark.parametrize("told", [False, None])
 def test_outside_of_notebooks_a_missing_screen_is_an_error(scene: minirt.Scene, told: bool | None) -> None:
-    with pytest.raises(minirt.MlxError, match="no screen"):
+    with pytest.raises(minirt.MlxError, match="no screen") as caught:
         minirt.view(scene, mlx=Mlx(NoScreen()), notebook=told)
+    assert caught.value.__notes__ == ['minirt.render(scene, 640, 480).save("picture.png") needs no window']
 
 
 def test_a_missing_package_is_named(scene: minirt.Scene, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from pyglet.window import key as pyglet_key
 from pyglet.window import mouse as pyglet_mouse
 
 from minirt.errors import MlxError
-from minirt.mlx.display import ADVICE
+from minirt.mlx.display import NO_WINDOW
 from minirt.mlx.events import Button, Cursor, Event, Key, Modifier
 from minirt.mlx.on_pyglet import x11
 from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow, Triangles, new_cursor
@@ -73,7 +73,7 @@ class NativeWindow(Window):
             self._texture = CanvasTexture()
             self.on_resize(self.width, self.height)
         except Exception as error:  # any error of pyglet means that there is no window
-            raise MlxError(f"no window with OpenGL 3.3 can be opened ({error}); {ADVICE}") from error
+            raise MlxError(f"{NO_WINDOW} with OpenGL 3.3 ({error})") from error
 
     # --- the contract of a back end ---
 
