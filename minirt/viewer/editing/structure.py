@@ -178,9 +178,10 @@ def default_value(field: Field, state: State, length: float) -> Any:
     if isinstance(field, Compound):
         return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state, length)
     if isinstance(field, (Picture, MeshField)):
-        for file in usable_files(state.scene, isinstance(field, MeshField)):
+        is_mesh = isinstance(field, MeshField)
+        for file in usable_files(state.scene, is_mesh):
             return file
-        raise LookupError(f"there is no file for {field.name} beside the scene")
+        raise LookupError("there is no mesh beside the scene" if is_mesh else "there is no picture beside the scene")
     if isinstance(field, Lengths):
         return length, length, length
     if isinstance(field, Length) and field.unit:
