@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import OPENING, Arguments, say, tell
-from minirt.errors import FileError, RenderError, SceneError
+from minirt.errors import FileError, RenderError, SceneError, counted
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
@@ -55,7 +55,7 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
                 raise
     scene = reading.scene.mirrored() if options.left_handed else reading.scene
     if options.camera > len(scene.cameras):
-        raise RenderError(f"{path} has {len(scene.cameras)} cameras: there is no --camera {options.camera}")
+        raise RenderError(f"{path} has {counted(len(scene.cameras), 'camera')}: there is no --camera {options.camera}")
     return Reading(scene.seen_by(options.camera), reading.notices)
 
 
@@ -142,6 +142,8 @@ def needs_light(options: argparse.Namespace, output: str) -> bool:
 def check_format(options: argparse.Namespace) -> None:
     """Check that the format of the output fits the other options; RenderError otherwise."""
     for output in filter(None, (options.output, options.fallback)):
+        if file_io.is_folder(output):
+            raise RenderError(f"{output} is a folder: name a picture in it, such as {Path(output, 'picture.png')}")
         name = format_name(output)
         if not (options.turntable or options.replay or FORMATS[name].is_still):
             raise RenderError(f"{output}: a film needs --turntable or --replay, a picture is .png or .jpg")

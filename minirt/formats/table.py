@@ -56,6 +56,8 @@ BY_SUFFIX = {suffix: name for name, each in FORMATS.items() for suffix in each.s
 COMMON = (".png", ".jpg", ".jpeg", ".webp", ".tiff", ".exr", ".hdr", ".pfm", ".gif", ".webm")  # to suggest
 OWN = {"PNG", "EXR", "HDR", "PFM"}  # written without Pillow
 FILMS_BY_PYAV = {"MP4", "WEBM"}
+NO_PYAV = ": install PyAV (pip install 'minirt[video]') for .mp4 and .webm, or try .gif, .webp or .apng"
+VIDEOS = (".avi", ".mov", ".qt", ".mkv", ".mpg", ".mpeg", ".wmv", ".flv", ".ogv", ".3gp")  # of other programs
 
 
 def format_of(path: str | os.PathLike[str]) -> str:
@@ -63,7 +65,7 @@ def format_of(path: str | os.PathLike[str]) -> str:
     suffix = Path(path).suffix.lower()
     name = BY_SUFFIX.get(suffix)
     if name is None or not is_installed(name):
-        raise RenderError(f"{os.fspath(path)}: cannot write pictures with the extension '{suffix}'{hint(suffix, name)}")
+        raise RenderError(f"{os.fspath(path)}: {refusal(suffix, name)}")
     return name
 
 
@@ -84,15 +86,19 @@ def is_installed(name: str) -> bool:
     return {"APNG": "PNG"}.get(name, name) in pillow.SAVE
 
 
-def hint(suffix: str, name: str | None) -> str:
-    """Return what to do about an extension that cannot be written, as the end of a sentence."""
-    if name in FILMS_BY_PYAV:
-        return ": install PyAV (pip install 'minirt[video]'), or try .gif, .webp or .apng"
+def refusal(suffix: str, name: str | None) -> str:
+    """Return why pictures or films with an extension cannot be written, and what to do."""
+    if not suffix:
+        return "the name of a picture ends in its format, such as .png or .jpg"
+    is_film = suffix in VIDEOS or name in FILMS_BY_PYAV
+    cannot = f"cannot write {'films' if is_film else 'pictures'} with the extension '{suffix}'"
+    if is_film:
+        return cannot + (", try .mp4, .webm or .gif" if is_installed("MP4") else NO_PYAV)
     if name:
-        return ": this Pillow was built without it, try .png"
+        return f"{cannot}: this Pillow was built without it, try .png"
     if suffix in (".pbm", ".pgm", ".ico", ".icns"):
-        return f": it cannot hold {'colours' if suffix in ('.pbm', '.pgm') else 'large pictures'}, try .png"
-    return f", try {next(iter(nearest(suffix, COMMON, 0.7)), COMMON[0])}"
+        return f"{cannot}: it cannot hold {'colours' if suffix in ('.pbm', '.pgm') else 'large pictures'}, try .png"
+    return f"{cannot}, try {next(iter(nearest(suffix, COMMON, 0.7)), COMMON[0])}"
 
 
 def check_size(path: str | os.PathLike[str], name: str, width: int, height: int) -> None:
@@ -117,7 +123,7 @@ def check_quality(name: str, quality: int | None) -> None:
     if quality is None:
         return
     if not FORMATS[name].is_lossy:
-        raise RenderError(f"{name} has no quality: it keeps all pixels as they are")
+        raise RenderError(f"{name} has no quality: it keeps all pixels as they are; .jpg and .webp have one")
     if not 1 <= quality <= 100:
         raise RenderError(f"the quality is a number from 1 to 100, got {quality}")
 

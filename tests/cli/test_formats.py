@@ -60,16 +60,16 @@ def test_light_of_auto_sampling_goes_below_the_rounding_of_8_bits(run: Run, fold
 
 
 CANNOT = "cannot write"
-NO_QUALITY = "PNG has no quality: it keeps all pixels as they are"
+NO_QUALITY = "PNG has no quality: it keeps all pixels as they are; .jpg and .webp have one"
 REFUSED = {
     "-o x.webp --size 16384x4": "x.webp: WEBP holds at most 16,383 pixels a side, got 16384x4",
     "-o x.webp --size 17000x5 --cluster local": "x.webp: WEBP holds at most 16,383 pixels a side, got 17000x5",
-    "-o nowhere/x.png": f"nowhere/x.png: {CANNOT}: No such file or directory",
+    "-o nowhere/x.png": f"nowhere/x.png: {CANNOT}: there is no such folder",
     "-o ball.rt/x.png": f"ball.rt/x.png: {CANNOT}: Not a directory",
-    "-o folder.png": f"folder.png: {CANNOT}: not a regular file",
-    "-o nowhere/x.gif --turntable 3": f"nowhere/x.gif: {CANNOT}: No such file or directory",
-    "-o nowhere/x.png --turntable 3": f"nowhere/x.png: {CANNOT}: No such file or directory",
-    "-o nowhere/x.tif --cluster local": f"nowhere/x.tif: {CANNOT}: No such file or directory",
+    "-o folder.png": "folder.png is a folder: name a picture in it, such as folder.png/picture.png",
+    "-o nowhere/x.gif --turntable 3": f"nowhere/x.gif: {CANNOT}: there is no such folder",
+    "-o nowhere/x.png --turntable 3": f"nowhere/x.png: {CANNOT}: there is no such folder",
+    "-o nowhere/x.tif --cluster local": f"nowhere/x.tif: {CANNOT}: there is no such folder",
     "-o x.pgm": f"x.pgm: {CANNOT} pictures with the extension '.pgm': it cannot hold colours, try .png",
     "--fallback x.nope": f"x.nope: {CANNOT} pictures with the extension '.nope', try .png",
     "-o x.jpg --bits 16": "JPEG has 8 bits a channel, got 16: try PNG or TIFF",
@@ -135,9 +135,9 @@ def test_several_scenes_are_rendered_by_one_process(run: Run, folder: Path) -> N
             np.asarray(pillow.open(f"out/{name}.png")), minirt.render(minirt.load(scene), 40, 30).array
         )
     ended = run("ball.rt", "sub/far.rt", "--check")
-    assert ended == (0, b"ball.rt: no errors, 2 shapes, 1 lights\nsub/far.rt: no errors, 2 shapes, 1 lights\n", "")
+    assert ended == (0, b"ball.rt: no errors, 2 shapes, 1 light\nsub/far.rt: no errors, 2 shapes, 1 light\n", "")
     ended = run("bad.rt", "ball.rt", "--check")
-    assert (ended.status, ended.out) == (1, b"ball.rt: no errors, 2 shapes, 1 lights\n")
+    assert (ended.status, ended.out) == (1, b"ball.rt: no errors, 2 shapes, 1 light\n")
     ended = run("ball.rt", "sub/../ball.rt", "-o", "out/{name}.png")
     assert (ended.status, ended.err) == (2, "Error\ntwo scenes would be written to out/ball.png\n")
 

@@ -36,21 +36,41 @@ def test_pillow_reads_back_what_is_written(tmp_path: Path, suffix: str) -> None:
     "suffix", [".pgm", ".pbm", ".ico", ".icns", ".xbm", ".eps", ".spider", ".txt", ".rt", "", ".", "/.png", ".png/b"]
 )
 def test_other_extensions_are_refused(suffix: str) -> None:
-    with pytest.raises(RenderError, match="cannot write pictures with the extension"):
+    with pytest.raises(RenderError, match=r"cannot write pictures with the extension|the name of a picture ends in "):
         format_of(f"a{suffix}")
 
 
 @pytest.mark.parametrize(
-    ("name", "advice"), [("a.pgm", "it cannot hold colours, try .png"), ("a.jpgg", "try .jpg"), ("a.xyzzy", "try .png")]
+    ("name", "advice"),
+    [
+        ("a.pgm", "it cannot hold colours, try .png"),
+        ("a.jpgg", "try .jpg"),
+        ("a.xyzzy", "try .png"),
+        ("a", "ends in its format, such as .png"),
+    ],
 )
 def test_a_refusal_says_what_to_do(name: str, advice: str) -> None:
     with pytest.raises(RenderError, match=advice):
         format_of(name)
 
 
+@pytest.mark.parametrize(
+    ("has_pyav", "advice"), [(True, ", try .mp4, .webm or .gif"), (False, "or try .gif, .webp or")]
+)
+@pytest.mark.parametrize("name", ["a.avi", "a.MOV", "a.mkv", "a.mpg"])
+def test_a_film_is_suggested_for_a_film(
+    monkeypatch: pytest.MonkeyPatch, name: str, has_pyav: bool, advice: str
+) -> None:
+    monkeypatch.setattr(table, "is_installed", lambda name: has_pyav or name not in FILMS_BY_PYAV)
+    with pytest.raises(RenderError, match=f"cannot write films with the extension .*{advice}"):
+        format_of(name)
+
+
 def test_a_library_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(table, "is_installed", lambda name: name not in FILMS_BY_PYAV | {"AVIF"})
-    with pytest.raises(RenderError, match=r"install PyAV \(pip install 'minirt\[video\]'\), or try .gif"):
+    with pytest.raises(
+        RenderError, match=r"install PyAV \(pip install 'minirt\[video\]'\) for .mp4 and .webm, or try .gif"
+    ):
         format_of("a.mp4")
     with pytest.raises(RenderError, match="this Pillow was built without it"):
         format_of("a.avif")
