@@ -159,7 +159,7 @@ def test_an_error_at_a_write_is_told_and_leaves_old_or_new_files(
             writer(work)
         found = contents(work)
         kept = [name for name in found.keys() - new.keys() if found.pop(name)]
-        assert all(f" are kept in {work / name}; " in caught.value.__notes__[0] for name in kept)
+        assert all(f" kept in {work / name}; " in caught.value.__notes__[0] for name in kept)
         assert found.keys() == new.keys()
         assert all(data in (OLD, new[name]) for name, data in found.items())
     assert capfd.readouterr() == ("", ""), "libraries print nothing of their own"

@@ -153,8 +153,8 @@ class Journal:
         if error is None or not self.places:
             file_io.delete(self.path)
         else:
-            kept = f"{len(self.places)} of {self.total} {self.what} are kept in {self.path}"
-            error.add_note(f"{kept}; {self.again} goes on")
+            kept = f"{len(self.places)} of {self.total} {self.what} {'is' if len(self.places) == 1 else 'are'} kept"
+            error.add_note(f"{kept} in {self.path}; {self.again} goes on")
 
 
 def write_all(file: IO[bytes], data: bytes) -> None:

@@ -69,7 +69,7 @@ def read_pixels(strings: Iterator[bytes], header: Header) -> np.ndarray:
     width, height, count, length = header
     definitions = list(islice(strings, count))
     if len(definitions) < count:
-        raise XpmError(f"it has {len(definitions)} colours of {count}")
+        raise XpmError(f"it has {len(definitions)} of {count} colours")
     colours = {line[:length]: colour(line[length:], number) for number, line in enumerate(definitions, 1)}
     words = np.empty((height, width), "<u4")
     number = 0
@@ -80,7 +80,7 @@ def read_pixels(strings: Iterator[bytes], header: Header) -> np.ndarray:
             at = next(at for at in range(0, width * length, length) if row[at : at + length] == error.args[0])
             raise XpmError(f"row {number}, column {at + 1}: expected one of the colours of the picture") from None
     if number < height:
-        raise XpmError(f"it has {number} rows of {height}")
+        raise XpmError(f"it has {number} of {height} rows")
     return words.view(np.uint8).reshape(height, width, 4)
 
 

@@ -88,7 +88,7 @@ def read_scanline(data: bytes, at: int, pixels: np.ndarray) -> int:
     mark = data[at : at + 4]
     if SHORTEST <= length <= LONGEST and len(mark) == 4 and mark[:2] == b"\2\2" and mark[2] < 128:
         if mark[2] << 8 | mark[3] != length:
-            raise RadianceError(f"byte {at}: it has {mark[2] << 8 | mark[3]} pixels, and should have {length}")
+            raise RadianceError(f"byte {at}: it should have {length} pixels, and has {mark[2] << 8 | mark[3]}")
         return read_components(data, at + 4, pixels)
     return read_whole_pixels(data, at, pixels)
 

@@ -10,7 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
-from minirt.errors import RenderError, check_whole
+from minirt.errors import RenderError, check_whole, counted
 from minirt.fields import Triple
 from minirt.helpers.system import ForkSafeLock, check_memory, renewables
 from minirt.kernel.machine_code.library import LIBRARY
@@ -76,7 +76,7 @@ class Renderer:
     def about(self) -> list[str]:
         """Sentences about how the last picture was rendered and what its kernel lacks."""
         with self.busy:
-            return [f"{self.threads} threads, {self.precision} precision", *self.notes]
+            return [f"{counted(self.threads, 'thread')}, {self.precision} precision", *self.notes]
 
     @property
     def notes(self) -> list[str]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.errors import RenderError
+from minirt.errors import RenderError, counted
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 from minirt.helpers.signals import held_signals
@@ -124,7 +124,7 @@ class Measurement:
         shapes = packing.shape_arrays
         used = features(self.scene)
         kinds, others = {kind.element for kind in ALL_KINDS} - used, WORDS.keys() - used
-        found.absent = f"{len(kinds)} kinds of shapes and {len(others)} features"
+        found.absent = f"{counted(len(kinds), 'kind')} of shapes and {counted(len(others), 'feature')}"
         found.notes += [*kernel_notes(self.scene, generic=None, compiling=False), *packing.notes]
         found.stiff += [*stiff_shapes(self.scene, shapes, width, height), *coincident(self.scene, shapes)]
 

@@ -65,7 +65,7 @@ AUTO = Knob(
     values=ERRORS,
     work=lambda error: (ONE_SAMPLE / error) ** 1.5,
 )
-ABOUT_BOUNCES = "light is reflected or refracted {} times at most, not {} times"
+ABOUT_BOUNCES = "reflections and refractions of a ray: {} at most, not {}"
 BOUNCES = tuple(
     Knob(name, ABOUT_BOUNCES.format(depth, DEPTH), {"depth": depth}, values=COUNTS[::2])
     for depth, name in ((0, "no bounces"), (1, "1 bounce"), (3, "3 bounces"))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from minirt import shapes as kinds
 from minirt.element import Element
-from minirt.errors import check_whole, did_you_mean
+from minirt.errors import check_whole, counted, did_you_mean
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
@@ -176,7 +176,7 @@ class Scene(Immutable):
 
     def __repr__(self) -> str:
         where = f", from {str(self.file)!r}" if self.file else ""
-        return f"<Scene of {len(self.shapes)} shapes and {len(self.lights)} lights{where}>"
+        return f"<Scene of {counted(len(self.shapes), 'shape')} and {counted(len(self.lights), 'light')}{where}>"
 
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
         """Return the scene with `old` replaced by `new`, or with some of its fields changed; ValueError without it."""
@@ -202,7 +202,7 @@ class Scene(Immutable):
         minirt.render(scene.seen_by(2), 640, 480)
         """
         if not 1 <= number <= len(self.cameras):
-            raise ValueError(f"the scene has {len(self.cameras)} cameras, got the number {number}")
+            raise ValueError(f"the scene has {counted(len(self.cameras), 'camera')}, got the number {number}")
         scene = object.__new__(Scene)
         vars(scene).update(vars(self), shown=number - 1, camera=self.cameras[number - 1])
         return scene

@@ -51,7 +51,7 @@ KINDS = {
     "window": Kind(((), ("--size", "1280x720")), 4.0),
 }
 SAID = re.compile(
-    r"\d+ of \d+ (?:pictures of the film|bands of the picture) are kept in (\S+); .* goes on|notice: .*"
+    r"\d+ of \d+ (?:pictures of the film|bands of the picture) (?:is|are) kept in (\S+); .* goes on|notice: .*"
     r"|Interrupted before anything was measured; no report was written\."
 )
 REPORTED = re.compile(r"^Interrupted while measuring .* is missing\.\n(?:.*\n)+?The report is in .*\n", re.MULTILINE)

@@ -93,7 +93,7 @@ def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: P
         )  # after the end of all processes, which have the terminal open
     assert b"Traceback" not in screen.text
     assert re.search(
-        rb"\d+ of 64 bands of the picture are kept in .a.tif.journal; the same command or call goes on", screen.text
+        rb"\d+ of 64 bands of the picture \w+ kept in .a.tif.journal; the same command or call goes on", screen.text
     )
     assert {each.name for each in folder.iterdir()} == {"ball.rt", ".a.tif.journal"}
 

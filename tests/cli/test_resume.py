@@ -216,7 +216,7 @@ def test_parts_are_not_kept_where_that_takes_longer_than_they_are_worth(
     monkeypatch.setattr(journal, "SHARE", 0.0)
     renders.until(4)
     ended = run(*STILL)
-    assert ended.err.startswith("1 of 5 bands of the picture are kept")  # the first, whose cost nobody knew
+    assert ended.err.startswith("1 of 5 bands of the picture is kept")  # the first, whose cost nobody knew
     renders.until(0)
     assert run(*STILL, "--resume").status == 0
     assert renders.count == 4
@@ -244,7 +244,7 @@ def test_a_disk_that_fills_leaves_only_what_is_named(
         return
     assert (ended.status, ended.out) == (1, b"")
     assert "cannot write: File too large" in ended.err
-    is_kept = f" are kept in {journal}; miniRT " in ended.err
+    is_kept = f" kept in {journal}; miniRT " in ended.err
     assert is_kept == (share == 0.9 and arguments is not NUMBERED)
     assert set(contents(folder)) == ({journal} if is_kept else set())
     assert run(*arguments, *["--resume"] * is_kept) == (0, b"", "")

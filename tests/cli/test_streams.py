@@ -90,7 +90,7 @@ def test_names_may_have_characters_that_the_terminal_lacks(folder: Path, name: s
         settings = {"PYTHONIOENCODING": encoding, "LC_ALL": "C.UTF-8"}
         ended = program(folder, "", f"{name}/ball.rt", "--check", **settings)
         assert (ended.status, ended.err) == (0, "")
-        assert ended.out.endswith(b"ball.rt: no errors, 2 shapes, 1 lights\n")
+        assert ended.out.endswith(b"ball.rt: no errors, 2 shapes, 1 light\n")
         ended = program(folder, "", f"{name}/bad.rt", "--check", **settings)
         assert (ended.status, ended.out) == (1, b"")
         assert ended.err.startswith("Error\n")

@@ -182,7 +182,7 @@ DAMAGED = [
     ("line 4: expected a size such as -Y 512 +X 1024", b"#?RGBE\nA=1\n\n" + b" " * 2**20 + b"-Y 2 +X 8\n" + ROWS),
     (f"scanline 1 of 2, byte {START}: the file ends", TWO),
     (f"scanline 2 of 2, byte {START + 23}: the file ends", TWO + ROWS[:-1]),
-    (f"scanline 2 of 2, byte {START + 12}: it has 9 pixels, and should have 8", TWO + ROWS[:15] + b"\x09" + ROWS[16:]),
+    (f"scanline 2 of 2, byte {START + 12}: it should have 8 pixels, and has 9", TWO + ROWS[:15] + b"\x09" + ROWS[16:]),
     (f"scanline 1 of 2, byte {START + 4}: 9 pixels, where 8 of 8 are missing", TWO + ROWS[:4] + b"\x89" + ROWS[5:]),
     (f"scanline 1 of 2, byte {START + 4}: 0 pixels, where 8 of 8 are missing", TWO + ROWS[:4] + b"\x00" + ROWS[5:]),
     (f"scanline 1 of 1, byte {START}: no pixel to repeat", ONE + b"\1\1\1\3abcd"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from minirt.errors import check_whole
+from minirt.errors import check_whole, counted
 from minirt.kernel import functions
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.machine_code.arguments import words_of
@@ -94,7 +94,7 @@ class Hits(ClosestHits):
         return {"distance": self.distance, "owner": self.owner, **parts}
 
     def __repr__(self) -> str:
-        return f"<Hits of {len(self.owner)} rays, {np.count_nonzero(self.owner >= 0)} of which hit a shape>"
+        return f"<Hits of {counted(len(self.owner), 'ray')}, {np.count_nonzero(self.owner >= 0)} of which hit a shape>"
 
     @property
     def backward_error(self) -> NDArray[np.float64]:
