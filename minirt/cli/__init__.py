@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from signal import SIGINT
 
 from minirt.cli.arguments import FAILED, MAX_SIDE, OK, Arguments, argument_parser, prepare_streams, say, tell
-from minirt.errors import MiniRTError
+from minirt.errors import MiniRTError, counted
 
 NAME = "the name of a file: -o spin.gif"
 NO_MEMORY = "not enough memory; a smaller picture, smaller files or fewer shapes need less"
@@ -146,12 +146,12 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     output, replay, auto = options.output, options.replay, options.samples == "auto"
     nameless, last = not output or is_nameless(output), options.frames.stop - 1 if options.frames else 0
     is_one = output and not (replay or (options.turntable and not options.cluster))
-    side = max(options.size or (0,))
+    side, made = max(options.size or (0,)), counted(options.turntable, "picture")
     is_too_large = side > MAX_SIDE and not options.cluster
     wrong = (
         (options.turntable and nameless, f"--turntable needs {NAME}"),
         (last and not options.turntable, "--frames needs --turntable"),
-        (last > (options.turntable or last), f"--frames: there are {options.turntable} pictures, got {last}"),
+        (last > (options.turntable or last), f"--frames: --turntable makes {made}, got {last}"),
         (options.resume and (replay or auto or nameless), f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
@@ -174,14 +174,15 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
 
     scenes, output = options.scene, options.output
     if not scenes:
-        parser.error("expected one scene file, got 0")
+        parser.error("expected a scene file, such as scene.rt, or --example")
     is_headless = output or options.check or options.bench or options.report
     streams = [*filter(is_nameless, scenes)]
     if streams and (not is_headless or options.replay or len(streams) > len(set(streams))):
         parser.error(f"{streams[0]} is a stream, which is read once: it needs -o or --check")
     if len(scenes) == 1 or options.check:
         return
-    found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}"
+    picture = "" if scenes[-1].endswith(".rt") else f"; did you mean -o {scenes[-1]}?"
+    found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}{picture}"
     if not output or options.bench or options.report or options.replay:
         parser.error(found)
     if PLACE not in output:

@@ -1,7 +1,7 @@
 """Arguments of the command line, its exit statuses, and standard streams, which may be closed or full.
 
-`options.txt` has the options, their choices and help texts. A parser of a value raises ArgumentTypeError, which says
-what is wrong with a text.
+`options.txt` has the options, their choices and help texts; `other_programs.txt` has the words of other programs for
+them. A parser of a value raises ArgumentTypeError, which says what is wrong with a text.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from io import TextIOWrapper
 from math import nan
 from typing import Any, NoReturn, TextIO
 
-from minirt.errors import RenderError, did_you_mean, printable
+from minirt.errors import RenderError, did_you_mean, hint, nearest, printable
 from minirt.helpers import package
 
 OK = 0  # exit statuses
@@ -59,10 +59,10 @@ def cluster(text: str) -> str:
     return text
 
 
-def whole_number(text: str, low: int, high: int) -> int:
-    """Parse a whole number in [low, high]."""
+def whole_number(text: str, low: int, high: int, other: str = "") -> int:
+    """Parse a whole number in [low, high]; `other` names what else is allowed."""
     if not (text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high):
-        raise ArgumentTypeError(f"must be a whole number from {low} to {high}, got '{text[:40]}'")
+        raise ArgumentTypeError(f"must be a whole number from {low} to {high}{other}, got '{text[:40]}'")
     return int(text)
 
 
@@ -122,7 +122,7 @@ KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more
     "region": partial(
         numbers, sign=",", form="X,Y,WIDTH,HEIGHT, like 320,0,640,480", limits=[(0, MAX_SIDE)] * 2 + [(1, MAX_SIDE)] * 2
     ),
-    "samples": lambda text: text if text == "auto" else whole_number(text, 1, 65536),
+    "samples": lambda text: text if text == "auto" else whole_number(text, 1, 65536, ", or auto"),
     "turntable": partial(whole_number, low=1, high=3600),
     "frames": span,
     "bits": int,
@@ -139,7 +139,8 @@ KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more
 
 def argument_parser() -> Arguments:
     """Return the parser of the command line."""
-    parser = Arguments(prog="miniRT", description="Show a .rt scene in a window, or render it to a file.")
+    about = "Show a .rt scene in a window, or render it to a file."
+    parser = Arguments(prog="miniRT", description=about, allow_abbrev=False)
     add = parser.add_argument
     scene_help = "the scene file, or a PNG picture of it; - for standard input"
     add("scene", type=file_name, nargs="*", metavar="SCENE.rt", help=scene_help)
@@ -170,12 +171,18 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
     if unknown := UNKNOWN.match(message):
         word = unknown[1].partition("=")[0]
         options = [option for action in parser._actions for option in action.option_strings]
-        return f"unknown option {word}{did_you_mean(word, options) or '; miniRT --help lists all'}"
+        rows = package.read(__name__, "other_programs.txt").decode().splitlines()
+        table = (row.partition("  ") for row in rows)  # an option, and what other programs call it
+        meant = [ours for ours, _, others in table if word.lstrip("-") in others.split()]
+        begun = [option for option in options if option.startswith(word)]  # which the word abbreviates
+        near = meant or nearest(word, begun or options, cutoff=0 if begun else 0.6)
+        return f"unknown option {word}{hint(''.join(near)) or '; miniRT --help lists all'}"
     if choice := CHOICE.fullmatch(message):
         choices = re.sub(r"'", "", choice["choices"])
-        hint = did_you_mean(choice["value"], choices.split(", "))
+        similar = did_you_mean(choice["value"], choices.split(", "))
         listed = " or ".join(choices.rsplit(", ", 1))
-        return f"argument {choice['option']}: must be {listed}, got '{choice['value'][:40]}'{hint}"
+        return f"argument {choice['option']}: must be {listed}, got '{choice['value'][:40]}'{similar}"
+    message = message.replace("expected one argument", "must be followed by a value; miniRT --help tells which")
     return message.removeprefix("unrecognized arguments: ")
 
 

@@ -17,13 +17,14 @@ from tests.cli.program import SCENE, Result, Run
 from tests.paths import ROOT
 from tests.simulated_clock import PACKET_SECONDS, packets, simulate_clock
 
+NO_VALUE = "must be followed by a value; miniRT --help tells which"
 VALUES = (  # an option, what is said of a wrong value, and such values
     ("--size", "must be WIDTHxHEIGHT, like 640x480, got '%s'", "640 x 640x x480 4x4x4 4.5x4 \uff14x4 1_0x4"),
     ("--size", "must be a whole number from 1 to 999999999, got '0'", "0x4 4x0"),
     ("--size", "must be a whole number from 1 to 16384, got '16385'; see --cluster", "16385x4 4x16385"),
     ("--size", "must be a whole number from 1 to 999999999, got '99999999999'", "99999999999x4"),
-    ("--size", "expected one argument", "-4x4"),
-    ("--samples", "must be a whole number from 1 to 65536, got '%s'", "0 -1 x 1.5 65537 \u00b2"),
+    ("--size", NO_VALUE, "-4x4"),
+    ("--samples", "must be a whole number from 1 to 65536, or auto, got '%s'", "0 -1 x 1.5 65537 \u00b2"),
     ("--error", "must be a number > 0, got '%s'", "0 -1 x nan inf 1_0"),
     ("--time", "must be a number > 0, got '%s'", "0"),
     ("--exposure", "must be a number from -20 to 20, got '%s'", "x nan inf 20.1 -21 1_0"),
@@ -51,8 +52,21 @@ ONE_PICTURE = "--samples auto makes one picture: it needs -o, and no --replay or
 TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "--sampels 4": "unknown option --sampels, did you mean '--samples'?",
     "--wdth=4": "unknown option --wdth, did you mean '--watch'?",
+    **{
+        f"{word} 4": f"unknown option {word}, did you mean '{meant}'?"
+        for meant, words in {
+            "--size": "--width --height -w --resolution",
+            "-o": "--save --output-file --outfile",
+            "--samples": "--spp --samp --sa",  # the last two are abbreviations
+            "--turntable": "--tu --film",
+            "--left-handed": "--left",
+            "--example list": "--list-examples",
+            "SCENE.rt": "--input",
+        }.items()
+        for word in words.split()
+    },
     "--zzz": "unknown option --zzz; miniRT --help lists all",
-    "-o": "argument -o/--output: expected one argument",
+    "-o": f"argument -o/--output: {NO_VALUE}",
     **{f"{each} ": f"argument {each}: must be the name of a file, got ''" for each in ("--fallback", "--replay")},
     "-o ": "argument -o/--output: must be the name of a file, got ''",
     "--report ": "argument --report: must be the name of a file, got ''",
@@ -66,7 +80,8 @@ TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "-o x.gif --samples auto --turntable 3": ONE_PICTURE,
     "--turntable 3": "--turntable needs the name of a file: -o spin.gif",
     "--turntable 3 -o -": "--turntable needs the name of a file: -o spin.gif",
-    "-o x.gif --turntable 5 --frames 4-6": "--frames: there are 5 pictures, got 6",
+    "-o x.gif --turntable 5 --frames 4-6": "--frames: --turntable makes 5 pictures, got 6",
+    "-o x.gif --turntable 1 --frames 2": "--frames: --turntable makes 1 picture, got 2",
     "-o x.png --frames 1-2": "--frames needs --turntable",
     "--region 0,0,5,5": "--region has no effect without -o",
     "-o x.gif --region 0,0,5,5 --replay keys.txt": "--region has no effect without -o",
@@ -85,6 +100,7 @@ TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "--no-watch --check": "--no-watch has no effect with --check",
     "--example": "--example shows a scene of its own, got ball.rt, too",
     "ball.rt": "expected one scene file, got 2: ball.rt ball.rt",
+    "x.png": "expected one scene file, got 2: ball.rt x.png; did you mean -o x.png?",
     "ball.rt -o x.png": "expected one scene file, got 2: ball.rt ball.rt; several need -o with {name}, such as -o "
     "out/{name}.png",
     **dict.fromkeys(("-", "- - --check"), "- is a stream, which is read once: it needs -o or --check"),
@@ -134,7 +150,7 @@ def test_wrong_arguments_are_refused_in_one_sentence(run: Run, folder: Path, arg
 
 @pytest.mark.parametrize("arguments", [("-o", "x.png"), ("--check",)])
 def test_without_a_scene_nothing_is_done(run: Run, folder: Path, arguments: tuple[str, ...]) -> None:
-    assert run(*arguments) == (2, b"", "Error\nexpected one scene file, got 0\n")
+    assert run(*arguments) == (2, b"", "Error\nexpected a scene file, such as scene.rt, or --example\n")
 
 
 MODES = ["-o", "x.png"], ["--check"], []
@@ -178,7 +194,7 @@ def test_an_error_names_file_line_and_column_and_shows_the_line(run: Run, folder
 
 def test_the_configuration_file_may_have_options_without_effect(run: Run, folder: Path) -> None:
     (folder / "miniRT.toml").write_text('size = "8x6"\nwatch = false\nquality = 50\n')
-    told = (0, b"ball.rt: no errors, 2 shapes, 1 lights\n", "")
+    told = (0, b"ball.rt: no errors, 2 shapes, 1 light\n", "")
     assert run("ball.rt", "--check", "--config", "miniRT.toml") == told
     assert run("ball.rt", "--check", "--config", "miniRT.toml", "--quality", "51").status == 2
 
@@ -188,7 +204,7 @@ def test_the_example_of_the_subject_is_read_and_a_camera_that_shows_it_is_named(
     ended = run(path, "--check")
     assert ended.status == 0
     found, told = ended.out.splitlines()
-    assert found.endswith(b"no errors, 3 shapes, 1 lights")
+    assert found.endswith(b"no errors, 3 shapes, 1 light")
     assert told.startswith(b"notice: nothing is in view; this line would show the scene: C ")
     assert ended.err.startswith("notice: ")
     ended = run(path, "-o", "printed.png", "--size", "32x18")
