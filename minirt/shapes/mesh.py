@@ -89,7 +89,9 @@ class Mesh(Turnable):
             return None
         if np.abs(self.box).max() <= FARTHEST:
             return None
-        return "scale", f"must not be so large that the mesh reaches beyond {FARTHEST:g}"
+        fits_about_origin = np.abs(self.box - self.position).max() <= FARTHEST
+        name, much = ("position", "far out") if fits_about_origin else ("scale", "large")
+        return name, f"must not be so {much} that the mesh reaches beyond {FARTHEST:g}"
 
     @property
     def triangles(self) -> meshes.Triangles:
