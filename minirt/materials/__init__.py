@@ -9,10 +9,10 @@ feature of the kernel does that yet (`minirt.kernel.shading`, `minirt.rendering.
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 from minirt.element import Element, fields_of
-from minirt.fields import Factor, Flag, Real, declare
+from minirt.fields import Factor, Flag, Real, Triple, declare
 from minirt.materials.compound import Compound, Material, Share
 from minirt.materials.glass import Fresnel, Glass, Mirror, Tint
 from minirt.materials.maps import Bump, Checker, Clouds, Marble, NormalMap, Placement, Texture, Wood
@@ -66,6 +66,8 @@ BOARD: dict[str, Any] = {"record": Checker} | MAPPED
 @record(kw_only=True)
 class Attributes(Element):
     """The materials that every shape may have; None where it has not."""
+
+    filter: ClassVar[Triple] = (255, 255, 255)  # a colour by which the texture is multiplied, light by light
 
     specular: Specular | None = declare(Compound, "highlight", record=Specular, default=None, shared=SHARED)
     mirror: Mirror | float | None = declare(Compound, "mirrored light", record=Mirror, default=None, shared=SHARED)

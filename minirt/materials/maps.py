@@ -33,6 +33,14 @@ class Checker(Material):
         return {"checks": (self.size, *reader.shares(self.colour))}
 
 
+@record(kw_only=True)
+class TextureField(Picture):
+    """The picture of a texture."""
+
+    def rows(self, value: str, shape: Any, reader: Any) -> dict[str, Any]:
+        return {self.feature: reader.texture(value, shape.filter)}
+
+
 # Texture: `texture:file`.
 #
 # A picture that gives the surface its colours. It lies on the surface's coordinates u, from its left to its right
@@ -40,7 +48,7 @@ class Checker(Material):
 # read. The path begins at the folder of the scene file; one with spaces stands within quotes, and none has a `#`.
 #
 #     sp 0,0,20 8 255,255,255 texture:textures/planet.png
-Texture = partial(Picture, feature="textures", packed=lambda file, reader: reader.texture(file))
+Texture = partial(TextureField, feature="textures")
 
 
 @record()

@@ -15,11 +15,12 @@ BY_TRIMESH = (".stl", ".ply", ".gltf", ".glb")
 @file_io.read_once
 def load_mesh(path: Path) -> Triangles:
     """Return the triangles of a mesh file, the same object until the file changes; FileError when it is no mesh."""
-    from minirt.meshes.by_trimesh import as_obj
+    from minirt.meshes import by_trimesh
     from minirt.meshes.obj import ObjError, parse
 
     try:
-        is_obj = path.suffix.lower() not in BY_TRIMESH
-        return parse(*(file_io.read(path, file_io.LARGEST_ASSET), path.parent) if is_obj else as_obj(path))
+        if path.suffix.lower() in BY_TRIMESH:
+            return by_trimesh.read(path)
+        return parse(file_io.read(path, file_io.LARGEST_ASSET), path.parent)
     except ObjError as error:
         raise FileError(path, str(error)) from None

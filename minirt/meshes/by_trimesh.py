@@ -9,6 +9,8 @@ import io
 import logging
 import re
 import warnings
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +20,9 @@ from minirt.errors import FileError
 from minirt.helpers import file_io
 from minirt.meshes import gltf
 from minirt.meshes.named_files import Files, Look
-from minirt.meshes.obj import check_lines, check_triangles
+from minirt.meshes.obj import NOT_FINITE, check_lines, check_triangles, parse
 from minirt.meshes.obj_lines import ObjError
+from minirt.meshes.triangles import Triangles
 
 PLY_PICTURE = "picture"
 LINE_ENDS = bytes.maketrans(b"\r\v\f\x1c\x1d\x1e\x85\xa8\xa9", b"\n" * 9)  # of Unicode, at which trimesh splits a text
@@ -31,10 +34,10 @@ PICTURE = re.compile(rb"^\s*comment\s+texturefile\s+(.*\S)", re.MULTILINE | re.I
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # without one, its warnings go to standard error
 
 
-def as_obj(path: Path) -> tuple[bytes, Path]:
-    """Convert a file by trimesh: an .obj file, and the folder of its materials and pictures; FileError, ObjError.
+def read(path: Path) -> Triangles:
+    """Return the triangles of a file, by way of an .obj file that trimesh writes; FileError, ObjError.
 
-    Files of glTF have smooth normals where their points are shared.
+    Parts of glTF files are flat unless they have normals, as glTF 2.0 asks for; other files have none.
     """
     try:
         import trimesh
@@ -42,38 +45,56 @@ def as_obj(path: Path) -> tuple[bytes, Path]:
     except ImportError:
         raise FileError(path, "needs trimesh, which is not installed: pip install 'minirt[meshes]'") from None
     files, kind = Files(path), path.suffix.lower().removeprefix(".")
-    data, is_smooth = file_io.read(path, file_io.LARGEST_ASSET), kind in ("gltf", "glb")
+    data, is_gltf = file_io.read(path, file_io.LARGEST_ASSET), kind in ("gltf", "glb")
     looks: dict[str, Look] = {}
+    has_normals = False
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # about oddities of a file that is read
-            if is_smooth:
-                kind, (data, looks) = "gltf", gltf.prepare(data, files)
+            if is_gltf:
+                kind, (data, looks, has_normals) = "gltf", gltf.prepare(data, files)
             elif kind == "ply":
                 data = prepare_ply(data, files)
             else:
                 check_lines(data)
             files.check_pictures()
             usual = Look(picture=PLY_PICTURE * (PLY_PICTURE in files.pictures))
-            scene = trimesh.load_scene(
-                io.BytesIO(data), kind, files, process=not is_smooth, skip_materials=kind == "ply"
-            )
+            scene = trimesh.load_scene(io.BytesIO(data), kind, files, process=False, skip_materials=kind == "ply")
             parts = [part for part in scene.geometry.values() if hasattr(part, "faces")]
-            has_uvs = any(uvs_of(part) is not None for part in parts)
+            is_finite = all(np.isfinite(part.vertices).all() for part in parts)
             for part in parts:
-                if hasattr(part.visual, "material"):
-                    part.visual.material = looks.get(part.visual.material.name, usual)
-                if has_uvs and uvs_of(part) is None:  # export_obj numbers all uvs as it does the points
-                    own = getattr(part.visual, "material", usual)
-                    part.visual = trimesh.visual.TextureVisuals(np.zeros((len(part.vertices), 2)), own)
-            text, others = export_obj(scene, include_normals=is_smooth, return_texture=True, digits=17)
+                part.copy = partial(part.copy, include_cache=has_normals)  # export_obj gets copies, with the normals
+                if not is_gltf:
+                    part.merge_vertices()  # and drop those that no face names
+                elif part.visual.kind == "vertex":
+                    shares = gltf.encoded(part.visual.vertex_colors / 255)
+                    part.visual.vertex_colors = np.rint(255 * shares).astype(np.uint8)
+            give_looks(parts, looks, usual)
+            text, others = export_obj(scene, include_normals=has_normals, return_texture=True, digits=17)
     except (FileError, ObjError):
         raise
     except Exception:  # damaged files make trimesh raise anything
         raise FileError(path, "is no mesh that trimesh can read") from None
     for name, content in others.items():
         (files.folder / name).write_bytes(content)
-    return text.encode(), files.folder
+    try:
+        mesh = parse(text.encode(), files.folder)
+    except ObjError as error:
+        raise ObjError(error.message) from None  # without its place in a file that nobody has
+    return mesh if is_finite or is_gltf else replace(mesh, notices=(NOT_FINITE, *mesh.notices))
+
+
+def give_looks(parts: list[Any], looks: dict[str, Look], usual: Look) -> None:
+    """Give the parts of a scene of trimesh their materials, and texture coordinates to all parts if some have them."""
+    from trimesh.visual import TextureVisuals
+
+    has_uvs = any(uvs_of(part) is not None for part in parts)
+    for part in parts:
+        if hasattr(part.visual, "material"):
+            part.visual.material = looks.get(part.visual.material.name, usual)
+        if has_uvs and uvs_of(part) is None:  # export_obj numbers all uvs as it does the points
+            own = getattr(part.visual, "material", usual)
+            part.visual = TextureVisuals(np.zeros((len(part.vertices), 2)), own)
 
 
 def uvs_of(part: Any) -> Any:

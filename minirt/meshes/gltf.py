@@ -1,4 +1,9 @@
-"""Prepare glTF files, .gltf or .glb, for trimesh: it gets the triangles, once they are within the limits."""
+"""Prepare glTF files, .gltf or .glb, for trimesh: it gets the triangles, once they are within the limits.
+
+Factors and colours of points are linear in glTF, pictures are encoded by the curve of sRGB. The colours of a scene are
+as those of pictures: with `tone:srgb` they are decoded by that curve, with `tone:plain` they are shown as they are. So
+a linear colour is encoded here, for any tone: a factor of 0.5 becomes the level 188.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +12,8 @@ import struct
 from collections.abc import Mapping
 from operator import index, mul
 from typing import Any
+
+import numpy as np
 
 from minirt.fields import clamp
 from minirt.helpers import file_io
@@ -23,9 +30,10 @@ SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
 
-def prepare(data: bytes, files: Files) -> tuple[bytes, dict[str, Look]]:
-    """Return a .gltf file for trimesh, and how its materials look, by their names in it; ObjError where the file is
-    beyond a limit, FileError where it names one that is, another error where it is damaged."""
+def prepare(data: bytes, files: Files) -> tuple[bytes, dict[str, Look], bool]:
+    """Return a .gltf file for trimesh, how its materials look, by their names in it, and whether it has normals;
+    ObjError where the file is beyond a limit, FileError where it names one that is, another error where it is damaged.
+    """
     text = data
     if data.startswith(b"glTF"):
         (length,) = struct.unpack_from("<I", data, 12)
@@ -37,12 +45,30 @@ def prepare(data: bytes, files: Files) -> tuple[bytes, dict[str, Look]]:
     looks = {str(number): look_of(each, tree, files) for number, each in enumerate(tree.get("materials", ()))}
     kept = json.loads(text, object_hook=bare) | {"materials": [{"name": name} for name in looks]}
     kept["buffers"] = [{"uri": BINARY} | buffer for buffer in kept["buffers"]]
-    return json.dumps(kept).encode(), looks
+    has_normals = add_normals(kept)
+    return json.dumps(kept).encode(), looks, has_normals
 
 
 def bare(values: dict[str, Any]) -> dict[str, Any]:
     """Return the values of an object that trimesh gets: no words, pictures, extensions or attributes of programs."""
     return {name: value for name, value in values.items() if name not in LEFT_OUT and not name.startswith("_")}
+
+
+def add_normals(tree: Mapping[str, Any]) -> bool:
+    """Add normals of length 0, which stand for flat ones, to the parts without normals of a file that has some; return
+    whether it has."""
+    parts = [part["attributes"] for mesh in tree["meshes"] for part in mesh["primitives"]]
+    flat = [part for part in parts if "NORMAL" not in part]
+    for part in flat * (len(flat) < len(parts)):
+        points, part["NORMAL"] = tree["accessors"][part["POSITION"]], len(tree["accessors"])
+        tree["accessors"].append({"componentType": 5126, "count": points["count"], "type": "VEC3"})
+    return len(flat) < len(parts)
+
+
+def encoded(light: Any) -> np.ndarray:
+    """Encode shares of light in [0, 1] by the curve of sRGB (IEC 61966-2-1)."""
+    shares = np.asarray(light, np.float64)
+    return np.where(shares <= 0.0031308, 12.92 * shares, 1.055 * shares ** (1 / 2.4) - 0.055)
 
 
 def check(tree: Mapping[str, Any]) -> None:
@@ -76,7 +102,7 @@ def check(tree: Mapping[str, Any]) -> None:
 def look_of(material: Mapping[str, Any], tree: Mapping[str, Any], files: Files) -> Look:
     """Return how a material looks, whose picture becomes a file of its own; FileError where that is beyond a limit."""
     look = material.get("pbrMetallicRoughness", {})
-    colour = tuple(float(clamp(share, 0, 1)) for share in look.get("baseColorFactor", WHITE)[:3])
+    colour = tuple(encoded([clamp(share, 0, 1) for share in look.get("baseColorFactor", WHITE)[:3]]).tolist())
     if "baseColorTexture" not in look:
         return Look(colour)
     texture = tree["textures"][look["baseColorTexture"]["index"]]

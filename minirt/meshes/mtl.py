@@ -1,8 +1,10 @@
 """Reader of Wavefront .mtl files: each material becomes attributes of this program's shapes.
 
-`Kd` is the colour. `Ks` and `Ns` make a highlight, by the halfway vector and without colour, unless `illum` is 0 or 1;
-where it is 3 to 8, `Ks` is also the share of a mirror. `d` below 1, or `Tr` above 0, makes glass of the index `Ni` that
-lets the rest through. `map_Kd` is the texture, `map_Bump` the bump map, or the normal map if its name has "norm".
+`Kd` is the colour: 1 is the level 255, 0.5 the level 128. `map_Kd` is the texture, whose light is multiplied by that of
+`Kd` (Wavefront, Material Library File format); a black `Kd`, which some programs write beside `map_Kd`, is left out
+there, with a notice. `Ks` and `Ns` make a highlight, by the halfway vector and without colour, unless `illum` is 0 or
+1; where it is 3 to 8, `Ks` is also the share of a mirror. `d` below 1, or `Tr` above 0, makes glass of the index `Ni`
+that lets the rest through. `map_Bump` is the bump map, or the normal map if its name has "norm".
 """
 
 from __future__ import annotations
@@ -83,6 +85,9 @@ def material_of(said: dict[str, str], folder: Path, unused: set[str]) -> MeshMat
                 unused.add("pictures that cannot be read")
         elif UNUSED.fullmatch(key) and any(each != (key == "Tf") for each in three(value, 2.0)):
             unused.add(key)
+    if "texture" in values and not any(values["colour"]):
+        del values["colour"]
+        unused.add("a black Kd beside map_Kd")
     return MeshMaterial(**values)
 
 

@@ -30,7 +30,7 @@ class Look:
     def to_obj(self, name: str) -> tuple[dict[str, bytes], str]:
         """Return files of materials by their names, and the name of the material in them."""
         lines = [f"newmtl {name}", "Kd {} {} {}".format(*self.colour)]
-        if self.picture:
+        if self.picture and any(self.colour):  # times 0 it is black
             lines.append(f"map_Kd {self.picture}")
         return {f"{name}.mtl": "\n".join(lines).encode()}, name
 

@@ -4,11 +4,13 @@ A line is `v x y z`, a point; `vt u v`, texture coordinates; `vn x y z`, a norma
 a face, each `v`, `v/vt`, `v//vn` or `v/vt/vn`. These are numbers of such lines, counted from 1, or backwards from -1,
 the last one before the face; a corner whose vt or vn is not there is as one without. `v x y z r g b` has a colour, in
 [0, 1]. The faces after `usemtl name` have that material of the files named by `mtllib`. Groups, lines and points are
-skipped without a word, unknown words with a notice. Polygons are cut into triangles, see `minirt.meshes.polygons`.
+skipped without a word, unknown words with a notice, and so are points with a coordinate `nan` or `inf` that no face
+names. Polygons are cut into triangles, see `minirt.meshes.polygons`.
 """
 
 from __future__ import annotations
 
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -25,12 +27,17 @@ BLOCK_BYTES = 2**20  # of lines that are parsed at once; their words take up to 
 LONGEST_LINE = 2**24  # bytes, with the lines that continue it
 MAX_TRIANGLES = 10_000_000
 MAX_LINES = 2**24  # of 16 bytes fill the largest file
+BEGINNING = 64  # bytes, by which UTF-16 is known
+TINY = 1e-75  # of the coordinates of a triangle: the square of its area is 0
+NOT_FINITE = "has points that no face names with a coordinate that is no number: they are skipped"
 
 
 def parse(data: bytes, folder: Path | None = None) -> Triangles:
     """Parse a file; degenerate triangles are dropped. Materials are read beside it, in `folder`. ObjError when it is
     not a mesh."""
     check_lines(data)
+    if is_utf16(data[:BEGINNING]):
+        raise ObjError("is UTF-16: save it as UTF-8")
     data, blocks = data.removeprefix(b"\xef\xbb\xbf"), []
     start, before, triangles = 0, [0, 0, 0], 0
     while start < len(data):
@@ -41,6 +48,11 @@ def parse(data: bytes, folder: Path | None = None) -> Triangles:
         triangles += int((block.sizes - 2).sum())
         check_triangles(triangles)
     return assemble(blocks, data, folder)
+
+
+def is_utf16(data: bytes) -> bool:
+    """Whether a file that begins with these bytes is UTF-16: by its mark, or since every other byte is 0."""
+    return data.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) or (len(data) > 1 and any(data[::2]) != any(data[1::2]))
 
 
 def check_lines(data: bytes) -> None:
@@ -73,13 +85,15 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_points(whole, data)
     notices = [*drop_absent(whole, data)]
+    notices += [NOT_FINITE] * bool(len(whole.spoiled))
     if len(whole.unknown):
         first = line_of(data, whole.unknown[0])
         notices.append(f"has lines that begin with no word of .obj: they are skipped (the first is {first})")
     cut = triangulate(whole.points, whole.corners[:, 0], whole.sizes, lambda face: line_of(data, whole.starts[face]))
     cut = cut[non_degenerate(whole.points, whole.corners[cut, 0])]
     if not len(cut):
-        raise ObjError("has no triangle that is more than a line")
+        is_tiny = bool(np.abs(whole.points[whole.corners[:, 0]]).max() < TINY)
+        raise ObjError("has no triangle that is more than a line" + f", or larger than {TINY:g}" * is_tiny)
     corners, of_uvs, of_normals = (part[cut] for part in whole.corners.T.copy())
     uvs = normals = None
     if (of_uvs >= 0).any():
@@ -144,7 +158,9 @@ def corner_normals(normals: np.ndarray, indices: np.ndarray, flat: np.ndarray) -
 
 
 def check_points(whole: Block, data: bytes) -> None:
-    """Check that the file has all points that its corners name; ObjError otherwise."""
+    """Check that the file has all points that its corners name, and that these are finite; ObjError otherwise."""
+    for start in whole.spoiled[np.isin(whole.spoiled[:, 0], whole.corners[:, 0]), 1].tolist():
+        obj_lines.explain(data, start, 0)
     beyond = whole.corners[:, 0] >= len(whole.points)
     if beyond.any():
         corner = int(np.argmax(beyond))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.lanes.decimals import LARGEST, LONGEST, read_decimal, read_whole
+from minirt.lanes.decimals import LARGEST, LONGEST, read_decimal, read_whole, skip_sign
 
 TAB, NEWLINE, RETURN, BLANK, HASH, SLASH, BACKSLASH = b"\t\n\r #/\\"
 V, T, N, F = b"vtnf"
+A, Z, SMALL = b"az "  # the ends of the alphabet, and the bit of small letters
 FACE, OTHER = 3, 4  # kinds of lines; those before are v, vt and vn
 FIRST_WORDS = 1, 2, 2, 1, 0  # bytes that are skipped in these
 FEWEST, MOST = (3, 1, 3, 3), (7, 3, 3, 2**60)  # words of these lines behind the first
@@ -24,7 +25,7 @@ class Lines(NamedTuple):
     values: Any  # (n / 2,) numbers of lines v, vt and vn
     rows: Any  # (n / 2, 3) kind, first byte, and number of values or corners of each line that is not blank
     corners: Any  # (n / 2, 3) for each corner of a face the index of its point, uv and normal, or a negative one
-    inexact: Any  # (n / 2, 3) index in `values`, first byte, and that of the line of numbers not rounded correctly
+    inexact: Any  # (n / 2, 3) index in `values`, first byte, and that of the line: not rounded correctly, or no digits
     counts: Any  # (9,) of lines of kinds, also before; used items of arrays; whether the last row is of a wrong line
 
 
@@ -86,11 +87,22 @@ def kind_of(text: Any, at: int) -> int:
     return OTHER
 
 
+def letters_end(text: Any, start: int) -> int:
+    """Return the place behind letters and the sign before them, the same one without letters."""
+    at = first = skip_sign(text, start)
+    while A <= text[at] | SMALL <= Z:
+        at += 1
+    return at if at > first else start
+
+
 def read_value(lines: Lines, start: int, at: int) -> int:
     """Read a number of the line from byte `start` on, and return the place behind it, the same one without a number."""
     counts = lines.counts
     place, inexact = counts[VALUES], counts[INEXACT]
     value, end, is_exact = read_decimal(lines.text, at)
+    if end == at:
+        end = letters_end(lines.text, at)
+        is_exact = end == at
     lines.inexact[inexact, 0], lines.inexact[inexact, 1], lines.inexact[inexact, 2] = place, at, start
     counts[INEXACT] += not is_exact
     lines.values[place] = value

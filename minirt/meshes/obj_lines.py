@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Sequence
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,8 @@ WIDTHS = 3, 2, 3  # and how many these are
 CORNER_PARTS = ("point", "vt", "vn")  # the parts of a corner in messages
 SKIPPED = frozenset(b"g o s mg usemap maplib l p lod bevel c_interp d_interp shadow_obj trace_obj".split())
 MATERIAL, LIBRARIES = b"usemtl", b"mtllib"
-DECIMAL = re.compile(rb"[-+]?[0-9]*\.?[0-9]*(?:[eE][-+]?[0-9]+)?")
+DECIMAL = rb"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?"
+NUMBER = re.compile(rb"([-+]?(?:nan|inf|infinity)\b)|(" + DECIMAL + rb")?", re.IGNORECASE)
 CONTINUED = re.compile(rb"\\\r*(?:\n|\Z)")
 LOGICAL = re.compile(rb"(?:[^\n]*\\\r*\n)*[^\n]*")  # a line and those in which it goes on
 LARGE = 2**20  # bytes: the interpreter reads them in less time than the compiler takes
@@ -38,6 +40,7 @@ class ObjError(Exception):
     def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
         place = (f"line {line}" if line else "") + (f", column {column}" if column else "")
         super().__init__(f"{place}: {message}" if line else message)
+        self.message = message  # without the place
 
 
 class Block(NamedTuple):
@@ -54,6 +57,7 @@ class Block(NamedTuple):
     uses: np.ndarray  # (j,) first bytes of the lines from which on they are those of faces
     libraries: np.ndarray  # names of files of materials
     unknown: np.ndarray  # first bytes of the lines that begin with another word
+    spoiled: np.ndarray  # (k, 2) index of each point with a coordinate nan or inf, and first byte of its line
 
 
 def read(data: bytes, start: int = 0, end: int | None = None, before: Sequence[int] = (0, 0, 0)) -> Block:
@@ -64,8 +68,9 @@ def read(data: bytes, start: int = 0, end: int | None = None, before: Sequence[i
     *_, row_count, corner_count, inexact, is_wrong = lines.counts.tolist()
     kinds, firsts, sizes = lines.rows[:row_count].T.copy()
     for place, at, line in lines.inexact[:inexact].tolist():
-        lines.values[place] = value = float(DECIMAL.match(text, at)[0])  # type: ignore[index]
-        if abs(value) > FARTHEST:
+        not_finite, decimal = NUMBER.match(text, at).groups()  # type: ignore[union-attr]
+        lines.values[place] = value = nan if not_finite else float(decimal or inf)
+        if abs(value) > FARTHEST or (not_finite and not is_coordinate(text[line:at])):
             explain(data, start + line, 0)
     if is_wrong:
         explain(data, start + int(firsts[-1]), int(lines.counts[0]))
@@ -84,7 +89,15 @@ def read(data: bytes, start: int = 0, end: int | None = None, before: Sequence[i
     materials, libraries = (np.array([name for _, name in said[word]], object) for word in (MATERIAL, LIBRARIES))
     uses, unknown = (np.array(each, np.int64) for each in ([at for at, _ in said[MATERIAL]], others))
     of_faces = lines.corners[:corner_count], sizes[kinds == FACE], start + firsts[kinds == FACE]
-    return Block(points, uvs, normals, *of_faces, colours, materials, uses, libraries, unknown)
+    spoiled = np.flatnonzero(np.isnan(points).any(axis=1))
+    spoiled = np.stack([before[0] + spoiled, start + firsts[kinds == 0][spoiled]], axis=1)
+    return Block(points, uvs, normals, *of_faces, colours, materials, uses, libraries, unknown, spoiled)
+
+
+def is_coordinate(before: bytes) -> bool:
+    """Whether a word is a coordinate of a point, given what precedes it in its line."""
+    key, *words = CONTINUED.sub(b" ", before).split()
+    return key == b"v" and len(words) < WIDTHS[0]
 
 
 def call_for(text: bytes, before: Sequence[int] = (0, 0, 0)) -> Lines:

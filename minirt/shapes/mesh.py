@@ -4,8 +4,8 @@ Triangles from a Wavefront .obj file, whose path begins at the folder of the sce
 `x,y,z` in the scene, and lengths of the file are multiplied by `scale`. Triangles that share corners have no gap
 between them. Normals of the file make the surface look smooth (Phong shading), and its texture coordinates place
 pictures. With `axis:ax,ay,az` the file's y axis points there, turned as for a box, and with `roll:degrees` the mesh is
-turned about it. The colours of the materials of its .mtl files are multiplied by `R,G,B`; their other attributes count
-where the line has none of its own (`minirt.meshes.mtl`).
+turned about it. The colours of the materials of its .mtl files, and their textures, are multiplied by `R,G,B`; their
+other attributes count where the line has none of its own (`minirt.meshes.mtl`).
 
     ob meshes/knot.obj 0,1,20 2.5 220,180,90    a knot, two and a half times as large as in its file
 """
@@ -89,7 +89,9 @@ class Mesh(Turnable):
             return None
         if np.abs(self.box).max() <= FARTHEST:
             return None
-        return "scale", f"must not be so large that the mesh reaches beyond {FARTHEST:g}"
+        fits_about_origin = np.abs(self.box - self.position).max() <= FARTHEST
+        name, much = ("position", "far out") if fits_about_origin else ("scale", "large")
+        return name, f"must not be so {much} that the mesh reaches beyond {FARTHEST:g}"
 
     @property
     def triangles(self) -> meshes.Triangles:
@@ -110,18 +112,23 @@ class Mesh(Turnable):
     def looks(self) -> tuple[Mesh, ...]:
         """One of its triangles for each material of its file, with the attributes of that and the mesh's own, which
         count more; the mesh itself where the file has none. The colours are multiplied."""
-        if not self.triangles.materials:
+        if self.triangles.material_of is None:
             return (self,)
-        triangle = replace(self.triangles.some(np.arange(1)), material_of=None, materials=())
-        one = self.replace(file=MeshFile(self.file.name, triangle))
+        triangle = replace(self.triangles.some(np.arange(1)), material_of=None)
         own = {name: value for name in ATTRIBUTES if (value := getattr(self, name)) is not None}
         return tuple(
-            one.replace(
+            self.replace(
+                file=MeshFile(self.file.name, replace(triangle, materials=(material,) * (self.texture is None))),
                 **{name: getattr(material, name) for name in ATTRIBUTES} | own,
                 colour=tuple(round(a * b / 255) for a, b in zip(self.colour, material.colour, strict=True)),
             )
             for material in self.triangles.materials
         )
+
+    @property
+    def filter(self) -> Triple:  # type: ignore[override]
+        """The colour of one of the `looks`, which multiplies the texture of its material; white otherwise."""
+        return self.colour if self.triangles.materials else super().filter
 
     def look_numbers(self) -> np.ndarray:
         """The index in `looks` of that of each triangle, (m,)."""

@@ -95,7 +95,7 @@ def test_a_file_is_packed_once_under_all_its_names(tmp_path: Path, decodes: bool
     pool = Reader(scene)
     names = "a.png", "link.png", "same_pixels.png", "hard.png"
     pool.colours = Colours(decodes)
-    assert [pool.texture(name) for name in names] == [1, 1, 2, 1]
+    assert [pool.texture(name, (255, 255, 255)) for name in names] == [1, 1, 2, 1]
     assert pool.arrays()["texels"].size == 2 * COLOURS.size
 
 

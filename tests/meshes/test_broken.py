@@ -15,6 +15,7 @@ BROKEN = {
     "\n# nothing\n": "has no faces",
     SQUARE: "has no faces",
     SQUARE + "f 1 1 2\n": "has no triangle that is more than a line",
+    "v 0 0 0\nv 1e-310 0 0\nv 0 1e-99 0\nf 1 2 3\n": "has no triangle that is more than a line, or larger than 1e-75",
     SQUARE + "f 1 2\n": "line 6: a face has at least 3 corners, got 2",
     SQUARE + "f\n": "line 6: a face has at least 3 corners, got 0",
     SQUARE + "f 1 2 0\n": f"line 6, column 7: a corner names {MISSING}",
@@ -32,8 +33,8 @@ BROKEN = {
     SQUARE + "f 1 2 1_0\n": "line 6, column 7: the point of a corner must be a whole number",
     "v 0 0\n": "line 1: v has x y z, got 2 numbers",
     "v 0 0 0 1 1 1 1 1\n": "line 1: v has x y z, got 8 numbers",
-    "v 0 0 nan\n": "line 1, column 7: v must be a number",
-    "v 0 0 0\nv 1 inf 0\n": "line 2, column 5: v must be a number",
+    "v 0 0 nan\nf 1 1 1\n": "line 1, column 7: v must be a number",
+    "v 0 0 0\nv 1 inf 0\nf 1 1 2\n": "line 2, column 5: v must be a number",
     "v 1e400 0 0\n": "line 1, column 3: v must be a number that a float64 can hold",
     "v 0 -2e15 0\n": "line 1, column 5: v must be in [-1e+15, 1e+15]",
     "v 0 1_0 0\n": "line 1, column 5: v must be a number",
@@ -54,6 +55,42 @@ def test_a_broken_file_is_refused(text: str, message: str) -> None:
     with pytest.raises(ObjError) as caught:
         obj.parse(text.encode())
     assert str(caught.value) == message
+
+
+NOT_FINITE = ("has points that no face names with a coordinate that is no number: they are skipped",)
+WORDS = "nan", "NaN", "-nan", "inf", "-Infinity", "\\\n+INF"
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("place", range(3))
+def test_a_point_that_is_no_number_counts_only_if_a_face_names_it(
+    monkeypatch: pytest.MonkeyPatch, word: str, place: int
+) -> None:
+    monkeypatch.setattr(obj, "BLOCK_BYTES", 20)
+    coordinates = ["0", "1e3", "2"]
+    coordinates[place] = word
+    line = f"v {' '.join(coordinates)}\n"
+    for before, after in ((SQUARE, ""), ("", SQUARE)):
+        first = 2 if after else 1
+        text = f"{before}{line}{after}f {first} {first + 1} {first + 2}\n"
+        mesh = obj.parse(text.encode())
+        assert (mesh.points.tolist(), mesh.notices) == ([[0, 0, 0], [1, 0, 0], [1, 1, 0]], NOT_FINITE)
+        number = 1 if after else 6
+        with pytest.raises(ObjError, match=rf"^line {number}, column [0-9]+: v must be a number$"):
+            obj.parse((text + f"f 2 3 {1 if after else 5}\n").encode())
+
+
+@pytest.mark.parametrize("line", ["v 0 0 0 nan 0 0", "vt nan 0", "vn 0 0 inf", "v nano 0 0", "v nan_ 0 0", "v -x 0 0"])
+def test_other_words_are_no_numbers(line: str) -> None:
+    with pytest.raises(ObjError, match=r"^line 6, column [0-9]+: vt? must be a number$|: vn must be a number$"):
+        obj.parse((SQUARE + line + "\nf 1 2 3\n").encode())
+
+
+@pytest.mark.parametrize("code", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_a_text_in_utf16_is_named(code: str) -> None:
+    with pytest.raises(ObjError, match=r"^is UTF-16: save it as UTF-8$"):
+        obj.parse((SQUARE + "f 1 2 3\n").encode(code))
+    assert len(obj.parse((SQUARE + "f 1 2 3\n").encode("utf-8-sig"))) == 1
 
 
 def test_binary_data_is_refused() -> None:

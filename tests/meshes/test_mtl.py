@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import sys
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,8 @@ from minirt.meshes import load_mesh
 from minirt.meshes.mtl import MeshMaterial
 from minirt.rendering.packing import materials as packing
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.scene import Scene, load
+from minirt.rendering.tone_mapping import decode_srgb
+from minirt.scene import Scene, load, parse
 
 FACE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\nusemtl one\nf 1 2 3\n"
 
@@ -55,6 +57,7 @@ MEANT = {
     ("Tr 0.25",): {"glass": Glass(1.0, 0.25)},
     ("d 1.0", "Tr 1.0"): {},
     ("d 0",): {"glass": Glass(1.0, 1.0)},
+    ("Kd 0 0 0",): {"colour": (0, 0, 0)},
 }
 
 
@@ -85,6 +88,32 @@ def test_what_is_not_used_is_said_once(folder: Path) -> None:
     (folder / "a.mtl").write_text("newmtl one\nKd 1 0 0\n")
     (folder / "a.obj").write_text(FACE.replace("usemtl one", "usemtl two"))
     assert load_mesh(folder / "a.obj").notices == (UNUSED.format("materials that no file has"),)
+
+
+def test_a_black_kd_beside_a_picture_is_left_out_with_a_notice(folder: Path) -> None:
+    file = str(folder / "maps" / "my relief.png")
+    for lines in permutations(("Kd 0 0 0", "map_Kd maps/my relief.png")):
+        notice = UNUSED.format("a black Kd beside map_Kd")
+        assert material(folder, *lines) == (MeshMaterial(texture=file), (notice,))
+    assert material(folder, "Kd 0 0 0", "map_Kd none.png")[0] == MeshMaterial(colour=(0, 0, 0))
+
+
+EVEN = 200, 100, 255
+LIT = "A 1 255,255,255\nC 0.25,0.25,-1 0,0,1 20 {}\n"
+
+
+@pytest.mark.parametrize("tone", ["tone:plain", "tone:srgb"])
+def test_the_colour_of_a_material_multiplies_the_light_of_its_picture(folder: Path, tone: str) -> None:
+    """The colour is that of the line times Kd, as of a mesh without pictures; a texture of the line replaces it all."""
+    Image.new("RGB", (2, 2), EVEN).save(folder / "even.png")
+    material(folder, "Kd 0.8 1 0.2", "map_Kd even.png")
+    (folder / "a.obj").write_text(FACE)
+    decodes = tone == "tone:srgb"
+    picture, colour = (decode_srgb(each) if decodes else each for each in np.divide([EVEN, (80, 255, 51)], 255))
+    for own, light in (("", picture * colour), ("texture:even.png", picture)):
+        text = LIT.format(tone) + f"ob a.obj 0,0,0 1 100,255,255 {own}\n"
+        linear = minirt.render(parse(text, str(folder / "x.rt")).scene, 4, 4, linear=True).linear
+        assert np.allclose(linear, light, atol=1e-6)
 
 
 HEAD = (
@@ -157,7 +186,7 @@ def test_other_files_are_read_by_trimesh(folder: Path, suffix: str) -> None:
     trimesh = pytest.importorskip("trimesh", reason="pip install trimesh scipy")
     trimesh.creation.box((1, 2, 4)).export(folder / f"box.{suffix}")
     mesh = load_mesh(folder / f"box.{suffix}")
-    assert (len(mesh), mesh.closed, mesh.normals is not None) == (12, True, suffix == "glb")
+    assert (len(mesh), mesh.closed, mesh.normals is not None) == (12, True, False)
     assert mesh.box.tolist() == [[-0.5, -1, -2], [0.5, 1, 2]]
 
 

@@ -81,7 +81,10 @@ def test_an_unreadable_mesh_file_is_an_error_at_its_name(folder: Path, line: str
         ("ob meshes/one.obj 0,0,z 1 9,9,9", "mesh position z must be a number, got 'z'"),
         ("ob meshes/one.obj 0,0,0 1", "mesh colour is missing: expected 'ob file x,y,z scale R,G,B'"),
         ("ob 0,0,0 1 9,9,9", "mesh colour is missing: expected 'ob file x,y,z scale R,G,B'"),
-        ("ob meshes/one.obj 1e15,0,0 1e3 9,9,9", "mesh scale must not be so large that the mesh reaches beyond 1e+15"),
+        (
+            "ob meshes/one.obj 1e15,0,0 1e3 9,9,9",
+            "mesh position must not be so far out that the mesh reaches beyond 1e+15",
+        ),
     ],
 )
 def test_a_wrong_mesh_line_is_refused(folder: Path, line: str, message: str) -> None:

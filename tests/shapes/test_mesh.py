@@ -146,8 +146,10 @@ def test_it_is_made_with_a_name_in_python(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_mesh_must_not_reach_too_far() -> None:
     assert named("icosahedron", scale=1e15).bounds()[1][0] == pytest.approx(0.85065e15)
-    with pytest.raises(ElementError, match="scale must not be so large that the mesh reaches beyond 1e"):
+    with pytest.raises(ElementError, match="position must not be so far out that the mesh reaches beyond 1e"):
         named("icosahedron", scale=1e15, position=(9e14, 0, 0))
+    with pytest.raises(ElementError, match="scale must not be so large that the mesh reaches beyond 1e"):
+        Mesh.from_arrays([[0, 0, 0], [2, 0, 0], [0, 2, 0]], [[0, 1, 2]], scale=1e15, position=(-9e14, 0, 0))
 
 
 def surface_mapping(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:

@@ -45,9 +45,9 @@ class Colours(NamedTuple):
             return colours_and_extents
         return np.hstack([decode_srgb(colours_and_extents[:, :3]), colours_and_extents[:, 3:]])
 
-    def texture(self, path: Path) -> np.ndarray:
-        """Read a picture file whose bytes are not in proportion to light as shares of light."""
-        return self.of_bytes.take(pictures.picture(path))
+    def texture(self, path: Path, colour: tuple[float, ...]) -> np.ndarray:
+        """Read a picture file as shares of light, multiplied by those of a colour."""
+        return self.of_bytes.take(pictures.picture(path)) * self.shares(colour).astype(np.float32)
 
     def sky(self, path: Path) -> np.ndarray:
         """Read a picture file as the light of a sky, exposed; bytes where they are in proportion to light in [0, 1]."""

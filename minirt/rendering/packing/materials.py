@@ -6,7 +6,6 @@ Each material states its own rows: see `minirt.materials.Material.rows`.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Set
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,7 @@ from minirt.shapes.frames import basis
 from minirt.shapes.shape import UPRIGHT, Flat, Oriented
 from minirt.shapes.triangle import Triangle
 
-PictureReader = Callable[[Path], np.ndarray]
+PictureReader = Callable[..., np.ndarray]  # of a path
 PATTERN_FEATURES = {"patterns", "raised_patterns"}
 KINDS = {"marble": MARBLE, "wood": WOOD, "clouds": CLOUDS}  # in the order in which a shape gets them
 BEHIND = 3.5  # sizes from a flat surface to the middle of its rings
@@ -152,12 +151,14 @@ class Reader:
         self.scene = scene
         self.colours = colours_of(scene.camera)
         self.shares, self.gain = self.colours.shares, self.colours.gain
-        self.numbers: dict[tuple[PictureReader, int, int], int] = {}  # by device and inode
+        self.numbers: dict[tuple[Hashable, ...], int] = {}  # by how they are read, device and inode
         self.images: list[np.ndarray] = []
 
-    def texture(self, file: str) -> int:
-        """Load colours as shares of light, and return the number of the picture."""
-        return self.number(file, self.colours.texture if self.colours.decodes else pictures.picture)
+    def texture(self, file: str, colour: tuple[float, ...]) -> int:
+        """Load colours as shares of light, multiplied by those of a colour, and return the number of the picture."""
+        if self.colours.decodes or min(colour) < 255:
+            return self.number(file, self.colours.texture, colour)
+        return self.number(file, pictures.picture)
 
     def heights(self, file: str) -> int:
         return self.number(file, pictures.heights)
@@ -165,13 +166,13 @@ class Reader:
     def normals(self, file: str) -> int:
         return self.number(file, pictures.picture)
 
-    def number(self, file: str, read: PictureReader) -> int:
+    def number(self, file: str, read: PictureReader, *how: Hashable) -> int:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         path = self.scene.beside(file)
         status = file_io.status(path, file_io.LARGEST_ASSET)
-        key = read, status.st_dev, status.st_ino  # which all links to it share
+        key = read, *how, status.st_dev, status.st_ino  # which all links to it share
         if key not in self.numbers:
-            self.images.append(read(path))
+            self.images.append(read(path, *how))
             check_textures(self.images)
             self.numbers[key] = len(self.images)
         return self.numbers[key]
