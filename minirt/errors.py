@@ -17,7 +17,7 @@ Only `minirt.cli` prints them.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
 from operator import index
@@ -38,13 +38,14 @@ class Problem:
     text: str  # the line as it stands in the file
     message: str  # what was expected, and what was found
     length: int = 1  # characters to underline
+    hint: str = ""  # the line that may be meant, '' where that is unknown
 
     def __str__(self) -> str:
         file = printable(self.file)
         if not self.line:
             return f"{file}: {self.message}"
         location = f"{file}:{self.line}:{self.column}: {self.message}"
-        return location + "\n" + excerpt(self.text, self.column, self.length)
+        return location + "\n" + excerpt(self.text, self.column, self.length) if self.text else location
 
 
 def printable(text: str) -> str:
@@ -132,11 +133,15 @@ class MlxError(MiniRTError):
 
 
 class FieldError(ValueError):
-    """A value that a field cannot take; `part` is the number of the wrong component, from 0, None for all of it."""
+    """A value that a field cannot take; `part` is the number of the wrong component, from 0, None for all of it.
 
-    def __init__(self, message: str, part: int | None = None) -> None:
+    `further` are the errors of further components.
+    """
+
+    def __init__(self, message: str, part: int | None = None, further: Sequence[FieldError] = ()) -> None:
         super().__init__(message)
         self.part = part
+        self.further = further
 
 
 class ElementError(MiniRTError, ValueError):

@@ -44,7 +44,6 @@ def check_as_json(options: argparse.Namespace) -> int:
     import json
 
     from minirt.cli.files import read_scene
-    from minirt.scene.dialects import meant
 
     try:
         told = [("notice", each) for each in read_scene(options).notices]
@@ -53,8 +52,7 @@ def check_as_json(options: argparse.Namespace) -> int:
     problems = []
     for severity, each in told:
         place = {name: getattr(each, name) for name in ("file", "line", "column", "length")}
-        hint = meant(each.line, each.text) if severity == "error" and each.line else ""
-        problems.append({**place, "severity": severity, "message": each.message, "hint": hint})
+        problems.append({**place, "severity": severity, "message": each.message, "hint": each.hint})
     say(json.dumps(problems))
     return FAILED if any(severity == "error" for severity, _ in told) else OK
 

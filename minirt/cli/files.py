@@ -62,7 +62,7 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
 def note_lenience(path: str, error: SceneError) -> None:
     """Add notes to the error of a file: what its lines may mean, and whether --lenient reads it."""
     from minirt.scene import load
-    from minirt.scene.dialects import suggestions
+    from minirt.scene.hints import suggestions
 
     for suggestion in suggestions(error.problems):
         error.add_note(suggestion)

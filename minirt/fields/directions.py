@@ -14,6 +14,7 @@ from minirt.fields.scalars import Scalar, number, spelled
 from minirt.fields.triples import Three, Triple
 from minirt.records import record
 
+SCALED = "directions are scaled to length 1"  # a notice
 SLACK = 1e-3  # by which the length of a direction may differ from 1 without a notice
 DIGITS = 9  # significant digits of a neat component
 LEAST = 1e-12  # a neat component that is smaller is 0
@@ -42,8 +43,7 @@ class Direction(Three):
         return list(map(unit, super().values(numbers)))
 
     def remark(self, value: Triple) -> str:
-        length = math.hypot(*value)
-        return f"has length {length:.4g}, and is scaled to 1" if abs(length - 1) > SLACK else ""
+        return SCALED if abs(math.hypot(*value) - 1) > SLACK else ""
 
     def format(self, value: Triple) -> str:
         return ",".join(map(plain_decimal, shortest(value)))

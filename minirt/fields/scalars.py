@@ -41,7 +41,7 @@ def whole(text: str) -> int:
 def found(text: str) -> str:
     """The part of a message that quotes a wrong number, with the reason if it cannot be seen."""
     if len(text) > LONGEST:
-        return f"got {len(text)} characters: {quoted(text)}"
+        return f"got {len(text)} characters: {quoted(text)}, which is too long"
     foreign = next((character for character in text if not character.isascii()), "")
     return f"got {quoted(text)}" + (f": {code_point_name(foreign)} is not ASCII" if foreign else "")
 

@@ -29,16 +29,19 @@ class Three(Field):
         if len(parts) != 3:
             extra = 3 if len(parts) > 3 else None
             raise FieldError(f"must be {self.names}, three numbers with commas between them, got {quoted(text)}", extra)
-        return self.of_each(self.component.parse, parts)
+        return self.of_each(self.component.parse, parts, every=False)
 
-    def of_each(self, function: Callable[[Any], Any], parts: Sequence[Any]) -> Triple:
-        """The results of a function of each component; FieldError, which names the component."""
-        results = []
+    def of_each(self, function: Callable[[Any], Any], parts: Sequence[Any], every: bool = True) -> Triple:
+        """The results of a function of each component; FieldError, which names every wrong component, or the first."""
+        results, errors = [], []
         for part, component in enumerate(parts):
             try:
                 results.append(function(component))
             except FieldError as error:
-                raise FieldError(f"{self.names[2 * part]} {error}", part) from None
+                errors.append(FieldError(f"{self.names[2 * part]} {error}", part))
+        if errors:
+            errors[0].further = errors[1:] if every else ()
+            raise errors[0]
         x, y, z = results
         return x, y, z
 

@@ -11,33 +11,35 @@ from pathlib import Path
 from typing import Any
 
 from minirt.fields import Triple, clamp, cos_and_sin, neat, upright
+from minirt.fields.directions import SCALED  # noqa: F401 - one of the sorts below
 from minirt.scene.elements import linear_combination
 
 # Sorts of changes, as notices tell them.
 LEFT_OUT = "words without a meaning here are left out"
 SETTINGS = "settings of other programs are left out"
 MISSING = "shapes are missing"
-INCOMPLETE = "shapes without all of their fields are missing"
+INCOMPLETE = "shapes without all of their fields, or with sizes out of range, are missing"
 LIGHTS = "lights that cannot be read are left out"
 UNREAD = (SETTINGS, MISSING, INCOMPLETE, LIGHTS)
 NEAREST = "numbers become the nearest ones that can be there"
 DECIMALS = "decimal commas become points"
-SCALED = "directions are scaled to length 1"
 NOWHERE = "directions of 0,0,0 become those of this format"
 FOURTH = "fourth components are dropped"
 JOINED = "blanks among three numbers become commas"
 NAMED = "names of colours and materials become their R,G,B"
 WHITE = "what has no colour is white"
-SLASHES = "comments behind // become comments behind #"
+SLASHES = "comments behind // or -- become comments behind #"
 DARK = "there is no ambient light, and what no light reaches is black"
 ORDER = "fields in another order become those of this format, without turns and second axes"
 APEX = "cones begin at their apex and have a diameter; --cone base or --cone angle reads them in another way"
 CONVENTION = "{} are read as {} says"
 RENAMED = "elements of other names become those of this format"
-SECOND = "cameras after the first become further ones"
+SECOND = "lights and cameras after the first become further ones"
+SHARES = "colours of 0 to 1 become those of 0 to 255"
 EXPONENT = "a number behind the colour is taken for a Phong exponent, with a share of 0.5"
 REFLECTIVITY = "a number of at most 1 behind the colour is taken for a share of mirrored light"
 CHECKERS = "checkers become checker:"
+TWO_COLOURS = "checkers of two colours become checker:, with the colour of the shape in place of the first"
 PICTURES = "pictures behind the colour become texture:, bump: or normal:"
 ABSENT = "pictures that cannot be read are left out"
 GLASS = "shares of transparency with an index become glass:"
@@ -46,7 +48,7 @@ HIGHLIGHTS = "highlights and mirrors become specular: and mirror:"
 # Sorts that tell another way to write. What the others mend is a mistake, such as a number out of range.
 DIALECT = (
     *(LEFT_OUT, SETTINGS, MISSING, LIGHTS, DECIMALS, FOURTH, JOINED, NAMED, SLASHES, ORDER, RENAMED),
-    *(EXPONENT, REFLECTIVITY, CHECKERS, PICTURES, ABSENT, GLASS, HIGHLIGHTS),
+    *(EXPONENT, REFLECTIVITY, CHECKERS, TWO_COLOURS, PICTURES, ABSENT, GLASS, HIGHLIGHTS),
 )
 
 NUMBER = r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?"
@@ -59,6 +61,7 @@ OTHER_NAMES = {
     "pa": "pb par",
     "l": "lpt ptl pt lp",
     "c": "cam camera",
+    "bg": "sky background",
     "hy": "hb",
 }
 CODES = {name: code for code, names in OTHER_NAMES.items() for name in names.split()}
@@ -121,6 +124,7 @@ def one_number(text: str) -> str:
 
 N, C = r"([-+]?[0-9]*\.?[0-9]+)", r"([0-9.]+,[0-9.]+,[0-9.]+)"
 FILE = r"[\"']?([^\"':=; ]+\.(?:xpm|png|jpe?g|ppm|bmp|tga))[\"']?"
+USUAL = "usual"  # stands for the size of a square that `checker` alone has
 CHECKER = r"-?-?(?:ch|chk|cb|cd|checker\w*|chess\w*|pattern|pat|damier)"
 
 # Meanings of one or two words behind the fields: a pattern of the words, with one blank between two, attributes from
@@ -129,8 +133,8 @@ ROWS: tuple[tuple[str, Callable[..., str], str], ...] = (
     (rf"{N} {N}", two_numbers, EXPONENT),
     (r"([-+]?0*[1-9][0-9]*(?:\.[0-9]*)?)", one_number, EXPONENT),
     (N, one_number, REFLECTIVITY),
-    (rf"{CHECKER}[:= ]{C}[:;]{C}(?:[:;]{N})?", lambda _one, two, size: f"checker:{size or 1},{two}", CHECKERS),
-    (rf"{CHECKER}[:= ]{C}", lambda colour: f"checker:1,{colour}", CHECKERS),
+    (rf"{CHECKER}[:= ]{C}[:;]{C}(?:[:;]{N})?", lambda _one, two, size: f"checker:{size or USUAL},{two}", TWO_COLOURS),
+    (rf"{CHECKER}[:= ]{C}", lambda colour: f"checker:{USUAL},{colour}", CHECKERS),
     (rf"{CHECKER}[:= ]{N}", lambda size: f"checker:{size}", CHECKERS),
     (CHECKER, lambda: "checker", CHECKERS),
     (rf"-?-?(?:b|bu|bum|bump\w*|bm|rb|height\w*)[:= ]{FILE}", lambda file: f"bump:{file}", PICTURES),

@@ -14,25 +14,26 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, positional_fields
-from minirt.errors import FieldError, FileError, Problem, printable, quoted
-from minirt.fields import Colour, Direction, Field, Length, Real, Three, Triple, clamp, unit
+from minirt.errors import FieldError, FileError, Problem, quoted
+from minirt.fields import Colour, Direction, Field, Real, Three, Triple, Whole, clamp, unit
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
 from minirt.materials import pictures
 from minirt.scene import dialect_tables as tables
 from minirt.scene.dialect_tables import NUMBER
 from minirt.scene.element_reader import HEX_COLOUR, SLASHES, split_key
-from minirt.scene.elements import FURTHER, LAMPS, Ambient, Camera, FurtherCamera, Resolution
-from minirt.scene.lines import MAX_WORDS, Line, Log, first_unprintable, line_from
+from minirt.scene.elements import FURTHER, LAMPS, Ambient, Background, Camera, FurtherCamera, Light, Resolution
+from minirt.scene.lines import MAX_WORDS, TAKEN, Line, Log, first_unprintable, line_from
 from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
 from minirt.shapes import Cone
 
 # Blanks may stand around the commas of three numbers, and within quotes.
-WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|\"[^\"]*\"|[^ \t]+")
+WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|(?:\"[^\"]*\"|[^ \t\"])+|[^ \t]+")
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
+DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
-MOST_SUGGESTED = 3  # lines
+OUT_OF_RANGE = -1  # the part of an error about a field whose value is well spelled
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
 
 Changes = list[tuple[str, str]]  # sorts of changes, and the words that each is about
@@ -78,7 +79,7 @@ def translated(
         return None
     if not found:
         return Translation("", changes)
-    code, *values = words = [word if word[0] == '"' else "".join(word.split()) for word in found]
+    code, *values = words = [word if '"' in word else "".join(word.split()) for word in found]
     changes += [(tables.JOINED, old) for old, new in zip(found, words, strict=True) if old != new]
     kind = kind_of(code)
     if kind is None:
@@ -89,14 +90,17 @@ def translated(
     is_second = kind.code in (seen or ())
     kind = FURTHER.get(kind, kind) if is_second else kind
     if kind is not SPELLINGS.get(code):
-        changes.append((tables.SECOND if is_second and code == Camera.code else tables.RENAMED, code))
+        is_repeated = is_second and code in (Camera.code, Light.code)
+        changes.append((tables.SECOND if is_repeated else tables.RENAMED, f"{code}{TAKEN}{kind.code}"))
     ordered = in_order(kind.code, values)
     if ordered != values:
         changes.append((tables.ORDER, code))
     try:
         spelled = fields_of_words(kind, ordered, colours, changes)
-    except FieldError:
-        return Translation("", [(tables.SETTINGS, code)]) if kind in (Resolution, FurtherCamera) else None
+    except FieldError as error:
+        is_missing = kind in SHAPES and error.part == OUT_OF_RANGE
+        told = (tables.INCOMPLETE, f"{code} ({error})") if is_missing else (tables.SETTINGS, code)
+        return Translation("", [told]) if is_missing or kind in (Resolution, FurtherCamera) else None
     if spelled is None:
         unread = tables.INCOMPLETE if kind in SHAPES else tables.LIGHTS if kind in LAMPS else tables.SETTINGS
         return Translation("", [(unread, code)]) if kind not in (Ambient, Camera) else None
@@ -114,9 +118,9 @@ def body_of(line: Line) -> tuple[str, str, Changes]:
         changes.append((tables.NAMED, hex_colour[0]))
         text = text[: line.end] + css_colour(hex_colour[0]) + text[hex_colour.end() :]
     body, _, comment = text.partition("#")
-    slashes = SLASHES.search(body)
+    slashes = SLASHES.search(body) or DASHES.search(body)
     if slashes:
-        changes.append((tables.SLASHES, "//"))
+        changes.append((tables.SLASHES, slashes[0]))
         body, comment = text[: slashes.start()], text[slashes.end() :]
     return body, f" #{comment}" * bool(comment), changes
 
@@ -125,6 +129,8 @@ def without_shape(line: Line, errors: list[Problem]) -> Translation | None:
     """Leave out the line of a shape that is well spelled but for `errors`, such as a file that is absent."""
     code = line.text.split()[0]
     reason = errors[0].message.rpartition(": ")[2]
+    if kind_of(code) is Background and code != Background.code:
+        return Translation("", [(tables.SETTINGS, code)])
     return Translation("", [(tables.MISSING, f"{code} ({reason})")]) if kind_of(code) in SHAPES else None
 
 
@@ -159,16 +165,27 @@ def fields_of_words(
             spelled = Spelling("255,255,255", 0, tables.WHITE)
         if spelled is None and field.required:
             other = NUMBER if isinstance(field, Three) else TRIPLE.pattern  # and attributes
+            if words and is_well_spelled(field, words[0]):
+                raise FieldError(f"its {field.title} cannot be {words[0]}", OUT_OF_RANGE)
             if words and not re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", words[0]):
                 raise FieldError(f"cannot be {quoted(words[0])}")
             return None
         if spelled is None:
             break
         if spelled.sort:
-            changes.append((spelled.sort, " ".join(words[: spelled.words] or [kind.code])))
+            old = " ".join(words[: spelled.words])
+            changes.append((spelled.sort, f"{old}{TAKEN}{spelled.text}" if old else kind.code))
         fields.append(spelled.text)
         words = words[spelled.words :]
     return fields, words
+
+
+def is_well_spelled(field: Field, text: str) -> bool:
+    """Whether a text is that of a value, in range or not."""
+    with suppress(FieldError):
+        field.parse(text)
+        return True
+    return False
 
 
 def colour_first(words: list[str], colours: Mapping[str, str]) -> list[str]:
@@ -205,6 +222,8 @@ def readings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iter
     if isinstance(field, Colour):
         if name := colours.get(word) or css_colour(word):
             yield Spelling(name, 1, tables.NAMED)
+        if levels := levels_of_shares(word):
+            yield Spelling(levels, 1, tables.SHARES)
         if levels := nearest_colour(word):
             yield Spelling(levels, 1, tables.NEAREST)
     if isinstance(field, Scalar) and word.count(",") == 1:
@@ -220,6 +239,15 @@ def css_colour(name: str) -> str:
     return ""
 
 
+def levels_of_shares(word: str) -> str:
+    """Return the R,G,B from 0 to 255 of three shares from 0 to 1, of which one is no whole number; '' for others."""
+    with suppress(ValueError):
+        shares = [float(part) for part in word.split(",")]
+        if len(shares) == 3 and min(shares) >= 0 and max(shares) <= 1 and any(each % 1 for each in shares):
+            return ",".join(str(int(255 * each + 0.5)) for each in shares)
+    return ""
+
+
 def nearest_colour(word: str) -> str:
     """Return the whole R,G,B from 0 to 255 next to the first three of some numbers, '' for other words."""
     parts = word.split(",")[:3]
@@ -232,7 +260,7 @@ def fit(field: Field, value: Any) -> tuple[Any, str]:
     """Return the value of a field next to one that is out of range, and what was done; FieldError where none is."""
     if isinstance(field, Direction):
         return (unit(value), tables.SCALED) if any(value) else (field.instead, tables.NOWHERE)
-    if isinstance(field, Real) and not isinstance(field, Length):
+    if isinstance(field, Real) or (isinstance(field, Whole) and value > field.high):
         return clamp(value, field.low, field.high), tables.NEAREST
     raise FieldError("has no value next to it")
 
@@ -263,6 +291,7 @@ def meanings(kind: type[Element], words: list[str], folder: Path | None, changes
         used, attributes, sort = 1, "", ""
         if hindrance(words[0].replace("=", ":", 1)):
             used, attributes, sort = meaning(words, are_guessed)
+            attributes = attributes.replace(tables.USUAL, getattr(keyed.get("checker"), "bare", ""))
         sort = next(filter(None, map(hindrance, attributes.split())), sort)
         if sort:
             changes.append((sort, " ".join(words[:used])))
@@ -346,16 +375,3 @@ def direction_as_written(line: Line, log: Log) -> Triple:
     text = next(scaled, "") or TRIPLE.findall(line.text)[1]
     x, y, z = map(float, re.findall(NUMBER, text)[:3])
     return x, y, z
-
-
-def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
-    """Yield what the first of the lines that a strict reader refuses may mean."""
-    for number, text in list(dict.fromkeys((each.line, each.text) for each in problems))[:MOST_SUGGESTED]:
-        if text := meant(number, text):
-            yield f"line {number}: did you mean '{printable(text)}'?"
-
-
-def meant(number: int, text: str) -> str:
-    """Return what a line that a strict reader refuses may mean, '' where that is unknown or the line itself."""
-    translation = translated(line_from(number, text), colours={}, folder=None)
-    return translation.text if translation and translation.text.split() != text.split() else ""

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import combinations, starmap, takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, pattern, positional_fields
 from minirt.errors import FieldError, FileError, hint, quoted
-from minirt.fields import Colour, Field, MeshFile, PictureFile
+from minirt.fields import Colour, Direction, Field, MeshField, MeshFile, PictureFile
 from minirt.fields.scalars import code_point_name
 from minirt.helpers import file_io
 from minirt.materials import pictures
@@ -51,9 +52,9 @@ class Slot(NamedTuple):
 
 
 def is_attribute(raw: str, keyed: dict[str, Field]) -> bool:
-    """Whether a word is `key:value`, or a key that may stand alone."""
+    """Whether a word is `key:value`, `key` or, which is wrong, `key=value`."""
     key, start = split_key(raw)
-    return start > 0 or (key in keyed and bool(keyed[key].bare))
+    return start > 0 or key.partition("=")[0] in keyed
 
 
 def split_key(word: str) -> tuple[str, int]:
@@ -112,16 +113,33 @@ def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: L
         message = f"{name} must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
         log.error(line, message, line.end + 1, len(hex_colour[0]))
         return []
-    missing = [field.title for field in positional[len(values) :] if field.required]
+    given = fields_of_words(positional, values)
+    missing = [field for field in positional if field.required and field not in given]
     if missing:
-        names = f"{kind.title} {' and '.join(missing)} {'is' if len(missing) == 1 else 'are'}"
-        log.error(line, f"{names} missing: expected '{pattern(kind)}'", line_words[len(values)].end)
-        return []
-    slots = [Slot(kind, field, word) for field, word in zip(positional, values, strict=False)]
+        names = f"{kind.title} {' and '.join(each.title for each in missing)} {'is' if len(missing) == 1 else 'are'}"
+        before = line_words[positional.index(missing[0])]
+        log.error(line, f"{names} missing: expected '{pattern(kind)}'", before.end)
+        attributes = [word for word in attributes if is_attribute(word.text, keyed)]
+    slots = [Slot(kind, field, word) for field, word in zip(given, values, strict=False)]
     if len(values) > len(positional):
         report_extra_word(kind, slots, values[len(positional)], line, log)
-        return []
+        slots = []
     return slots + attribute_slots(kind, attributes, line, log)
+
+
+def fields_of_words(positional: Sequence[Field], words: list[Word]) -> list[Field]:
+    """Return the fields that the words of a line seem to be meant for, where there are fewer words than fields."""
+    if len(words) >= sum(field.required for field in positional):
+        return list(positional[: len(words)])
+    for fields in combinations(positional, len(words)):
+        if all(starmap(has_parts_of, zip(fields, words, strict=True))):
+            return list(fields)
+    return [field for field, _ in takewhile(lambda pair: has_parts_of(*pair), zip(positional, words, strict=False))]
+
+
+def has_parts_of(field: Field, word: Word) -> bool:
+    """Whether a word has as many numbers as a field."""
+    return word.text.count(",") == field.width - 1
 
 
 def report_extra_word(kind: type[Element], slots: list[Slot], extra: Word, line: Line, log: Log) -> None:
@@ -145,7 +163,15 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
         key, start = split_key(word.text)
         written = word.text[: start - 1] if start else word.text
         field = keyed.get(key)
-        if not is_attribute(word.text, keyed):
+        if "=" in key and not start:
+            right = word.text.replace("=", ":", 1)
+            log.error(line, f"an attribute is written with a colon: {quoted(right)}", word.column, len(word.text))
+        elif field and not start and not field.bare:
+            message = f"{kind.title} {key} needs a value: '{field.notation}'"
+            if isinstance(field.initial, float):
+                message += f", such as '{field.prefix}{field.format(field.initial)}'"
+            log.error(line, message, word.column, len(word.text))
+        elif not is_attribute(word.text, keyed):
             log.error(line, f"only attributes 'name:value' follow an attribute, got {quoted(word.text)}", word.column)
         elif field is None:
             log.error(line, unknown_key_message(kind, key), word.column, len(written))
@@ -187,10 +213,14 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
         repair = field.repair(text)
         if repair is None:
             log.error(line, message, *span)
+            for each in error.further:
+                log.error(line, f"{slot.title} {each}", *slot.span(each.part))
             return None
         log.notice(line, f"{message} (miniRT {repair.deed})", *span)
         return repair.value
-    if remark:
+    if remark and isinstance(field, Direction):
+        log.change(line, remark, text)
+    elif remark:
         log.notice(line, f"{slot.title} {remark}", *slot.span(None))
     return value_with_files(slot, checked, line, log) if log.folder else checked
 
@@ -221,5 +251,7 @@ def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: S
         return content
     except FileError as error:
         message = f"{slot.title} must be a {sort} file, got {quoted(file.name)}: {error.reason}"
+        if isinstance(slot.field, MeshField):
+            message = f"{slot.title} {quoted(file.name)}: {error.reason}"
         log.error(line, message, *slot.span(file.part))
         return None

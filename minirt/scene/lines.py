@@ -20,6 +20,7 @@ MAX_ERRORS_OF_LINE = 20
 MAX_NOTICES = 1000
 MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
+TAKEN = " to "  # between the words of a change and what was taken for them
 WORD = re.compile(r'(?:"[^"]*+"|[^ \t])++')  # blanks may stand within quotes
 
 
@@ -105,23 +106,27 @@ class Log:
             self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def change(self, line: Line, sort: str, words: str) -> None:
-        """Note what a lenient reader did to the words of a line, or to the whole line, whose first word they are."""
+        """Note what a reader did to the words of a line, or to the whole line, whose first word they are."""
         self.changes.setdefault(sort, []).append((line, words))
 
     def tell_changes(self) -> None:
-        """Add a notice for each sort of change, at its first place, with the words that it is about.
+        """Add a notice of one line for each sort of change, at its first place, with the words that it is about.
 
-        Of notices with the same message the first stays, with the number of places.
+        Of a lenient reader's notices with the same message the first stays, with the number of places.
         """
         first: dict[str, Problem] = {}
         for each in self.notices:
             first.setdefault(each.message, each)
         places = Counter(each.message for each in self.notices)
-        self.notices = [replace(each, message=told(message, places[message])) for message, each in first.items()]
+        if self.lenient:
+            self.notices = [replace(each, message=told(message, places[message])) for message, each in first.items()]
         for sort, changes in self.changes.items():
             (line, word), words = changes[0], list(dict.fromkeys(words for _, words in changes))
             named = ", ".join(words[:MOST_NAMED]) + ", ..." * (len(words) > MOST_NAMED)
-            self.notice(line, told(f"{sort}: {named}", len(changes)), max(1, line.text.find(word) + 1), len(word))
+            old = word.partition(TAKEN)[0]
+            found = re.search(rf"(?<![^ \t]){re.escape(old)}(?![^ \t])", line.text)
+            column = found.start() if found else max(0, line.text.find(old))
+            self.notice(line._replace(text=""), told(f"{sort}: {named}", len(changes)), column + 1, len(old))
 
 
 def told(message: str, places: int) -> str:

@@ -7,22 +7,29 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
+from math import dist
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from minirt.element import Element, pattern
+from minirt.element import Element
 from minirt.errors import FileError, Problem, SceneError, nearest
+from minirt.fields import FARTHEST, clamp
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
-from minirt.scene.elements import Camera, FurtherCamera
+from minirt.scene.elements import Ambient, Camera, FurtherCamera
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import PAGE_LENGTH, Crowd, Item, kinds_of, pages_of
-from minirt.scene.registry import ELEMENTS, nearest_element
+from minirt.scene.registry import SHAPES, nearest_element
 from minirt.scene.scene import MISSING, Scene
-from minirt.shapes.mesh import Mesh
+from minirt.scene.writer import describe
+from minirt.shapes import Mesh, Shape
 
+AMBIENT = Ambient(0.2, (255, 255, 255))
+NO_AMBIENT = f"no {Ambient.title}: a scene needs one line 'A brightness R,G,B'"
+NO_CAMERA = f"no {Camera.title}: a scene needs one line 'C x,y,z dx,dy,dz fov'"
+BACK = 2.0  # distance of a camera that is proposed, in diameters of what it shows
 NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
 
 
@@ -80,12 +87,15 @@ def parse(
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
     log = Log(name, lenient, folder)
+    sources = files.decode(text, name).split("\n")
     with gc_paused(freeze=False):  # a reader makes no cycles, and the search for them takes a quarter of its time
-        runs = read_lines(files.decode(text, name).split("\n"), log)
-    if lenient:
-        log.tell_changes()
+        runs = read_lines(sources, log)
+    log.tell_changes()
     if log.errors:
-        raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
+        from minirt.scene.hints import with_hints
+
+        errors = sorted(log.errors, key=lambda error: (error.line, error.column))
+        raise SceneError(tuple(errors if lenient else with_hints(errors, sources, log)))
     place = Path(file) if file else None
     scene = Scene.of_pages(tuple(pages_of(runs)), folder / place.name if folder and place else place)
     return Reading(scene, tuple(log.notices))
@@ -126,8 +136,7 @@ def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
         items = [*chain.from_iterable(runs)]
         dialects.complete(items, seen, log)
         runs = [items]
-    last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
-    check_required(seen, line_from(last, sources[last - 1]), log)
+    check_required(seen, sources, [*chain.from_iterable(run for run in runs if not isinstance(run, Crowd))], log)
     return runs
 
 
@@ -212,17 +221,29 @@ def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> N
             log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
 
 
-def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
-    """Report, at the last line of a file, the required elements that it does not have."""
+def check_required(seen: dict[str, int], sources: list[str], items: list[Item], log: Log) -> None:
+    """Report, at the last line of a file, the required elements that it does not have, with a line of each."""
     if not seen:
         raise files.file_error(log.file, files.NO_ELEMENTS)
-    for kind in ELEMENTS.values():
-        if kind.required and kind.code not in seen:
-            message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"
-            if kind is Camera and (further := seen.get(FurtherCamera.code)):
-                log.error(line, f"{message}; the '{FurtherCamera.code}' in line {further} is a further one", 1)
-            else:
-                log.error(line, message, 1)
+    last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
+    if Ambient.code not in seen:
+        log.error(line_from(last, sources[last - 1]), f"{NO_AMBIENT}, such as '{describe(AMBIENT)}'", 1)
+    if Camera.code not in seen and (further := seen.get(FurtherCamera.code)):
+        message = f"no {Camera.title} 'C': all are further ones, '{FurtherCamera.code}'"
+        log.error(line_from(further, sources[further - 1]), message, 1)
+    elif Camera.code not in seen:
+        camera = camera_before([item for item in items if isinstance(item, SHAPES)])
+        log.error(line_from(last, sources[last - 1]), f"{NO_CAMERA}, such as '{describe(camera)}'", 1)
+
+
+def camera_before(shapes: Sequence[Shape]) -> Camera:
+    """Return a camera that looks along z and has the bounded ones of some shapes in its picture."""
+    corners = [corner for shape in shapes for corner in shape.bounds() or ()]
+    low, high = (tuple(map(end, *corners, *corners)) if corners else (side,) * 3 for end, side in ((min, -1), (max, 1)))
+    x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
+    distance = BACK * dist(low, high) or 1.0
+    x, y, z = (clamp(float(f"{each:.3g}"), -FARTHEST, FARTHEST) for each in (x, y, z - distance))
+    return Camera((x, y, z), (0.0, 0.0, 1.0), 60.0)
 
 
 # Example scenes, which are installed with the library: `minirt.example("demo")`.

@@ -188,6 +188,8 @@ def test_an_error_names_file_line_and_column_and_shows_the_line(run: Run, folder
         "bad.rt:7:1: unknown element 'spp', did you mean 'sp'?",
         "    spp 0,0,0 1 1,2,3",
         "    ^~~",
+        "line 7: did you mean 'sp 0,0,0 1 1,2,3'?",
+        "--lenient reads this file without 2 of its shapes, and tells what it makes of it",
         "",
     ]
 

@@ -27,7 +27,7 @@ IDENTIFIERS: list[Case] = [
 COUNTS: list[Case] = [
     ("sp", 3, "sphere centre and diameter and colour are missing: expected 'sp x,y,z diameter R,G,B'"),
     ("sp 0,0,20 5", 12, "sphere colour is missing"),
-    ("sp 0,0,20 255,0,0", 18, "sphere colour is missing"),
+    ("sp 0,0,20 255,0,0", 10, "sphere diameter is missing"),
     ("R 640", 6, "resolution height is missing"),
     ("sp 0,0,20 5 255,0,0 7", 21, "sphere has no further field '7': expected 'sp x,y,z diameter R,G,B'"),
     ("sp 0,0,20 5 255,0,0 ,", 20, "no blanks may stand around a comma"),
@@ -61,7 +61,7 @@ VECTORS: list[Case] = [
     ("sp 0, 0, 20 5 255,0,0", 5, "no blanks may stand around a comma"),
     ("sp 0,0,20 5 255,0,0,", 21, "sphere colour must be R,G,B"),
     ("sp 0,0,20 5 ,255,0,0", 12, "no blanks may stand around a comma"),
-    ("sp 0,0,20 5,255,0,0", 20, "sphere colour is missing"),
+    ("sp 0,0,20 5,255,0,0", 10, "sphere diameter and colour are missing"),
     ("sp 0，0，20 5 255,0,0", 4, "must be x,y,z"),
     ("L 0,0,0 0.5 255", 13, "light colour must be R,G,B"),
 ]
@@ -137,7 +137,9 @@ SHAPES: list[Case] = on_sphere(
     ("specular:", 9, f"sphere specular share {NUMBER} ''"),
     ("specular:0.5,30,phong", 16, "sphere specular blinn must be the word 'blinn' or be left out, got 'phong'"),
     ("specular:0.5,30,blinn,1", 22, "sphere specular must be share,exponent[,blinn], got '0.5,30,blinn,1'"),
-    ("specular", 0, "sphere has no further field 'specular', did you mean 'specular:share,exponent[,blinn]'?"),
+    ("specular", 0, "sphere specular needs a value: 'specular:share,exponent[,blinn]'"),
+    ("glow", 0, "sphere glow needs a value: 'glow:share', such as 'glow:0.5'"),
+    ("glow=0.5", 0, "an attribute is written with a colon: 'glow:0.5'"),
     ("miror", 0, "sphere has no further field 'miror', did you mean 'mirror:share[,range]'?"),
     ("mirror:1.5", 7, "sphere mirror share must be in [0, 1], got 1.5"),
     ("mirror:0.5,1,2", 13, "sphere mirror must be share[,range], got '0.5,1,2'"),

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import chain
+from typing import Any
 from unittest.mock import patch
 
 import pytest
@@ -15,7 +16,7 @@ from minirt.scene import Item, fast, parser
 from minirt.scene.lines import Log
 from minirt.scene.parser import read_lines
 
-Outcome = tuple[list[Problem], list[Problem], list[object] | tuple[Problem, ...]]
+Outcome = tuple[list[Problem], list[Any], list[object] | tuple[Problem, ...]]
 
 
 def no_plain_lines(sources: Sequence[str], length: int) -> Sequence[None]:
@@ -33,8 +34,9 @@ def outcome(sources: list[str], log: Log) -> tuple[list[Sequence[Item]], Outcome
     try:
         runs = read_lines(sources, log)
     except SceneError as error:
-        return [], (log.errors, log.notices, error.problems)
-    return runs, (log.errors, log.notices, list(map(exact, chain.from_iterable(runs))))
+        return [], (log.errors, [*log.notices], error.problems)
+    told = [*log.notices, *map(repr, log.changes.items())]
+    return runs, (log.errors, told, list(map(exact, chain.from_iterable(runs))))
 
 
 def read_by_both(sources: list[str], log: Log) -> list[Sequence[Item]]:

@@ -37,7 +37,7 @@ CASES = [
     (f"{BALL} specular=0.3", f"{BALL} specular:0.3,32", [dialects.HIGHLIGHTS]),
     (f"{BALL} checkerboard", f"{BALL} checker", [dialects.CHECKERS]),
     (f"{FLOOR} ch 9,8,7", f"{FLOOR} checker:1,9,8,7", [dialects.CHECKERS]),
-    (f"{FLOOR} cd:1,2,3:4,5,6:0.5", f"{FLOOR} checker:0.5,4,5,6", [dialects.CHECKERS]),
+    (f"{FLOOR} cd:1,2,3:4,5,6:0.5", f"{FLOOR} checker:0.5,4,5,6", [dialects.TWO_COLOURS]),
     (f"{BALL} there.xpm there_bump.png", f"{BALL} texture:there.xpm bump:there_bump.png", [dialects.PICTURES]),
     (f'{BALL} -t "there.xpm"', f"{BALL} texture:there.xpm", [dialects.PICTURES]),
     (f"{BALL} tx:absent.xpm", BALL, [dialects.ABSENT]),
@@ -152,8 +152,9 @@ def test_the_camera_of_the_older_subject_is_the_first_one() -> None:
     assert [each.position for each in scene.cameras] == [(0, 0, -9), (0, 0, 9)]
     assert [each.message for each in notices] == [f"{dialects.RENAMED}: c"]
     assert dump(scene) == text.replace("c", "C", 1)
-    with pytest.raises(SceneError, match=r"no camera: .*; the 'c' in line 2 is a further one"):
+    with pytest.raises(SceneError, match=r"scene:2:1: no camera 'C': all are further ones, 'c'") as caught:
         parse(text)
+    assert [each.hint for each in caught.value.problems] == ["C 0,0,-9 0,0,1 60"]
     late = text.replace("c 0,0,9", "C 0,0,9")
     assert [each.position for each in parse(late, lenient=True).scene.cameras] == [(0, 0, 9), (0, 0, -9)]
 

@@ -193,7 +193,7 @@ def test_a_lone_surrogate_is_not_text() -> None:
 )
 def test_a_line_of_a_megabyte_is_refused_with_a_short_message(line: str, column: int, message: str) -> None:
     with must_end():
-        (problem,) = problems(scene_with(line))
+        problem, *_ = problems(scene_with(line))
     assert (problem.line, problem.column) == (3, column)
     assert message in problem.message
     assert len(str(problem)) < 600

@@ -8,7 +8,7 @@ import pytest
 
 from minirt.errors import SceneError
 from minirt.scene import Ambient, Camera, FurtherCamera, FurtherLight, Light, dump, load, parse
-from minirt.scene.dialect_tables import DARK, RENAMED, SECOND
+from minirt.scene.dialect_tables import DARK, SECOND
 from minirt.scene.lines import MAX_NOTICES
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
 
@@ -40,7 +40,7 @@ def test_later_lights_become_further_lights() -> None:
     assert (first.line, first.column, second.line, second.column) == (4, 1, 6, 3)
     assert first.message == "a second light: the first is in line 3, and there may be one"
     scene, notices = parse(scene_with(*lines), "test.rt", lenient=True)
-    assert [each.message for each in notices] == [f"{RENAMED}: L (2 places)"]
+    assert [each.message for each in notices] == [f"{SECOND}: L to l (2 places)"]
     assert [type(light) for light in scene.lights] == [Light, FurtherLight, FurtherLight, FurtherLight]
     strict = scene_with(LIGHT, *(line.strip().replace("L", "l") for line in lines[1:]))
     assert dump(scene) == strict
@@ -53,7 +53,7 @@ def test_later_cameras_become_further_cameras() -> None:
     with pytest.raises(SceneError, match="a second camera: the first is in line 2, and there may be one"):
         parse("\n".join((AMBIENT, *lines)))
     scene, notices = parse("\n".join((AMBIENT, *lines)), lenient=True)
-    assert [each.message for each in notices] == [f"{SECOND}: C"]
+    assert [each.message for each in notices] == [f"{SECOND}: C to c"]
     assert [(type(each), each.roll) for each in scene.cameras] == [(Camera, 0.0), (FurtherCamera, 9.0)]
     assert dump(scene) == "\n".join((AMBIENT, CAMERA, SPHERE, "c 0,0,9 0,0,-1 50 roll:9 # behind"))
 
@@ -107,7 +107,7 @@ def test_only_one_ambient_light_also_when_lenient() -> None:
 
 @pytest.mark.parametrize("count", [1, MAX_NOTICES, MAX_NOTICES + 1, 3 * MAX_NOTICES])
 def test_the_last_of_too_many_notices_says_that_there_are_more(count: int) -> None:
-    scene, notices = parse(scene_with(*["pl 0,-1,0 0,0.5,0 200,200,200"] * count))
+    scene, notices = parse(scene_with(*["pl 0,-1,0 0,1,0,0 200,200,200"] * count))
     assert len(scene.planes) == count
     assert [notice.line for notice in notices] == list(range(3, 3 + min(count, MAX_NOTICES + 1)))
     are_complete = count <= MAX_NOTICES

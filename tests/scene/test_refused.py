@@ -47,8 +47,7 @@ def test_lenient_accepts_no_bad_number(line: str, column: int, message: str) -> 
             f"{AMBIENT}\n{SPHERE}\n",
             2,
             1,
-            "no camera: a scene needs one line 'C x,y,z dx,dy,dz fov [roll:degree] [tone:word] [exposure:EV] "
-            "[lens:diameter] [focus:distance]'",
+            "no camera: a scene needs one line 'C x,y,z dx,dy,dz fov', such as 'C 0,0,",
         ),
         (f"{CAMERA}\n{SPHERE}\n# end\n", 3, 1, "no ambient light: a scene needs one line 'A brightness R,G,B'"),
         (f"{AMBIENT}\n{CAMERA}\n{AMBIENT}\n", 3, 1, "a second ambient light: the first is in line 1"),

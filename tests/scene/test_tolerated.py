@@ -125,10 +125,10 @@ def test_a_notice_about_a_keyed_field_stands_under_its_value() -> None:
         ("0,1,0", ""),
         ("0.577,0.577,0.577", ""),
         ("0,1,0.03", ""),
-        ("0,0.5,0", "plane normal has length 0.5, and is scaled to 1"),
-        ("1,1,1", "plane normal has length 1.732, and is scaled to 1"),
-        ("0,0,1e-300", "plane normal has length 1e-300, and is scaled to 1"),
-        ("0,0.998,0", "plane normal has length 0.998, and is scaled to 1"),
+        ("0,0.5,0", "directions are scaled to length 1: 0,0.5,0"),
+        ("1,1,1", "directions are scaled to length 1: 1,1,1"),
+        ("0,0,1e-300", "directions are scaled to length 1: 0,0,1e-300"),
+        ("0,0.998,0", "directions are scaled to length 1: 0,0.998,0"),
     ],
 )
 def test_a_direction_is_normalised_with_a_notice_when_its_length_was_far_from_1(normal: str, notice: str) -> None:

@@ -113,10 +113,10 @@ def test_a_broken_file_keeps_the_picture_and_shows_the_error_until_it_is_mended(
 
 UNUSABLE = {  # lines of a file, and the beginning of what is said; a folder has files of these names
     f"sp 0,0,0 2 1,2,3 texture:{'a' * 300}": "sphere texture must be a picture file",
-    f"ob {'a/' * 3000}b.obj 0,0,0 1 1,2,3": "mesh file must be a mesh file",
+    f"ob {'a/' * 3000}b.obj 0,0,0 1 1,2,3": "mesh file",
     "bg /root\0/x.png": "must be text, got a NUL byte",
     "sp 0,0,0 2 1,2,3 texture:dark.png": "sphere texture must be a picture file",
-    "ob deep.glb 0,0,0 1 1,2,3": "mesh file must be a mesh file",
+    "ob deep.glb 0,0,0 1 1,2,3": "mesh file",
     "x " * 10_000: "unknown element 'x'",
 }
 

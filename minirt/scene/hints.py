@@ -1,0 +1,155 @@
+"""Hints about a scene file with errors: what its lines may mean.
+
+A hint is a line that differs from the one with the error, keeps all that it says, and is read without an error once
+all hints of the file are followed; where that is uncertain there is none.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from itertools import pairwise
+
+from minirt.element import fields_by_key, fields_of, positional_fields
+from minirt.errors import FieldError, Problem, nearest, printable
+from minirt.fields import Colour, Field, Length, clamp
+from minirt.fields.scalars import Scalar, number
+from minirt.helpers import file_io
+from minirt.materials.compound import Compound
+from minirt.scene import dialect_tables as tables
+from minirt.scene.dialects import colours_of_materials, kind_of, translated
+from minirt.scene.element_reader import split_key
+from minirt.scene.elements import Camera, FurtherCamera
+from minirt.scene.lines import WORD, Line, Log, line_from
+from minirt.scene.registry import SPELLINGS, nearest_element
+
+MOST_SHOWN = 3  # lines
+# Sorts of changes that lose or guess what a line says.
+UNCERTAIN = {
+    *tables.UNREAD,
+    *tables.GUESSES,
+    tables.LEFT_OUT,
+    tables.WHITE,
+    tables.FOURTH,
+    tables.ABSENT,
+    tables.TWO_COLOURS,
+}
+
+
+def with_hints(errors: Iterable[Problem], sources: list[str], log: Log) -> Iterator[Problem]:
+    """Yield the errors of a strict reader with the lines that may be meant, '' where that is unknown."""
+    errors = list(errors)
+    colours = colours_of_materials(sources)
+    first = {code: next((n for n, each in enumerate(sources, 1) if each.split()[:1] == [code]), 0) for code in "LCc"}
+    lines = {each.line: line_from(each.line, sources[each.line - 1]) for each in errors if each.line}
+    hints = {number: meant(line, colours, first, log) for number, line in lines.items()}
+    wrong = read_again([hints.get(number) or source for number, source in enumerate(sources, 1)], log)
+    for each in errors:
+        yield replace(each, hint="" if each.line in wrong else hints.get(each.line, ""))
+
+
+def read_again(sources: list[str], log: Log) -> set[int]:
+    """Return the numbers of the lines of a file in which a strict reader finds errors."""
+    from minirt.scene.parser import read_lines
+
+    strict = Log(log.file, False, log.folder)
+    read_lines(sources, strict)
+    return {each.line for each in strict.errors}
+
+
+def meant(line: Line, colours: Mapping[str, str], first: Mapping[str, int], log: Log) -> str:
+    """Return what a line may mean, '' where that is uncertain or the line itself.
+
+    `first` has the numbers of the first lines that begin with L, C and c.
+    """
+    code = (line.text.split() or [""])[0]
+    guess = "" if kind_of(code) else nearest_element(code)
+    text = with_names(with_values(line.text.replace(code, guess or code, 1)), log)
+    if text.split()[:1] == [FurtherCamera.code] and first[FurtherCamera.code] == line.number and not first[Camera.code]:
+        text = text.replace(FurtherCamera.code, Camera.code, 1)  # the older subject begins its only camera so
+    elif text:
+        seen = {code: number for code, number in first.items() if code != "c" and 0 < number < line.number}
+        translation = translated(line_from(line.number, text), colours, None, seen)
+        if translation is None or UNCERTAIN.intersection(sort for sort, _ in translation.changes):
+            return ""
+        text = translation.text
+        if tables.SCALED in dict(translation.changes) and has_colour_of_a_direction(text):
+            return ""
+    return text if text.split() != line.text.split() else ""
+
+
+def has_colour_of_a_direction(text: str) -> bool:
+    """Whether the colour of a line rather is a direction, as where the two are in each other's place."""
+    code, *words = text.split()
+    fields = zip(positional_fields(SPELLINGS[code]), words, strict=False)
+    return any(isinstance(field, Colour) and not re.search("[2-9]|[0-9]{2}", word) for field, word in fields)
+
+
+def with_values(text: str) -> str:
+    """Return a line with the numbers of its attributes in range, '' where one of them is wrong in another way."""
+    kind = kind_of((text.split() or [""])[0])
+    keyed = fields_by_key(kind) if kind else {}
+    for word in WORD.findall(text.partition("#")[0]):
+        key, start = split_key(word.replace("=", ":", 1))
+        if start and key in keyed:
+            value = nearest_value(keyed[key], word[start:])
+            if not value:
+                return ""
+            text = text.replace(word, word[:start] + value)
+    return text
+
+
+def nearest_value(field: Field, text: str) -> str:
+    """Return the value of an attribute with its numbers in range, '' where that is uncertain."""
+    parts = text.split(",")
+    for _ in parts:
+        try:
+            field.check(field.parse(text))
+            break
+        except FieldError as error:
+            component = component_of(field, error.part or 0)
+            if not isinstance(component, Scalar) or isinstance(component, Length):
+                return ""
+            try:
+                value = number(parts[error.part or 0])
+            except FieldError:
+                return ""
+            if 0 < value < 1 <= component.low:  # as in glass:0.5, which rather means a share
+                return ""
+            parts[error.part or 0] = component.format(clamp(value, component.low, component.high))
+            text = ",".join(parts)
+    return text
+
+
+def component_of(field: Field, part: int) -> Field | None:
+    """Return the field of one number among the values of an attribute."""
+    fields = fields_of(field.record) if isinstance(field, Compound) else [field]
+    parts = [getattr(each, "component", each) for each in fields for _ in range(each.width)]
+    return parts[part] if part < len(parts) else None
+
+
+def with_names(text: str, log: Log) -> str:
+    """Return a line that names files which are there: within quotes, or in place of one whose name is like it."""
+    words = WORD.findall(text.partition("#")[0])
+    for word, following in pairwise([*words, ""]):
+        name = word[split_key(word)[1] :].partition(",")[0]
+        if log.folder is None or '"' in name:
+            continue
+        path, whole = log.folder / name, f"{name} {following}".partition(",")[0]
+        if following and file_io.is_file(log.folder / whole):
+            text = text.replace(whole, f'"{whole}"')
+        if "." not in name.strip("+-.0123456789") or file_io.is_file(path):
+            continue
+        with suppress(OSError, ValueError):
+            if near := nearest(path.name, sorted(each.name for each in path.parent.iterdir())):
+                text = text.replace(name, name.removesuffix(path.name) + near[0])
+    return text
+
+
+def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
+    """Yield the first hints about a file as sentences."""
+    hints = list(dict.fromkeys((each.line, each.hint) for each in problems if each.hint))
+    for line, hint in hints[:MOST_SHOWN]:
+        yield f"line {line}: did you mean '{printable(hint)}'?"
