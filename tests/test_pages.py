@@ -136,8 +136,10 @@ def test_blocks_that_only_quote_sources_are_few() -> None:
 def test_the_scene_is_read_and_the_errors_are_printed_as_shown(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (folder / "scene.rt").write_text(block("scenes/README.md", "", "A 0.2"))
-    assert main(["scene.rt", "--check"]) == 0
+    for beginning in ("A 0.2", "A 0.3"):
+        (folder / "scene.rt").write_text(block("scenes/README.md", "", beginning))
+        assert main(["scene.rt", "--check"]) == 0
+        assert capsys.readouterr().err == ""
     errors = block("scenes/README.md", "", "Error\n")
     wrong = re.findall(r"^    (s.*)$", errors, re.MULTILINE)
     (folder / "scene.rt").write_text("\n".join(["A 0.2 255,255,255", "C 0,2,-12 0,-0.1,1 60", "", *wrong]))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from itertools import combinations, starmap, takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -131,10 +132,18 @@ def fields_of_words(positional: Sequence[Field], words: list[Word]) -> list[Fiel
     """Return the fields that the words of a line seem to be meant for, where there are fewer words than fields."""
     if len(words) >= sum(field.required for field in positional):
         return list(positional[: len(words)])
-    for fields in combinations(positional, len(words)):
-        if all(starmap(has_parts_of, zip(fields, words, strict=True))):
-            return list(fields)
+    for fits in (is_value_of, has_parts_of):
+        for fields in combinations(positional, len(words)):
+            if all(starmap(fits, zip(fields, words, strict=True))):
+                return list(fields)
     return [field for field, _ in takewhile(lambda pair: has_parts_of(*pair), zip(positional, words, strict=False))]
+
+
+def is_value_of(field: Field, word: Word) -> bool:
+    """Whether a word is the value of a field, a file of any name included."""
+    with suppress(FieldError):
+        return bool(field.check(field.parse(word.text)) is not None)
+    return False
 
 
 def has_parts_of(field: Field, word: Word) -> bool:

@@ -26,6 +26,7 @@ from minirt.scene.lines import WORD, Line, Log, line_from
 from minirt.scene.registry import SPELLINGS, nearest_element
 
 MOST_SHOWN = 3  # lines
+LIKE = 0.75  # similarity of a file's name to the one that a line names, see `nearest`
 # Sorts of changes that lose or guess what a line says.
 UNCERTAIN = {
     *tables.UNREAD,
@@ -143,8 +144,9 @@ def with_names(text: str, log: Log) -> str:
         if "." not in name.strip("+-.0123456789") or file_io.is_file(path):
             continue
         with suppress(OSError, ValueError):
-            if near := nearest(path.name, sorted(each.name for each in path.parent.iterdir())):
-                text = text.replace(name, name.removesuffix(path.name) + near[0])
+            there = {each.name: each for each in sorted([*path.parent.glob("*/*"), *path.parent.iterdir()])}
+            if near := nearest(path.name, there, LIKE):
+                text = text.replace(name, there[near[0]].relative_to(log.folder).as_posix())
     return text
 
 
