@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from minirt.errors import counted
 from minirt.rendering.packing.features import features
 from minirt.rendering.queries.unseen import notice_about, without_effect
 from minirt.rendering.scene_packing import Packing
@@ -46,8 +47,8 @@ def measurements(
     pixels are brighter than the picture can show, by their light with one sample each."""
     renderer = settings.renderer
     place = f"region {','.join(map(str, settings.region))}, " if settings.region else ""
-    sampling = "" if settings.samples == "auto" else f"{settings.samples} samples a pixel, "
-    threads = f"{renderer.threads} threads, {renderer.precision} precision"
+    sampling = "" if settings.samples == "auto" else f"{counted(settings.samples, 'sample')} a pixel, "
+    threads = f"{counted(renderer.threads, 'thread')}, {renderer.precision} precision"
     yield f"{size[0]}x{size[1]}, {place}{sampling}{threads}: {seconds * 1e3:.1f} ms"
     yield f"rays whose light is not finite: {not_finite}"
     once = settings.replace(samples=1, error=None, time=None, linear=True, dither=False)

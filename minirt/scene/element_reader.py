@@ -140,9 +140,9 @@ def fields_of_words(positional: Sequence[Field], words: list[Word]) -> list[Fiel
 
 
 def is_value_of(field: Field, word: Word) -> bool:
-    """Whether a word is the value of a field, a file of any name included."""
+    """Whether a word is the value of a field."""
     with suppress(FieldError):
-        return bool(field.check(field.parse(word.text)) is not None)
+        return has_parts_of(field, word) and field.check(field.parse(word.text)) is not None
     return False
 
 

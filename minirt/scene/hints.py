@@ -6,15 +6,14 @@ all hints of the file are followed; where that is uncertain there is none.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 
-from minirt.element import fields_by_key, fields_of, positional_fields
+from minirt.element import fields_by_key, fields_of
 from minirt.errors import FieldError, Problem, nearest, printable
-from minirt.fields import Colour, Field, Length, clamp
+from minirt.fields import Field, Length, clamp
 from minirt.fields.scalars import Scalar, number
 from minirt.helpers import file_io
 from minirt.materials.compound import Compound
@@ -22,8 +21,8 @@ from minirt.scene import dialect_tables as tables
 from minirt.scene.dialects import colours_of_materials, kind_of, translated
 from minirt.scene.element_reader import split_key
 from minirt.scene.elements import Camera, FurtherCamera
-from minirt.scene.lines import WORD, Line, Log, line_from
-from minirt.scene.registry import SPELLINGS, nearest_element
+from minirt.scene.lines import TAKEN, WORD, Line, Log, line_from
+from minirt.scene.registry import nearest_element
 
 MOST_SHOWN = 3  # lines
 LIKE = 0.75  # similarity of a file's name to the one that a line names, see `nearest`
@@ -75,17 +74,14 @@ def meant(line: Line, colours: Mapping[str, str], first: Mapping[str, int], log:
         translation = translated(line_from(line.number, text), colours, None, seen)
         if translation is None or UNCERTAIN.intersection(sort for sort, _ in translation.changes):
             return ""
-        text = translation.text
-        if tables.SCALED in dict(translation.changes) and has_colour_of_a_direction(text):
-            return ""
+        text = translation.text if all(map(is_along_an_axis, translation.changes)) else ""
     return text if text.split() != line.text.split() else ""
 
 
-def has_colour_of_a_direction(text: str) -> bool:
-    """Whether the colour of a line rather is a direction, as where the two are in each other's place."""
-    code, *words = text.split()
-    fields = zip(positional_fields(SPELLINGS[code]), words, strict=False)
-    return any(isinstance(field, Colour) and not re.search("[2-9]|[0-9]{2}", word) for field, word in fields)
+def is_along_an_axis(change: tuple[str, str]) -> bool:
+    """Whether a direction that was scaled is along an axis: others may be the point that is looked at, or a colour."""
+    sort, words = change
+    return sort != tables.SCALED or sum(bool(float(part)) for part in words.partition(TAKEN)[0].split(",")) == 1
 
 
 def with_values(text: str) -> str:

@@ -99,7 +99,7 @@ def test_verbose_prints_durations_and_features(run: Run) -> None:
     assert (ended.status, ended.out) == (0, b"")
     ready, duration, finite, *rest = ended.err.splitlines()
     assert re.fullmatch(r"kernel ready after [0-9.]+ s", ready)
-    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", duration)
+    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 thread, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"
     assert rest[0] == "kernel for spheres, planes"
     assert rest[1].startswith("kernel without cylinders")

@@ -61,6 +61,7 @@ VECTORS: list[Case] = [
     ("sp 0, 0, 20 5 255,0,0", 5, "no blanks may stand around a comma"),
     ("sp 0,0,20 5 255,0,0,", 21, "sphere colour must be R,G,B"),
     ("sp 0,0,20 5 ,255,0,0", 12, "no blanks may stand around a comma"),
+    ("bo 0,0,20 3,4,5 9,9,200", 10, "box axis is missing"),
     ("sp 0,0,20 5,255,0,0", 10, "sphere diameter and colour are missing"),
     ("sp 0，0，20 5 255,0,0", 4, "must be x,y,z"),
     ("L 0,0,0 0.5 255", 13, "light colour must be R,G,B"),
