@@ -6,7 +6,7 @@ all hints of the file are followed; where that is uncertain there is none.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
@@ -38,24 +38,25 @@ UNCERTAIN = {
 }
 
 
-def with_hints(errors: Iterable[Problem], sources: list[str], log: Log) -> Iterator[Problem]:
+Reader = Callable[[list[str], Log], object]  # of the lines of a file: `minirt.scene.parser.read_lines`
+
+
+def with_hints(errors: Iterable[Problem], sources: list[str], log: Log, read: Reader) -> Iterator[Problem]:
     """Yield the errors of a strict reader with the lines that may be meant, '' where that is unknown."""
     errors = list(errors)
     colours = colours_of_materials(sources)
     first = {code: next((n for n, each in enumerate(sources, 1) if each.split()[:1] == [code]), 0) for code in "LCc"}
     lines = {each.line: line_from(each.line, sources[each.line - 1]) for each in errors if each.line}
     hints = {number: meant(line, colours, first, log) for number, line in lines.items()}
-    wrong = read_again([hints.get(number) or source for number, source in enumerate(sources, 1)], log)
+    wrong = read_again([hints.get(number) or source for number, source in enumerate(sources, 1)], log, read)
     for each in errors:
         yield replace(each, hint="" if each.line in wrong else hints.get(each.line, ""))
 
 
-def read_again(sources: list[str], log: Log) -> set[int]:
+def read_again(sources: list[str], log: Log, read: Reader) -> set[int]:
     """Return the numbers of the lines of a file in which a strict reader finds errors."""
-    from minirt.scene.parser import read_lines
-
     strict = Log(log.file, False, log.folder)
-    read_lines(sources, strict)
+    read(sources, strict)
     return {each.line for each in strict.errors}
 
 

@@ -95,7 +95,7 @@ def parse(
         from minirt.scene.hints import with_hints
 
         errors = sorted(log.errors, key=lambda error: (error.line, error.column))
-        raise SceneError(tuple(errors if lenient else with_hints(errors, sources, log)))
+        raise SceneError(tuple(errors if lenient else with_hints(errors, sources, log, read_lines)))
     place = Path(file) if file else None
     scene = Scene.of_pages(tuple(pages_of(runs)), folder / place.name if folder and place else place)
     return Reading(scene, tuple(log.notices))
