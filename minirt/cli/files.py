@@ -62,13 +62,16 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
 def note_lenience(path: str, error: SceneError) -> None:
     """Add notes to the error of a file: what its lines may mean, and whether --lenient reads it."""
     from minirt.scene import load
+    from minirt.scene.dialect_tables import ABSENT, LEFT_OUT, LIGHTS, SETTINGS
     from minirt.scene.hints import suggestions
 
     for suggestion in suggestions(error.problems):
         error.add_note(suggestion)
     with suppress(SceneError):
-        missing = load(path, lenient=True).scene.missing
-        but = f" without {len(missing)} of its shapes" if missing else ""
+        scene, notices = load(path, lenient=True)
+        but = f" without {len(scene.missing)} of its shapes" if scene.missing else ""
+        is_less = any(each.message.startswith((LEFT_OUT, LIGHTS, SETTINGS, ABSENT)) for each in notices)
+        but += ", leaves out some of it" * is_less
         error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
 
 

@@ -22,6 +22,7 @@ INCOMPLETE = "shapes without all of their fields, or with sizes out of range, ar
 LIGHTS = "lights that cannot be read are left out"
 UNREAD = (SETTINGS, MISSING, INCOMPLETE, LIGHTS)
 NEAREST = "numbers become the nearest ones that can be there"
+PERCENT = "shares from 10 to 100 are percent"
 DECIMALS = "decimal commas become points"
 NOWHERE = "directions of 0,0,0 become those of this format"
 FOURTH = "fourth components are dropped"

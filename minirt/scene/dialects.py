@@ -33,6 +33,7 @@ TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
 DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
+PERCENT = 10  # a share from here on is one in percent
 OUT_OF_RANGE = -1  # the part of an error about a field whose value is well spelled
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
 
@@ -260,6 +261,8 @@ def fit(field: Field, value: Any) -> tuple[Any, str]:
     """Return the value of a field next to one that is out of range, and what was done; FieldError where none is."""
     if isinstance(field, Direction):
         return (unit(value), tables.SCALED) if any(value) else (field.instead, tables.NOWHERE)
+    if isinstance(field, Real) and field.high == 1 and PERCENT <= value <= 100:
+        return value / 100, tables.PERCENT
     if isinstance(field, Real) or (isinstance(field, Whole) and value > field.high):
         return clamp(value, field.low, field.high), tables.NEAREST
     raise FieldError("has no value next to it")

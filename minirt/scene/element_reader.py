@@ -13,12 +13,13 @@ from itertools import combinations, starmap, takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from minirt.element import Element, fields_by_key, pattern, positional_fields
+from minirt.element import Element, fields_by_key, fields_of, pattern, positional_fields
 from minirt.errors import FieldError, FileError, hint, quoted
 from minirt.fields import Colour, Direction, Field, MeshField, MeshFile, PictureFile
 from minirt.fields.scalars import code_point_name
 from minirt.helpers import file_io
 from minirt.materials import pictures
+from minirt.materials.compound import Compound
 from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
 from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_word
@@ -177,8 +178,8 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
             log.error(line, f"an attribute is written with a colon: {quoted(right)}", word.column, len(word.text))
         elif field and not start and not field.bare:
             message = f"{kind.title} {key} needs a value: '{field.notation}'"
-            if isinstance(field.initial, float):
-                message += f", such as '{field.prefix}{field.format(field.initial)}'"
+            if example := initial_text(field):
+                message += f", such as '{field.prefix}{example}'"
             log.error(line, message, word.column, len(word.text))
         elif not is_attribute(word.text, keyed):
             log.error(line, f"only attributes 'name:value' follow an attribute, got {quoted(word.text)}", word.column)
@@ -192,6 +193,13 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
                 message = f"'{written}' is the old name of '{field.notation}': later versions will not read it"
                 log.notice(line, message, word.column, len(written))
     return list(slots.values())
+
+
+def initial_text(field: Field) -> str:
+    """Return the first value of an attribute in the window, as it stands in a line; '' where it is none of numbers."""
+    fields = [each for each in fields_of(field.record) if each.required] if isinstance(field, Compound) else [field]
+    initial = [each.initial for each in fields]
+    return ",".join(each.format(each.initial) for each in fields) if all(isinstance(n, float) for n in initial) else ""
 
 
 def unknown_key_message(kind: type[Element], key: str) -> str:

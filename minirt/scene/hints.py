@@ -12,13 +12,13 @@ from dataclasses import replace
 from itertools import pairwise
 
 from minirt.element import fields_by_key, fields_of
-from minirt.errors import FieldError, Problem, nearest, printable
+from minirt.errors import FieldError, Problem, counted, nearest, printable
 from minirt.fields import Field, Length, clamp
 from minirt.fields.scalars import Scalar, number
 from minirt.helpers import file_io
 from minirt.materials.compound import Compound
 from minirt.scene import dialect_tables as tables
-from minirt.scene.dialects import colours_of_materials, kind_of, translated
+from minirt.scene.dialects import PERCENT, colours_of_materials, kind_of, translated
 from minirt.scene.element_reader import split_key
 from minirt.scene.elements import Camera, FurtherCamera
 from minirt.scene.lines import TAKEN, WORD, Line, Log, line_from
@@ -35,6 +35,7 @@ UNCERTAIN = {
     tables.FOURTH,
     tables.ABSENT,
     tables.TWO_COLOURS,
+    tables.PERCENT,
 }
 
 
@@ -114,8 +115,8 @@ def nearest_value(field: Field, text: str) -> str:
                 value = number(parts[error.part or 0])
             except FieldError:
                 return ""
-            if 0 < value < 1 <= component.low:  # as in glass:0.5, which rather means a share
-                return ""
+            if 0 < value < 1 <= component.low or (component.high == 1 and value >= PERCENT):
+                return ""  # glass:0.5 rather means a share, and mirror:50 one in percent
             parts[error.part or 0] = component.format(clamp(value, component.low, component.high))
             text = ",".join(parts)
     return text
@@ -131,7 +132,10 @@ def component_of(field: Field, part: int) -> Field | None:
 def with_names(text: str, log: Log) -> str:
     """Return a line that names files which are there: within quotes, or in place of one whose name is like it."""
     words = WORD.findall(text.partition("#")[0])
+    whole = ""
     for word, following in pairwise([*words, ""]):
+        if whole.endswith(f" {word.partition(',')[0]}") and f'"{whole}"' in text:
+            continue  # the rest of a name that is now within quotes
         name = word[split_key(word)[1] :].partition(",")[0]
         if log.folder is None or '"' in name:
             continue
@@ -152,3 +156,5 @@ def suggestions(problems: Iterable[Problem]) -> Iterator[str]:
     hints = list(dict.fromkeys((each.line, each.hint) for each in problems if each.hint))
     for line, hint in hints[:MOST_SHOWN]:
         yield f"line {line}: did you mean '{printable(hint)}'?"
+    if len(hints) > MOST_SHOWN:
+        yield f"--check --json also has what {counted(len(hints) - MOST_SHOWN, 'further line')} may mean"

@@ -225,15 +225,15 @@ def check_required(seen: dict[str, int], sources: list[str], items: list[Item], 
     """Report, at the last line of a file, the required elements that it does not have, with a line of each."""
     if not seen:
         raise files.file_error(log.file, files.NO_ELEMENTS)
-    last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
+    last = line_from(len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1, "")  # which is innocent
     if Ambient.code not in seen:
-        log.error(line_from(last, sources[last - 1]), f"{NO_AMBIENT}, such as '{describe(AMBIENT)}'", 1)
+        log.error(last, f"{NO_AMBIENT}, such as '{describe(AMBIENT)}'", 1)
     if Camera.code not in seen and (further := seen.get(FurtherCamera.code)):
         message = f"no {Camera.title} 'C': all are further ones, '{FurtherCamera.code}'"
         log.error(line_from(further, sources[further - 1]), message, 1)
     elif Camera.code not in seen:
         camera = camera_before([item for item in items if isinstance(item, SHAPES)])
-        log.error(line_from(last, sources[last - 1]), f"{NO_CAMERA}, such as '{describe(camera)}'", 1)
+        log.error(last, f"{NO_CAMERA}, such as '{describe(camera)}'", 1)
 
 
 def camera_before(shapes: Sequence[Shape]) -> Camera:

@@ -138,7 +138,7 @@ SHAPES: list[Case] = on_sphere(
     ("specular:", 9, f"sphere specular share {NUMBER} ''"),
     ("specular:0.5,30,phong", 16, "sphere specular blinn must be the word 'blinn' or be left out, got 'phong'"),
     ("specular:0.5,30,blinn,1", 22, "sphere specular must be share,exponent[,blinn], got '0.5,30,blinn,1'"),
-    ("specular", 0, "sphere specular needs a value: 'specular:share,exponent[,blinn]'"),
+    ("specular", 0, "sphere specular needs a value: 'specular:share,exponent[,blinn]', such as 'specular:0.5,30'"),
     ("glow", 0, "sphere glow needs a value: 'glow:share', such as 'glow:0.5'"),
     ("glow=0.5", 0, "an attribute is written with a colon: 'glow:0.5'"),
     ("miror", 0, "sphere has no further field 'miror', did you mean 'mirror:share[,range]'?"),

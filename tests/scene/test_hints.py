@@ -30,6 +30,8 @@ HINTS = {  # '' where what is meant is uncertain
     "sky map.ppm": "bg map.ppm",
     "sky 9,9,200": "bg 9,9,200",
     f"{BALL} glass:0.5": "",
+    f"{BALL} mirror:50": "",
+    "l 0,9,0 70 255,255,255": "",
     f"{BALL} glass": "",
     f"{BALL} glow": "",
     f"{BALL} checker:1,30,30": "",
