@@ -25,6 +25,7 @@ from minirt.scene.lines import TAKEN, WORD, Line, Log, line_from
 from minirt.scene.registry import nearest_element
 
 MOST_SHOWN = 3  # lines
+LONGEST = 1000  # characters of a line that a hint is about
 LIKE = 0.75  # similarity of a file's name to the one that a line names, see `nearest`
 # Sorts of changes that lose or guess what a line says.
 UNCERTAIN = {
@@ -66,6 +67,8 @@ def meant(line: Line, colours: Mapping[str, str], first: Mapping[str, int], log:
 
     `first` has the numbers of the first lines that begin with L, C and c.
     """
+    if len(line.text) > LONGEST:
+        return ""
     code = (line.text.split() or [""])[0]
     guess = "" if kind_of(code) else nearest_element(code)
     text = with_names(with_values(line.text.replace(code, guess or code, 1)), log)

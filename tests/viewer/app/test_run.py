@@ -80,7 +80,7 @@ def test_an_unexpected_exception_is_shown_and_raised_when_the_window_is_closed(t
     renderer, memory, path = FakeRenderer(), script(), tmp_path / "scene.rt"
     renderer.error = ValueError("odd")
     memory.tap(Key.D)
-    memory.do(lambda: (until(lambda: defects, "the error"), memory.windows[0].display.wake()))
+    memory.do(lambda: until(lambda: (memory.turn(tick=False), defects)[1], "the error"))
     memory.tap(Key.CONTROL_L, Key.S)
     memory.tap(Key.ESCAPE)
     with pytest.raises(RenderError, match="miniRT has an error, please report it: ValueError: odd") as raised:
