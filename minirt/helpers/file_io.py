@@ -93,8 +93,8 @@ def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> 
     that fails."""
     sweep(folder)
     path = folder / TEMPORARY.replace("*", os.urandom(8).hex())
-    descriptor = os.open(path, FLAGS, 0o666 if permissions is None else permissions & PRIVATE_FILE)
-    try:
+    try:  # before the file is there: an interrupt may come behind every instruction
+        descriptor = os.open(path, FLAGS, 0o666 if permissions is None else permissions & PRIVATE_FILE)
         with os.fdopen(descriptor, "wb") as file:
             if callable(data):
                 data(file)
