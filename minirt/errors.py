@@ -133,15 +133,13 @@ class MlxError(MiniRTError):
 
 
 class FieldError(ValueError):
-    """A value that a field cannot take; `part` is the number of the wrong component, from 0, None for all of it.
+    """A value that a field cannot take; `part` is the number of the wrong component, from 0, None for all of it."""
 
-    `further` are the errors of further components.
-    """
+    further: Sequence[FieldError] = ()  # errors about its other components
 
-    def __init__(self, message: str, part: int | None = None, further: Sequence[FieldError] = ()) -> None:
+    def __init__(self, message: str, part: int | None = None) -> None:
         super().__init__(message)
         self.part = part
-        self.further = further
 
 
 class ElementError(MiniRTError, ValueError):

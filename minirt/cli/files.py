@@ -70,8 +70,8 @@ def note_lenience(path: str, error: SceneError) -> None:
     with suppress(SceneError):
         scene, notices = load(path, lenient=True)
         but = f" without {len(scene.missing)} of its shapes" if scene.missing else ""
-        is_less = any(each.message.startswith((LEFT_OUT, LIGHTS, SETTINGS, ABSENT)) for each in notices)
-        but += ", leaves out some of it" * is_less
+        if any(each.message.startswith((LEFT_OUT, LIGHTS, SETTINGS, ABSENT)) for each in notices):
+            but += ", leaves out some of it"
         error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
 
 

@@ -85,15 +85,17 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_points(whole, data)
     notices = [*drop_absent(whole, data)]
-    notices += [NOT_FINITE] * bool(len(whole.spoiled))
+    if len(whole.spoiled):
+        notices.append(NOT_FINITE)
     if len(whole.unknown):
         first = line_of(data, whole.unknown[0])
         notices.append(f"has lines that begin with no word of .obj: they are skipped (the first is {first})")
     cut = triangulate(whole.points, whole.corners[:, 0], whole.sizes, lambda face: line_of(data, whole.starts[face]))
     cut = cut[non_degenerate(whole.points, whole.corners[cut, 0])]
     if not len(cut):
-        is_tiny = bool(np.abs(whole.points[whole.corners[:, 0]]).max() < TINY)
-        raise ObjError("has no triangle that is more than a line" + f", or larger than {TINY:g}" * is_tiny)
+        is_tiny = np.abs(whole.points[whole.corners[:, 0]]).max() < TINY
+        what = f"a line, or larger than {TINY:g}" if is_tiny else "a line"
+        raise ObjError(f"has no triangle that is more than {what}")
     corners, of_uvs, of_normals = (part[cut] for part in whole.corners.T.copy())
     uvs = normals = None
     if (of_uvs >= 0).any():

@@ -8,7 +8,8 @@ import numpy as np
 
 from minirt.errors import counted
 from minirt.rendering.packing.features import features
-from minirt.rendering.queries.unseen import notice_about, without_effect
+from minirt.rendering.queries.no_effect import without_effect
+from minirt.rendering.queries.unseen import notice_about
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.settings import RenderSettings, rendered
 from minirt.rendering.tone_mapping import clipped_pixels

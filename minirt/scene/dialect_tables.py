@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from minirt.fields import Triple, clamp, cos_and_sin, neat, upright
-from minirt.fields.directions import SCALED  # noqa: F401 - one of the sorts below
 from minirt.scene.elements import linear_combination
 
 # Sorts of changes, as notices tell them.
@@ -125,7 +124,7 @@ def one_number(text: str) -> str:
 
 N, C = r"([-+]?[0-9]*\.?[0-9]+)", r"([0-9.]+,[0-9.]+,[0-9.]+)"
 FILE = r"[\"']?([^\"':=; ]+\.(?:xpm|png|jpe?g|ppm|bmp|tga))[\"']?"
-USUAL = "usual"  # stands for the size of a square that `checker` alone has
+USUAL = "#"  # stands for the size of a square that `checker` alone has; no value holds it
 CHECKER = r"-?-?(?:ch|chk|cb|cd|checker\w*|chess\w*|pattern|pat|damier)"
 
 # Meanings of one or two words behind the fields: a pattern of the words, with one blank between two, attributes from
@@ -153,7 +152,9 @@ def turned(angles: Triple) -> Triple:
     """Turn (0, 0, 1) about x, y and z, in this order and right-handed: by shares of half a turn where no number is
     beyond 1, by radians where none is beyond 2 pi, and by degrees otherwise."""
     largest = max(map(abs, angles))
-    unit = 180.0 if largest <= 1 else 180 / pi if largest <= 2 * pi else 1.0
+    unit = 1.0
+    if largest <= 2 * pi:
+        unit = 180.0 if largest <= 1 else 180 / pi
     (a, b), (c, d), (e, f) = (cos_and_sin(unit * angle) for angle in angles)
     x, y, z = a * d, -b, a * c
     return neat((x * e - y * f, x * f + y * e, z))

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from minirt.element import Element, fields_by_key, positional_fields
 from minirt.errors import FieldError, FileError, Problem, quoted
 from minirt.fields import Colour, Direction, Field, Real, Three, Triple, Whole, clamp, unit
+from minirt.fields.directions import SCALED
 from minirt.fields.scalars import Scalar
 from minirt.helpers import file_io
 from minirt.materials import pictures
@@ -33,11 +34,14 @@ TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
 DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
-PERCENT = 10  # a share from here on is one in percent
-OUT_OF_RANGE = -1  # the part of an error about a field whose value is well spelled
+LEAST_PERCENT = 10  # a share from here on is one in percent
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
 
 Changes = list[tuple[str, str]]  # sorts of changes, and the words that each is about
+
+
+class RangeError(FieldError):
+    """A value that is well spelled, and that no field can take."""
 
 
 class Translation(NamedTuple):
@@ -99,7 +103,7 @@ def translated(
     try:
         spelled = fields_of_words(kind, ordered, colours, changes)
     except FieldError as error:
-        is_missing = kind in SHAPES and error.part == OUT_OF_RANGE
+        is_missing = kind in SHAPES and isinstance(error, RangeError)
         told = (tables.INCOMPLETE, f"{code} ({error})") if is_missing else (tables.SETTINGS, code)
         return Translation("", [told]) if is_missing or kind in (Resolution, FurtherCamera) else None
     if spelled is None:
@@ -126,13 +130,15 @@ def body_of(line: Line) -> tuple[str, str, Changes]:
     return body, f" #{comment}" * bool(comment), changes
 
 
-def without_shape(line: Line, errors: list[Problem]) -> Translation | None:
-    """Leave out the line of a shape that is well spelled but for `errors`, such as a file that is absent."""
+def without_element(line: Line, errors: list[Problem]) -> Translation | None:
+    """Leave out a line that is well spelled but for `errors`, such as a file that is absent: that of a shape, or of a
+    background under another name. None for others, whose errors stay."""
     code = line.text.split()[0]
     reason = errors[0].message.rpartition(": ")[2]
-    if kind_of(code) is Background and code != Background.code:
-        return Translation("", [(tables.SETTINGS, code)])
-    return Translation("", [(tables.MISSING, f"{code} ({reason})")]) if kind_of(code) in SHAPES else None
+    if kind_of(code) in SHAPES:
+        return Translation("", [(tables.MISSING, f"{code} ({reason})")])
+    is_foreign = kind_of(code) is Background and code != Background.code
+    return Translation("", [(tables.SETTINGS, code)]) if is_foreign else None
 
 
 def kind_of(code: str) -> type[Element] | None:
@@ -167,7 +173,7 @@ def fields_of_words(
         if spelled is None and field.required:
             other = NUMBER if isinstance(field, Three) else TRIPLE.pattern  # and attributes
             if words and is_well_spelled(field, words[0]):
-                raise FieldError(f"its {field.title} cannot be {words[0]}", OUT_OF_RANGE)
+                raise RangeError(f"its {field.title} cannot be {words[0]}")
             if words and not re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", words[0]):
                 raise FieldError(f"cannot be {quoted(words[0])}")
             return None
@@ -260,8 +266,8 @@ def nearest_colour(word: str) -> str:
 def fit(field: Field, value: Any) -> tuple[Any, str]:
     """Return the value of a field next to one that is out of range, and what was done; FieldError where none is."""
     if isinstance(field, Direction):
-        return (unit(value), tables.SCALED) if any(value) else (field.instead, tables.NOWHERE)
-    if isinstance(field, Real) and field.high == 1 and PERCENT <= value <= 100:
+        return (unit(value), SCALED) if any(value) else (field.instead, tables.NOWHERE)
+    if isinstance(field, Real) and field.high == 1 and LEAST_PERCENT <= value <= 100:
         return value / 100, tables.PERCENT
     if isinstance(field, Real) or (isinstance(field, Whole) and value > field.high):
         return clamp(value, field.low, field.high), tables.NEAREST
@@ -354,7 +360,7 @@ def apply_conventions(items: list[Any], log: Log) -> None:
     words = log.lenient.split() if isinstance(log.lenient, str) else []
     if unknown := [word for word in words if word not in tables.OPTIONS]:
         raise ValueError(f"lenient must be a bool, or some of {' '.join(tables.OPTIONS)}, got {quoted(unknown[0])}")
-    is_dialect = bool(log.changes)
+    is_dialect = bool(log.changes.keys() - {SCALED})
     for number, item in enumerate(items, 1):
         if not isinstance(item, Cone | Camera):
             continue
@@ -374,7 +380,7 @@ def apply_conventions(items: list[Any], log: Log) -> None:
 
 def direction_as_written(line: Line, log: Log) -> Triple:
     """Return the second three numbers of a line, before they were scaled to a direction."""
-    scaled = (words for each, words in log.changes.get(tables.SCALED, ()) if each.number == line.number)
+    scaled = (words for each, words in log.changes.get(SCALED, ()) if each.number == line.number)
     text = next(scaled, "") or TRIPLE.findall(line.text)[1]
     x, y, z = map(float, re.findall(NUMBER, text)[:3])
     return x, y, z

@@ -115,7 +115,7 @@ def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: L
         message = f"{name} must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
         log.error(line, message, line.end + 1, len(hex_colour[0]))
         return []
-    given = fields_of_words(positional, values)
+    given = fields_given(positional, values)
     missing = [field for field in positional if field.required and field not in given]
     if missing:
         names = f"{kind.title} {' and '.join(each.title for each in missing)} {'is' if len(missing) == 1 else 'are'}"
@@ -129,7 +129,7 @@ def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: L
     return slots + attribute_slots(kind, attributes, line, log)
 
 
-def fields_of_words(positional: Sequence[Field], words: list[Word]) -> list[Field]:
+def fields_given(positional: Sequence[Field], words: list[Word]) -> list[Field]:
     """Return the fields that the words of a line seem to be meant for, where there are fewer words than fields."""
     if len(words) >= sum(field.required for field in positional):
         return list(positional[: len(words)])

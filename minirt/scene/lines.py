@@ -114,11 +114,11 @@ class Log:
 
         Of a lenient reader's notices with the same message the first stays, with the number of places.
         """
-        first: dict[str, Problem] = {}
-        for each in self.notices:
-            first.setdefault(each.message, each)
-        places = Counter(each.message for each in self.notices)
         if self.lenient:
+            first: dict[str, Problem] = {}
+            for each in self.notices:
+                first.setdefault(each.message, each)
+            places = Counter(each.message for each in self.notices)
             self.notices = [replace(each, message=told(message, places[message])) for message, each in first.items()]
         for sort, changes in self.changes.items():
             (line, word), words = changes[0], list(dict.fromkeys(words for _, words in changes))

@@ -7,29 +7,22 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
-from math import dist
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element
 from minirt.errors import FileError, Problem, SceneError, nearest
-from minirt.fields import FARTHEST, clamp
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
-from minirt.scene.elements import Ambient, Camera, FurtherCamera
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import PAGE_LENGTH, Crowd, Item, kinds_of, pages_of
-from minirt.scene.registry import SHAPES, nearest_element
+from minirt.scene.registry import nearest_element
+from minirt.scene.required import check_required
 from minirt.scene.scene import MISSING, Scene
-from minirt.scene.writer import describe
-from minirt.shapes import Mesh, Shape
+from minirt.shapes import Mesh
 
-AMBIENT = Ambient(0.2, (255, 255, 255))
-NO_AMBIENT = f"no {Ambient.title}: a scene needs one line 'A brightness R,G,B'"
-NO_CAMERA = f"no {Camera.title}: a scene needs one line 'C x,y,z dx,dy,dz fov'"
-BACK = 2.0  # distance of a camera that is proposed, in diameters of what it shows
 NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
 
 
@@ -136,7 +129,7 @@ def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
         items = [*chain.from_iterable(runs)]
         dialects.complete(items, seen, log)
         runs = [items]
-    check_required(seen, sources, [*chain.from_iterable(run for run in runs if not isinstance(run, Crowd))], log)
+    check_required(seen, sources, runs, log)
     return runs
 
 
@@ -160,7 +153,7 @@ def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[
     if translation.text:
         item = read_line(line_from(line.number, translation.text), seen, log)
         unread = log.errors[before:]
-        if item is None and (translation := dialects.without_shape(line, unread)) is None:
+        if item is None and (translation := dialects.without_element(line, unread)) is None:
             log.errors[before:] = errors
             return None
         del log.errors[before:]
@@ -219,31 +212,6 @@ def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> N
         if needs and not any(getattr(element, name) for name in needs) and not isinstance(element, Mesh):
             keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in needs)
             log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
-
-
-def check_required(seen: dict[str, int], sources: list[str], items: list[Item], log: Log) -> None:
-    """Report, at the last line of a file, the required elements that it does not have, with a line of each."""
-    if not seen:
-        raise files.file_error(log.file, files.NO_ELEMENTS)
-    last = line_from(len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1, "")  # which is innocent
-    if Ambient.code not in seen:
-        log.error(last, f"{NO_AMBIENT}, such as '{describe(AMBIENT)}'", 1)
-    if Camera.code not in seen and (further := seen.get(FurtherCamera.code)):
-        message = f"no {Camera.title} 'C': all are further ones, '{FurtherCamera.code}'"
-        log.error(line_from(further, sources[further - 1]), message, 1)
-    elif Camera.code not in seen:
-        camera = camera_before([item for item in items if isinstance(item, SHAPES)])
-        log.error(last, f"{NO_CAMERA}, such as '{describe(camera)}'", 1)
-
-
-def camera_before(shapes: Sequence[Shape]) -> Camera:
-    """Return a camera that looks along z and has the bounded ones of some shapes in its picture."""
-    corners = [corner for shape in shapes for corner in shape.bounds() or ()]
-    low, high = (tuple(map(end, *corners, *corners)) if corners else (side,) * 3 for end, side in ((min, -1), (max, 1)))
-    x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
-    distance = BACK * dist(low, high) or 1.0
-    x, y, z = (clamp(float(f"{each:.3g}"), -FARTHEST, FARTHEST) for each in (x, y, z - distance))
-    return Camera((x, y, z), (0.0, 0.0, 1.0), 60.0)
 
 
 # Example scenes, which are installed with the library: `minirt.example("demo")`.

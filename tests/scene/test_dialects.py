@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from minirt.errors import SceneError
+from minirt.fields.directions import SCALED
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import dialect_tables as dialects
 from minirt.scene import dump, load, loads, parse
@@ -39,6 +40,11 @@ CASES = [
     (f"{FLOOR} ch 9,8,7", f"{FLOOR} checker:1,9,8,7", [dialects.CHECKERS]),
     (f"{FLOOR} cd:1,2,3:4,5,6:0.5", f"{FLOOR} checker:0.5,4,5,6", [dialects.TWO_COLOURS]),
     (f"{BALL} there.xpm there_bump.png", f"{BALL} texture:there.xpm bump:there_bump.png", [dialects.PICTURES]),
+    (
+        f"{BALL} ch 9,8,7 usual.png",
+        f"{BALL} checker:0.125,9,8,7 texture:usual.png",
+        [dialects.CHECKERS, dialects.PICTURES],
+    ),
     (f'{BALL} -t "there.xpm"', f"{BALL} texture:there.xpm", [dialects.PICTURES]),
     (f"{BALL} tx:absent.xpm", BALL, [dialects.ABSENT]),
     (f"{BALL} mat:metal:0.2 BNS:0;1", BALL, [dialects.LEFT_OUT]),
@@ -69,7 +75,9 @@ CASES = [
     ),
     ("sp 0 0 20 12.6 10 0 255", BALL, [dialects.JOINED]),
     ("sp (0,0,20), 12.6 10,0,300", BALL, [dialects.NEAREST]),
-    ("pl 0,-1,0 0,20,0 200,200,200", FLOOR, [dialects.SCALED]),
+    ("pl 0,-1,0 0,20,0 200,200,200", FLOOR, [SCALED]),
+    ("l 0,9,0 70 255,255,255", "l 0,9,0 0.7 255,255,255", [dialects.PERCENT]),
+    ("l 0,9,0 101 255,255,255", "l 0,9,0 1 255,255,255", [dialects.NEAREST]),
     ("l 0,9,0 3.5 255,255,255 7", "l 0,9,0 1 255,255,255", [dialects.NEAREST, dialects.LEFT_OUT]),
     ("cu 0,1,0 2 9,8,7", "bo 0,1,0 0,1,0 2,2,2 9,8,7", [dialects.ORDER, dialects.RENAMED]),
     ("cu 0,1,0 1,0,0 2,3,4 9,8,7", "bo 0,1,0 1,0,0 2,3,4 9,8,7", [dialects.RENAMED]),
@@ -101,7 +109,7 @@ CASES = [
 @pytest.fixture(autouse=True)
 def pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    for name in ("there.png", "there_bump.png"):
+    for name in ("there.png", "there_bump.png", "usual.png"):
         Image.new("RGB", (2, 2)).save(name)
     Path("there.xpm").write_text('/* XPM */\nstatic char *a[] = {"1 1 1 1", "a c #000000", "a"};')
 

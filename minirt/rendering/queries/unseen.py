@@ -1,10 +1,10 @@
-"""Notices about what of a scene is not seen, with a camera that would show it, and about what has no effect."""
+"""Notices about what of a scene is not seen, with a camera that would show it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
-from itertools import chain, islice, product
+from itertools import product
 from math import atan2, ceil, cos, dist, floor, log10, pi, radians, sin, tan
 
 import numpy as np
@@ -18,7 +18,6 @@ from minirt.rendering.packing.materials import encloses
 from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera, Scene, describe, load
-from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere
 
 # Places in a picture at which rays look for shapes, (n, 2), in shares of its width and height: some find one in most
 # pictures. The last ones are for the rectangle around one shape, and begin in its middle.
@@ -30,13 +29,11 @@ AZIMUTHS, ELEVATIONS = 8, (25.0, -25.0, 70.0)  # degrees: places around the scen
 NARROWEST, WIDEST, USUAL = 20.0, 100.0, 60.0  # degrees of the field of view: others are replaced by the usual one
 MARGIN = 1.15  # of the distance at which the bounding ball of the scene fills the picture
 IN_PLANE = 1e-9  # distance from a plane, relative to the coordinates of the eye
-CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid)
-UNBOUNDED = ((-np.inf,) * 3, (np.inf,) * 3)  # box of a plane
-MOST_COMPARED = 200  # shapes of which one may be inside of another
-CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
 DIGITS = 3  # of coordinates, relative to the size of the scene
 PLACES = 4  # decimals of directions
 SHOWN_BY = "; this line would show the scene: "
+DARK = "no light is on: all that is in view is black"
+DARK_BEFORE_BACKGROUND = f"{DARK}, but for the background"
 
 
 def notice_about(scene: Scene, size: tuple[int, int], pixels: np.ndarray | None = None) -> str:
@@ -53,7 +50,7 @@ def notice_about(scene: Scene, size: tuple[int, int], pixels: np.ndarray | None 
     if not bounded[seen].any():
         seen = np.union1d(visible_shapes(arrays, scene.camera, size), aimed_shapes(arrays, scene.camera, size))
     if len(seen) and not is_lit(scene):
-        return "no light is on: all that is in view is black" + ", but for the background" * bool(scene.background)
+        return DARK_BEFORE_BACKGROUND if scene.background else DARK
     reason, options = around_eye(scene, arrays, is_even), ""
     if not reason:
         if not is_even and (bounded[seen].any() or not bounded.any()):
@@ -87,17 +84,20 @@ def is_lit(scene: Scene) -> bool:
 
 
 def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
-    """Return which shape the eye is in, if that hides other shapes or the picture is even."""
+    """Return which shape the eye is in, if there are others outside of it or the picture is even; else ''."""
     eye, bounded, (starts, ends) = np.array(scene.camera.position), is_bounded(arrays), arrays.boxes.swapaxes(0, 1)
     for index in np.flatnonzero(~bounded | ((starts <= eye) & (eye <= ends)).all(axis=1)).tolist():
-        shape, hides = arrays.shapes[index], ""
+        shape, name = arrays.shapes[index], shape_name(scene.shapes, index)
         if flat := shape.flat():
-            is_in = is_even and abs(np.dot(np.subtract(eye, flat[0]), flat[1])) <= IN_PLANE * (1 + np.abs(eye).max())
-        elif is_in := encloses(shape, eye):
-            outside = np.flatnonzero(bounded & ((starts > ends[index]) | (ends < starts[index])).any(axis=1)).tolist()
-            hides = f", which hides {names_of(scene.shapes, outside)}" if outside and not shape.glass else ""
-        if is_in and (is_even or hides):
-            return f"the eye is in{'' if flat else 'side'} {shape_name(scene.shapes, index)}{hides}"
+            distance = abs(np.dot(np.subtract(eye, flat[0]), flat[1]))
+            if is_even and distance <= IN_PLANE * (1 + np.abs(eye).max()):
+                return f"the eye is in {name}"
+        elif encloses(shape, eye):
+            is_outside = bounded & ((starts > ends[index]) | (ends < starts[index])).any(axis=1)
+            if is_outside.any() and not shape.glass:
+                return f"the eye is inside {name}: nothing outside of it is seen"
+            if is_even:
+                return f"the eye is inside {name}"
     return ""
 
 
@@ -113,7 +113,8 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
         return f"{others} but the {names} is in view"
     eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
-    return "nothing is in view" + ": all is behind the eye" * bool(depths.max() < 0 and bounded.all())
+    is_behind = depths.max() < 0 and bounded.all()
+    return "nothing is in view: all is behind the eye" if is_behind else "nothing is in view"
 
 
 def other_readings(scene: Scene, arrays: ShapeArrays, size: tuple[int, int]) -> Iterator[str]:
@@ -207,57 +208,3 @@ def line_of(camera: Camera) -> str:
     code, position, _, *others = describe(camera).split()
     direction = ",".join(spelled(round(part, PLACES)) for part in camera.direction)
     return " ".join((code, position, direction, *others))
-
-
-# Notices about what has no effect. Only what is certain is told, of the first `MOST_COMPARED` shapes.
-
-
-def covers(shape: Shape) -> bool:
-    """Whether one square of a checkerboard covers all of a shape whose u and v run from 0 to 1."""
-    is_usual = not (shape.infinite or shape.uv or isinstance(shape, Mesh))
-    return bool(is_usual and shape.checker and shape.checker.size >= 1)
-
-
-def is_clear(shape: Shape) -> bool:
-    """Whether a shape with an inside is of clear glass, which does not show its colour."""
-    is_glass = bool(shape.glass and shape.glass.share == 1 and not shape.tint)
-    return is_glass and shape.solid and not shape.infinite and len({*shape.colour}) > 1
-
-
-LOST: dict[str, Callable[[Shape], bool]] = {
-    "the checker: of {} is not seen: a square with sides of 1 covers the shape, try 0.125": covers,
-    "the colour of {} is not seen: it is of clear glass, which tint:R,G,B colours": is_clear,
-}
-
-
-def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
-    """Yield sentences about what has no effect on a picture of that size."""
-    shapes = [*islice(chain.from_iterable(scene.runs), MOST_COMPARED)]
-    boxes = np.array([shape.bounds() or UNBOUNDED for shape in shapes]).reshape(-1, 2, 3)
-    yield from hidden(scene, shapes, boxes)
-    bounded = np.flatnonzero(np.isfinite(boxes).all(axis=(1, 2)))
-    low, high = rectangles(scene.camera, size, boxes[bounded])
-    tiny = (((high - low) * size < 1) & (low > 0) & (high < 1)).all(axis=1)
-    if tiny.any():
-        yield f"smaller than a pixel: {names_of(shapes, bounded[tiny].tolist())}"
-    for sentence, is_lost in LOST.items():
-        if found := [index for index, shape in enumerate(shapes) if is_lost(shape)]:
-            yield sentence.format(names_of(shapes, found))
-
-
-def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str]:
-    """Yield sentences about shapes and lamps inside an opaque convex shape that the eye is not in: the corners of their
-    bounding boxes, grown, are inside."""
-    eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights, 1) if lamp.position]
-    told = [f"{shape_name(shapes, index)} is never seen" for index in range(len(shapes))]
-    told += [f"light {number} lights nothing" for number, _ in lamps]
-    extents = [np.add(lamp.position or 0.0, np.multiply(lamp.size or 0.0, [[-0.5], [0.5]])) for _, lamp in lamps]
-    starts, ends = np.concatenate([boxes, np.reshape(extents, (-1, 2, 3))]).swapaxes(0, 1)
-    grown = CERTAIN * (ends - starts)
-    for outer, shape in enumerate(shapes):
-        if isinstance(shape, CONVEX) and not shape.glass and not scene.camera.lens and not encloses(shape, eye):
-            within = (starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)
-            for index in np.flatnonzero(within).tolist():
-                corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
-                if index != outer and all(encloses(shape, np.array(at)) for at in corners):
-                    yield f"{told[index]}: it is inside {shape_name(shapes, outer)}, which is opaque"

@@ -18,6 +18,7 @@ from minirt.rendering.queries.pick import Picked
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.bindings import Keymap
+from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
@@ -155,7 +156,7 @@ class Session:
             before = f"{self.state.message}\n" if self.state.message else ""
             for notice in islice(notices_about(latest.job.scene, latest.pixels[..., :3], (width, height)), 1):
                 why, can_be_shown, _ = notice.partition(SHOWN_BY)
-                self.say(before + (f"{why}; F brings the scene into view" if can_be_shown else notice))
+                self.say(before + (f"{why}; {named('F')} brings the scene into view" if can_be_shown else notice))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""

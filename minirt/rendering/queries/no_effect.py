@@ -1,0 +1,70 @@
+"""Notices about what of a scene has no effect on its picture: what is certain, of its first `MOST_COMPARED` shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import chain, islice, product
+
+import numpy as np
+
+from minirt.rendering.notes import names_of, shape_name
+from minirt.rendering.packing.materials import encloses
+from minirt.rendering.queries.unseen import rectangles
+from minirt.scene import Scene
+from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere
+
+CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid)
+UNBOUNDED = ((-np.inf,) * 3, (np.inf,) * 3)  # box of a plane
+MOST_COMPARED = 200  # shapes of which one may be inside of another
+CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
+
+
+def covers(shape: Shape) -> bool:
+    """Whether one square of a checkerboard covers all of a shape whose u and v run from 0 to 1."""
+    is_usual = not (shape.infinite or shape.uv or isinstance(shape, Mesh))
+    return bool(is_usual and shape.checker and shape.checker.size >= 1)
+
+
+def is_clear(shape: Shape) -> bool:
+    """Whether a shape with an inside is of clear glass, which does not show its colour."""
+    is_glass = bool(shape.glass and shape.glass.share == 1 and not shape.tint)
+    return is_glass and shape.solid and not shape.infinite and len({*shape.colour}) > 1
+
+
+LOST: dict[str, Callable[[Shape], bool]] = {
+    "the checker: of {} is not seen: a square with sides of 1 covers the shape, try 0.125": covers,
+    "the colour of {} is not seen: it is of clear glass, which tint:R,G,B colours": is_clear,
+}
+
+
+def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
+    """Yield sentences about what has no effect on a picture of that size."""
+    shapes = [*islice(chain.from_iterable(scene.runs), MOST_COMPARED)]
+    boxes = np.array([shape.bounds() or UNBOUNDED for shape in shapes]).reshape(-1, 2, 3)
+    yield from hidden(scene, shapes, boxes)
+    bounded = np.flatnonzero(np.isfinite(boxes).all(axis=(1, 2)))
+    low, high = rectangles(scene.camera, size, boxes[bounded])
+    tiny = (((high - low) * size < 1) & (low > 0) & (high < 1)).all(axis=1)
+    if tiny.any():
+        yield f"smaller than a pixel: {names_of(shapes, bounded[tiny].tolist())}"
+    for sentence, is_lost in LOST.items():
+        if found := [index for index, shape in enumerate(shapes) if is_lost(shape)]:
+            yield sentence.format(names_of(shapes, found))
+
+
+def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str]:
+    """Yield sentences about shapes and lamps inside an opaque convex shape that the eye is not in: the corners of their
+    bounding boxes, grown, are inside."""
+    eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights, 1) if lamp.position]
+    told = [f"{shape_name(shapes, index)} is never seen" for index in range(len(shapes))]
+    told += [f"light {number} lights nothing" for number, _ in lamps]
+    extents = [np.add(lamp.position or 0.0, np.multiply(lamp.size or 0.0, [[-0.5], [0.5]])) for _, lamp in lamps]
+    starts, ends = np.concatenate([boxes, np.reshape(extents, (-1, 2, 3))]).swapaxes(0, 1)
+    grown = CERTAIN * (ends - starts)
+    for outer, shape in enumerate(shapes):
+        if isinstance(shape, CONVEX) and not shape.glass and not scene.camera.lens and not encloses(shape, eye):
+            within = (starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)
+            for index in np.flatnonzero(within).tolist():
+                corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
+                if index != outer and all(encloses(shape, np.array(at)) for at in corners):
+                    yield f"{told[index]}: it is inside {shape_name(shapes, outer)}, which is opaque"
