@@ -15,10 +15,11 @@ from minirt.mlx import Button, Key, Modifier
 from minirt.mlx.memory import Memory
 from minirt.scene import Camera, describe, dump, load
 from minirt.shapes import Plane, Sphere
+from minirt.viewer.app.choosing import LISTS
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.events import PANEL
-from minirt.viewer.app.panels import LISTS, TYPE
 from minirt.viewer.app.session import Session
+from minirt.viewer.app.typed_value import TYPE
 from minirt.viewer.bindings import (
     BINDINGS,
     LAYOUTS,

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.errors import MlxError
 from minirt.mlx.events import MODIFIER_KEYS, Button, Event
+from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
-from minirt.viewer.app.panels import ADDING, HELP, LISTS, TYPE, Choosing, Typing, help_takes
+from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session
+from minirt.viewer.app.typed_value import TYPE, Typing
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
 from minirt.viewer.recovery import remember_panel

@@ -1,105 +1,25 @@
-"""Panels: typing the active value, choosing an element or an attribute from a list, and the help.
+"""Choosing an element or an attribute from a list.
 
-A digit or = begins a value, Enter sets it, Escape leaves it as it was. In a list letters filter, arrows go through it
-and Enter takes the choice, which is in the scene at once, so that the picture shows it. Escape takes it out again, and
-any key that means nothing to the list leaves it there, as the last change.
+Letters filter, arrows go through the list and Enter takes the choice, which is in the scene at once, so that the
+picture shows it. Escape takes it out again, and any key that means nothing to the list leaves it there, as the last
+change.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from minirt.mlx import Button, Key
+from minirt.mlx import Key
 from minirt.viewer.app.session import Session
+from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import SIGNIFICANT, Binding
 from minirt.viewer.display.overlay import Panel
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.typed import CHARACTERS, set_typed
 from minirt.viewer.language import searchable, translated
 
-ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
-TYPE = "type value"  # the action that begins with =
-HELP = "toggle help"
-TURNS: dict[int, int] = {  # keys and buttons that turn the pages of the help
-    **dict.fromkeys((Key.RIGHT, Key.DOWN, Key.PAGE_DOWN, Key.RETURN, Button.WHEEL_DOWN), 1),
-    **dict.fromkeys((Key.LEFT, Key.UP, Key.PAGE_UP, Button.WHEEL_UP), -1),
-}
-MAX_LENGTH = 40  # characters
 ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
 LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
-
-
-class Typing:
-    """Characters of a value that were typed; empty while no value is typed."""
-
-    def __init__(self, session: Session) -> None:
-        self.session = session
-        self.text = ""
-
-    def begin(self, character: str) -> None:
-        """Begin with a digit or =."""
-        self.session.release_button()
-        self.session.say("")
-        self.show(character)
-
-    def end(self) -> None:
-        """Leave what was typed."""
-        if self.text:
-            self.show("")
-
-    def on_text(self, character: str) -> None:
-        """Add what was typed, as far as values are made of it; a minus behind a number changes its sign."""
-        text = self.text
-        if character == "-" and not text.startswith("="):
-            text = text.removeprefix("-") if text.startswith("-") else f"-{text}"
-        elif character in CHARACTERS:
-            text += character
-        self.show(text[:MAX_LENGTH])
-
-    def takes(self, key: int) -> bool:
-        """Take a key press; False if the key is not one of those that end or correct what is typed."""
-        if not self.text or key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
-            return False
-        text = self.text
-        self.show(text[:-1] if key == Key.BACKSPACE else "")
-        if key in ENTER:
-            self.session.say("")
-            self.session.show(set_typed(self.session.state, self.session.state.active, text, self.session.now))
-        return True
-
-    def show(self, text: str) -> None:
-        """Show what is typed; nothing if it is empty."""
-        session = self.session
-        self.text = text
-        hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it"
-        session.screen.panel = Panel(hint) if text else None
-        session.refresh()
-
-
-def help_takes(session: Session, key: int, pressed: Binding | None) -> bool:
-    """Take a key press or button while the help is open; False if it is closed or the key means nothing to it.
-
-    Letters search the help, arrows and the wheel turn its pages; H, Escape and a click close it.
-    """
-    screen = session.screen
-    closes = pressed is not None and pressed.action == HELP and not screen.search
-    if not screen.help:
-        return False
-    if closes or key in (Key.ESCAPE, Button.LEFT, Button.MIDDLE, Button.RIGHT):
-        screen.turn_help(0)
-    elif key in TURNS:
-        screen.turn_help(TURNS[key])
-    elif session.modifiers & SIGNIFICANT:
-        return False
-    elif Key.A <= key <= Key.Z or key == Key.SPACE:
-        screen.help, screen.search = 1, screen.search + chr(key)
-    elif key == Key.BACKSPACE:
-        screen.help, screen.search = 1, screen.search[:-1]
-    else:
-        return False
-    session.refresh()
-    return True
 
 
 class Choosing:
