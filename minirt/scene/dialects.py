@@ -32,6 +32,8 @@ from minirt.shapes import Cone
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|(?:\"[^\"]*\"|[^ \t\"])+|[^ \t]+")
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
+SEMICOLONS = re.compile(rf"(?<![^ \t])({NUMBER});({NUMBER});({NUMBER})(?![^ \t])")
+DETACHED = re.compile(r"(?<=[ \t])([A-Za-z]\w*:)[ \t]+(?=[^ \t])(?![A-Za-z]\w*:)")  # the value of an attribute
 DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
 LEAST_PERCENT = 10  # a share from here on is one in percent
@@ -122,12 +124,24 @@ def body_of(line: Line) -> tuple[str, str, Changes]:
     if hex_colour:
         changes.append((tables.NAMED, hex_colour[0]))
         text = text[: line.end] + css_colour(hex_colour[0]) + text[hex_colour.end() :]
+    text, joined = with_words_joined(text)
+    changes += joined
     body, _, comment = text.partition("#")
     slashes = SLASHES.search(body) or DASHES.search(body)
     if slashes:
         changes.append((tables.SLASHES, slashes[0]))
         body, comment = text[: slashes.start()], text[slashes.end() :]
     return body, f" #{comment}" * bool(comment), changes
+
+
+def with_words_joined(text: str) -> tuple[str, Changes]:
+    """Return a line without blanks behind the colons of attributes, and with commas for semicolons between numbers."""
+    body, mark, comment = text.partition("#")
+    changes: Changes = []
+    for pattern, words in ((SEMICOLONS, r"\1,\2,\3"), (DETACHED, r"\1")):
+        changes += [(tables.JOINED, found[0]) for found in pattern.finditer(body)]
+        body = pattern.sub(words, body)
+    return body + mark + comment, changes
 
 
 def without_element(line: Line, errors: list[Problem]) -> Translation | None:
@@ -150,10 +164,18 @@ def kind_of(code: str) -> type[Element] | None:
 
 
 def in_order(code: str, words: list[str]) -> list[str]:
-    """Return the words of an element in the order of its fields here, where they have a known order of their own."""
+    """Return the words of an element in the order of its fields here: where they have a known order of their own, or
+    are as many numbers and triples as the fields of a shape, each of which then takes the next one."""
     letters = "".join("v" if TRIPLE.fullmatch(word) else "n" if re.fullmatch(NUMBER, word) else "w" for word in words)
     fitting = (means for kind, pattern, means in tables.LAYOUTS if kind == code and re.match(pattern, letters))
-    return next((means(*words) for means in fitting), words)
+    known = next((means(*words) for means in fitting), words)
+    kind = SPELLINGS[code]
+    wanted = "".join("v" if isinstance(field, Three) else "n" for field in positional_fields(kind))
+    given = letters[: len(wanted)]
+    if known is not words or kind not in SHAPES or given == wanted or sorted(given) != sorted(wanted):
+        return known
+    triples, numbers = (iter([word for word, of in zip(words, given, strict=False) if of == sort]) for sort in "vn")
+    return [*(next(triples if sort == "v" else numbers) for sort in wanted), *words[len(wanted) :]]
 
 
 def fields_of_words(

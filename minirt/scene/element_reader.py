@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from itertools import combinations, starmap, takewhile
+from itertools import combinations, pairwise, starmap, takewhile
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -169,13 +169,19 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
     """Assign the words `key:value` to fields; wrong words are reported and left out."""
     keyed = fields_by_key(kind)
     slots: dict[str, Slot] = {}
+    values = dict(pairwise(attributes))
+    detached = {word: value for word, value in values.items() if is_detached(word, value, keyed)}
     for word in attributes:
+        if word in detached.values():
+            continue
         key, start = split_key(word.text)
         written = word.text[: start - 1] if start else word.text
         field = keyed.get(key)
         if "=" in key and not start:
             right = word.text.replace("=", ":", 1)
             log.error(line, f"an attribute is written with a colon: {quoted(right)}", word.column, len(word.text))
+        elif field and word in detached:
+            log.error(line, f"no blank may stand behind {quoted(word.text)}", word.column, len(word.text))
         elif field and not start and not field.bare:
             message = f"{kind.title} {key} needs a value: '{field.notation}'"
             if example := initial_text(field):
@@ -193,6 +199,11 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
                 message = f"'{written}' is the old name of '{field.notation}': later versions will not read it"
                 log.notice(line, message, word.column, len(written))
     return list(slots.values())
+
+
+def is_detached(word: Word, value: Word, keyed: Mapping[str, Field]) -> bool:
+    """Whether a word is the value of the attribute before it, from which a blank parts it."""
+    return word.text.endswith(":") and not is_attribute(value.text, keyed)
 
 
 def initial_text(field: Field) -> str:

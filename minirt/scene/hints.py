@@ -17,13 +17,13 @@ from typing import Any
 
 from minirt.element import fields_by_key, fields_of
 from minirt.errors import FieldError, Problem, counted, nearest, printable
-from minirt.fields import Field
+from minirt.fields import Choice, Field
 from minirt.fields.directions import SCALED
 from minirt.fields.scalars import number
 from minirt.helpers import file_io
 from minirt.materials.compound import Compound
 from minirt.scene import dialect_tables as tables
-from minirt.scene.dialects import colours_of_materials, fit, kind_of, translated
+from minirt.scene.dialects import colours_of_materials, fit, kind_of, translated, with_words_joined
 from minirt.scene.element_reader import split_key
 from minirt.scene.elements import FURTHER, Camera, FurtherCamera
 from minirt.scene.lines import TAKEN, WORD, Line, Log, line_from
@@ -75,7 +75,8 @@ class Meanings:
             return ""
         words = line.text.split()
         code = words[0] if kind_of(words[0]) else nearest_element(words[0])
-        text = self.with_words_mended(line.text.replace(words[0], code or words[0], 1))
+        joined, _ = with_words_joined(line.text)
+        text = self.with_words_mended(joined.replace(words[0], code or words[0], 1))
         if code == FurtherCamera.code and self.first.get(code) == line.number and Camera.code not in self.first:
             text = text.replace(code, Camera.code, 1)  # the older subject begins its only camera so
         elif text:
@@ -148,6 +149,9 @@ def nearest_value(field: Field, text: str) -> str:
         except FieldError as error:
             part = error.part or 0
             component = component_of(field, part)
+            if isinstance(component, Choice):
+                parts[part] = next(iter(nearest(parts[part].lower(), component.words)), "")
+                continue
             value = number(parts[part])
             fitted, sort = fit(component, value)
             if sort != tables.NEAREST or 0 < value < component.low == 1:  # glass:0.5 rather means a share

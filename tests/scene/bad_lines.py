@@ -56,6 +56,8 @@ VECTORS: list[Case] = [
     ("sp 0,20 5 255,0,0", 4, "sphere centre must be x,y,z, three numbers with commas between them, got '0,20'"),
     ("sp ,0,0,20 5 255,0,0", 9, "must be x,y,z"),
     ("sp 0,,20 5 255,0,0", 6, "sphere centre y must be a number, got ''"),
+    ("sp 0,0,20 5 255,0,0 mirror: 0.3", 21, "no blank may stand behind 'mirror:'"),
+    ("sp 0,0,20 5 255,0,0 mirror: specular:1,9", 28, "sphere mirror share must be a number, got ''"),
     ("sp ,, 5 255,0,0", 5, "no blanks may stand around a comma"),
     ("sp (0,0,20) 5 255,0,0", 4, "sphere centre x must be a number, got '(0'"),
     ("sp 0, 0, 20 5 255,0,0", 5, "no blanks may stand around a comma"),

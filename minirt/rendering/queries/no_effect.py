@@ -8,15 +8,20 @@ from itertools import chain, islice, product
 import numpy as np
 
 from minirt.rendering.notes import names_of, shape_name
+from minirt.rendering.packing.features import features
+from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.materials import encloses
-from minirt.rendering.queries.unseen import rectangles
-from minirt.scene import Scene
-from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere
+from minirt.rendering.queries.preview import render_interpreted
+from minirt.rendering.queries.unseen import arrays_of, rectangles, visible_shapes
+from minirt.scene import Lamp, Scene
+from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Mesh, Paraboloid, Shape, Sphere
 
-CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid)
+CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid, Paraboloid)
 UNBOUNDED = ((-np.inf,) * 3, (np.inf,) * 3)  # box of a plane
 MOST_COMPARED = 200  # shapes of which one may be inside of another
 CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
+COARSE = 48, 27  # pixels of pictures that show what a light lights
+MOST_LIT = 100  # shapes, times lights: in a twentieth of a second
 
 
 def covers(shape: Shape) -> bool:
@@ -41,7 +46,11 @@ def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
     """Yield sentences about what has no effect on a picture of that size."""
     shapes = [*islice(chain.from_iterable(scene.runs), MOST_COMPARED)]
     boxes = np.array([shape.bounds() or UNBOUNDED for shape in shapes]).reshape(-1, 2, 3)
-    yield from hidden(scene, shapes, boxes)
+    inside = list(hidden(scene, shapes, boxes))
+    yield from inside
+    idle = [name for name in idle_lights(scene) if not any(each.startswith(name) for each in inside)]
+    if idle:
+        yield f"nothing that is in view seems to be lit by {', '.join(idle)}"
     bounded = np.flatnonzero(np.isfinite(boxes).all(axis=(1, 2)))
     low, high = rectangles(scene.camera, size, boxes[bounded])
     tiny = (((high - low) * size < 1) & (low > 0) & (high < 1)).all(axis=1)
@@ -53,8 +62,8 @@ def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
 
 
 def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str]:
-    """Yield sentences about shapes and lamps inside an opaque convex shape that the eye is not in: the corners of their
-    bounding boxes, grown, are inside."""
+    """Yield sentences about what is inside an opaque shape that the eye is not in: lamps without a size, and shapes and
+    lamps inside a convex one, that is, the corners of their bounding boxes, grown."""
     eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights, 1) if lamp.position]
     told = [f"{shape_name(shapes, index)} is never seen" for index in range(len(shapes))]
     told += [f"light {number} lights nothing" for number, _ in lamps]
@@ -62,9 +71,28 @@ def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str
     starts, ends = np.concatenate([boxes, np.reshape(extents, (-1, 2, 3))]).swapaxes(0, 1)
     grown = CERTAIN * (ends - starts)
     for outer, shape in enumerate(shapes):
-        if isinstance(shape, CONVEX) and not shape.glass and not scene.camera.lens and not encloses(shape, eye):
+        is_closed = shape.solid and not shape.infinite and not shape.glass
+        if is_closed and not scene.camera.lens and not encloses(shape, eye):
             within = (starts >= starts[outer]).all(axis=1) & (ends <= ends[outer]).all(axis=1)
+            within &= isinstance(shape, CONVEX) | (starts == ends).all(axis=1)
             for index in np.flatnonzero(within).tolist():
                 corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
                 if index != outer and all(encloses(shape, np.array(at)) for at in corners):
                     yield f"{told[index]}: it is inside {shape_name(shapes, outer)}, which is opaque"
+
+
+def idle_lights(scene: Scene) -> Iterator[str]:
+    """Yield the names of the lights without which a coarse picture is the same; none where mirrors or glass may show
+    what they light, or where looking would take long."""
+    lights, arrays = emitting_lights(scene), arrays_of(scene)
+    is_quick = len(lights) * sum(each.parts for each in scene.shapes) <= MOST_LIT
+    is_direct = "reflective" not in features(scene)
+    if not is_quick or not is_direct or not arrays or not len(visible_shapes(arrays, scene.camera, COARSE)):
+        return
+    others = [each for each in scene.elements if not isinstance(each, Lamp)]
+    _, without = render_interpreted(Scene(others, scene.file), *COARSE)
+    for number, light in enumerate(scene.lights, 1):
+        if light in lights and not light.size:
+            _, alone = render_interpreted(Scene([*others, light], scene.file), *COARSE)
+            if np.array_equal(alone, without):
+                yield f"light {number}"

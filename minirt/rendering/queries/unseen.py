@@ -55,7 +55,8 @@ def notice_about(scene: Scene, size: tuple[int, int], pixels: np.ndarray | None 
     if not reason:
         if not is_even and (bounded[seen].any() or not bounded.any()):
             return ""
-        reason, options = reason_for(scene, arrays, seen), "".join(other_readings(scene, arrays, size))
+        reason = reason_for(scene, arrays, seen, size)
+        options = "" if bounded[seen].any() else "".join(other_readings(scene, arrays, size))
     camera = showing_camera(scene, size) if len(seen) < len(scene.shapes) else None
     return reason + options + (SHOWN_BY + line_of(camera) if camera else "")
 
@@ -101,8 +102,9 @@ def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
     return ""
 
 
-def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
-    """Return why a picture has one colour or no bounded shape, in which the shapes with the indices `seen` are."""
+def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray, size: tuple[int, int]) -> str:
+    """Return why a picture of that size has one colour or no bounded shape, in which the shapes with the indices `seen`
+    are."""
     bounded = is_bounded(arrays)
     if bounded[seen].any() or (len(seen) and not bounded.any()):
         return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene.shapes, seen.tolist())}"
@@ -110,7 +112,10 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
         kinds = [type(scene.shapes[index]) for index in seen.tolist()]
         names = " and ".join(kind.title if kinds.count(kind) == 1 else kind.plural for kind in dict.fromkeys(kinds))
         others = f"none of the {bounded.sum()} shapes" if bounded.sum() > 1 else "no shape"
-        return f"{others} but the {names} is in view"
+        low, high = np.clip(rectangles(scene.camera, size, arrays.boxes[bounded]), 0.0, 1.0)
+        behind = np.flatnonzero(bounded)[(low < high).all(axis=1)].tolist()
+        hidden = f", behind which is {names_of(scene.shapes, behind)}" if behind else ""
+        return f"{others} but the {names} is in view{hidden}"
     eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
     is_behind = depths.max() < 0 and bounded.all()

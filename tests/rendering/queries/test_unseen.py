@@ -136,7 +136,7 @@ def test_a_picture_of_planes_alone_names_what_is_out_of_view(text: str, reason: 
 def test_rays_aimed_at_shapes_find_one_between_other_rays(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = parse(GREY + SMALL).scene
     monkeypatch.setattr(module, "aimed_shapes", lambda *_: np.zeros(0, int))  # without them the search is wrong
-    assert notice_about(scene, (WIDTH, HEIGHT)).startswith("no shape but the plane is in view; ")
+    assert notice_about(scene, (WIDTH, HEIGHT)).startswith("no shape but the plane is in view, behind")
 
 
 def test_without_light_what_is_in_view_is_black_but_mirrors_of_a_background() -> None:
@@ -221,8 +221,34 @@ HIDDEN = {
 }
 
 
+IDLE = "nothing that is in view seems to be lit by "
+LAMPS = {  # a ball on a floor, and what lights it or does not
+    "L 4,9,0 1": "",
+    "L 4,-9,0 1": "light 1",  # below the floor
+    "L 4,9,20 1 255,255,255 reach:9": "light 1",
+    "L 4,9,0 0": "",  # it is switched off
+    "L 4,9,0 1\nl 0,0.5,12 1\ndl 0,1,0 1": "light 3",
+    "dl 0,-1,0 1\npl 0,9,0 0,-1,0 9,9,9": "light 1",
+    "sl 4,9,0 0,1,0 30 1": "light 1",
+    "sl 4,9,0 -0.4,-0.9,0.9 30 1": "",
+    "L 4,-9,0 1\nsp 0,0,5 1 9,9,9 mirror:0.5": "",  # which may show what it lights
+    "L 0,0,9 1": "",  # inside of the ball, which is told
+}
+
+
+@pytest.mark.parametrize(("lines", "names"), LAMPS.items())
+def test_lights_that_light_nothing_in_view_are_named(lines: str, names: str) -> None:
+    scene = parse(f"{GREY}{BALL}\npl 0,-2,0 0,1,0 200,200,200\n{lines}\n").scene
+    found = [each for each in without_effect(scene, (640, 360)) if each.startswith(IDLE)]
+    assert found == ([IDLE + names] if names else [])
+    away = scene.replace(scene.camera, scene.camera.replace(position=(0, 9, 0), direction=(0, 1, 0)))
+    assert not [each for each in without_effect(away, (640, 360)) if each.startswith(IDLE)]  # nothing is in view
+
+
 def told(text: str) -> list[str]:
-    return [*without_effect(parse(f"{GREY}{text}\n").scene, (640, 360))]
+    """The sentences about a scene but those about lights, which have a test of their own."""
+    sentences = without_effect(parse(f"{GREY}{text}\n").scene, (640, 360))
+    return [each for each in sentences if not each.startswith(IDLE)]
 
 
 @pytest.mark.parametrize(("line", "is_hidden"), HIDDEN.items())
@@ -237,6 +263,13 @@ def test_a_shape_or_lamp_inside_an_opaque_shape_is_told(line: str, is_hidden: bo
         "sp 0,0,9 40 255,0,0",
     ):  # the eye is in the last
         assert not told(f"{visible}\n{line}")
+
+
+def test_a_lamp_without_a_size_is_told_in_every_closed_shape() -> None:
+    for shape in ("hy 0,0,9 0,1,0 1 2 2 9,9,9", "pa 0,-1,9 0,1,0 2 2 9,9,9", "to 1,0,9 0,1,0 2 1 9,9,9"):
+        (sentence,) = told(f"{shape}\nL 0,0,9 1")
+        assert sentence.startswith("light 1 lights nothing: it is inside ")
+        assert told(f"{shape}\nL 0,0,9 1 size:0.01") == ([sentence] if shape.startswith("pa") else [])
 
 
 LOST = {
