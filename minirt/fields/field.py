@@ -156,7 +156,9 @@ def file_name(text: str, also: str = "", sort: str = "picture") -> str:
     """Check the name of a file: FieldError if it cannot stand in a line, or has one of the characters in `also`."""
     if not isinstance(text, str) or not text.strip() or any(character in text for character in FORBIDDEN + also):
         commas = ", commas" if "," in also else ""
-        raise FieldError(f"must be the name of a {sort} file, without tabs{commas}, quotes and #, got {text!r}")
+        raise FieldError(
+            f"must be the name of a {sort} file, without tabs{commas}, quotes and #, got {quoted(str(text))}"
+        )
     return text
 
 

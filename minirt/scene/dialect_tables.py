@@ -14,7 +14,7 @@ from minirt.fields import Triple, clamp, cos_and_sin, neat, upright
 from minirt.scene.elements import linear_combination
 
 # Sorts of changes, as notices tell them.
-LEFT_OUT = "words without a meaning here are left out"
+LEFT_OUT = "words that cannot be read here are left out"
 SETTINGS = "settings of other programs are left out"
 MISSING = "shapes are missing"
 INCOMPLETE = "shapes without all of their fields, or with sizes out of range, are missing"

@@ -33,7 +33,9 @@ WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \
 TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
 SEMICOLONS = re.compile(rf"(?<![^ \t])({NUMBER});({NUMBER});({NUMBER})(?![^ \t])")
-DETACHED = re.compile(r"(?<=[ \t])([A-Za-z]\w*:)[ \t]+(?=[^ \t])(?![A-Za-z]\w*:)")  # the value of an attribute
+# The value of an attribute that a blank parts from it, or a number from a comma; and a resolution with a comma or x.
+DETACHED = re.compile(r"(?<=[ \t])([A-Za-z]\w*:(?:[^ \t]*,(?=[ \t]+[0-9.]))?)[ \t]+(?=[^ \t])(?![A-Za-z]\w*:)")
+JOINED_SIZE = re.compile(r"^([ \t]*R[ \t]+[0-9]+)[,x]([0-9]+)(?![^ \t])")
 DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
 LEAST_PERCENT = 10  # a share from here on is one in percent
@@ -135,10 +137,10 @@ def body_of(line: Line) -> tuple[str, str, Changes]:
 
 
 def with_words_joined(text: str) -> tuple[str, Changes]:
-    """Return a line without blanks behind the colons of attributes, and with commas for semicolons between numbers."""
+    """Return a line whose words are joined as they may be meant, and what was changed."""
     body, mark, comment = text.partition("#")
     changes: Changes = []
-    for pattern, words in ((SEMICOLONS, r"\1,\2,\3"), (DETACHED, r"\1")):
+    for pattern, words in ((SEMICOLONS, r"\1,\2,\3"), (DETACHED, r"\1"), (JOINED_SIZE, r"\1 \2")):
         changes += [(tables.JOINED, found[0]) for found in pattern.finditer(body)]
         body = pattern.sub(words, body)
     return body + mark + comment, changes
@@ -165,14 +167,16 @@ def kind_of(code: str) -> type[Element] | None:
 
 def in_order(code: str, words: list[str]) -> list[str]:
     """Return the words of an element in the order of its fields here: where they have a known order of their own, or
-    are as many numbers and triples as the fields of a shape, each of which then takes the next one."""
+    are as many numbers and triples as the fields of a shape, or of what has one number, each of which then takes the
+    next one."""
     letters = "".join("v" if TRIPLE.fullmatch(word) else "n" if re.fullmatch(NUMBER, word) else "w" for word in words)
     fitting = (means for kind, pattern, means in tables.LAYOUTS if kind == code and re.match(pattern, letters))
     known = next((means(*words) for means in fitting), words)
     kind = SPELLINGS[code]
     wanted = "".join("v" if isinstance(field, Three) else "n" for field in positional_fields(kind))
     given = letters[: len(wanted)]
-    if known is not words or kind not in SHAPES or given == wanted or sorted(given) != sorted(wanted):
+    is_clear = kind in SHAPES or wanted.count("n") == 1
+    if known is not words or not is_clear or given == wanted or sorted(given) != sorted(wanted):
         return known
     triples, numbers = (iter([word for word, of in zip(words, given, strict=False) if of == sort]) for sort in "vn")
     return [*(next(triples if sort == "v" else numbers) for sort in wanted), *words[len(wanted) :]]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from itertools import combinations, pairwise, starmap, takewhile
 from pathlib import Path
@@ -25,7 +25,8 @@ from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
 from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_word
 
 SLASHES = re.compile(r"(?<![^ \t])//")
-KEY = re.compile(r"(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):")
+KEY = re.compile(r"(?![A-Za-z]:[\\/])(?:(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):)")  # which no drive of Windows is
+LEAST_LIKE = 4  # letters of a word for which a similar one is proposed that begins with another
 HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
 
 
@@ -201,7 +202,7 @@ def attribute_slots(kind: type[Element], attributes: list[Word], line: Line, log
     return list(slots.values())
 
 
-def is_detached(word: Word, value: Word, keyed: Mapping[str, Field]) -> bool:
+def is_detached(word: Word, value: Word, keyed: dict[str, Field]) -> bool:
     """Whether a word is the value of the attribute before it, from which a blank parts it."""
     return word.text.endswith(":") and not is_attribute(value.text, keyed)
 
@@ -219,8 +220,10 @@ def unknown_key_message(kind: type[Element], key: str) -> str:
     owners = dict.fromkeys(keys[key].sort or title for title, keys in keys_by_title.items() if key in keys)
     if owners:
         return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
-    names, every = list(fields_by_key(kind)), [name for keys in keys_by_title.values() for name in keys]
-    guess = nearest_word(key, names) or nearest_word(key, every)
+    names = list(fields_by_key(kind))
+    guess = nearest_word(key, names)
+    if len(key) < LEAST_LIKE and key[:1] != guess[:1]:
+        guess = ""
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
 
 

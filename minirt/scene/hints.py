@@ -107,7 +107,7 @@ class Meanings:
         value = nearest_value(keyed[key], word[start:]) if start and key in keyed else word[start:]
         name = value.partition(",")[0]
         if SUFFIX.search(name) and not self.is_there(name):
-            value = self.nearest_name(name) + value[len(name) :]
+            value = self.nearest_name(name.replace("\\", "/")) + value[len(name) :]
         return word[:start] + value
 
     def is_there(self, name: str) -> bool:
@@ -116,17 +116,19 @@ class Meanings:
 
     def nearest_name(self, name: str) -> str:
         """Return the name of a file beside the scene, or in a folder there, that is like a name; or this itself."""
-        near = nearest(name.rpartition("/")[2], self.files, LIKE)
+        if self.is_there(name):
+            return name
+        near = nearest(name.rpartition("/")[2].lower(), self.files, LIKE)
         return self.files[near[0]] if near else name
 
     @cached_property
     def files(self) -> dict[str, str]:
-        """The names of files beside the scene and in the folders there, by their last parts."""
+        """The names of files beside the scene and in the folders there, by their last parts in small letters."""
         found: dict[str, str] = {}
         with suppress(OSError):
             folder = self.folder or Path()
             for path in islice(chain(folder.glob("*/*"), folder.iterdir()), MOST_FILES):
-                found[path.name] = path.relative_to(folder).as_posix()
+                found[path.name.lower()] = path.relative_to(folder).as_posix()
         return found
 
 

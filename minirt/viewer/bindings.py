@@ -97,9 +97,9 @@ BINDINGS = (
     once(SELECT, "select next", "select the next element", "Tab"),
     once(SELECT, "select previous", "select the previous element", "Shift+Tab"),
     once(SELECT, "select at pointer", "select the element under the pointer", "left click"),
-    once(
-        SELECT, "select camera", "select the camera; again: look through the next one", "C", "Backspace", "right click"
-    ),
+    once(SELECT, "select camera", "select the camera; again: look through the next one", "C", "Backspace"),
+    once(SELECT, "look through", "look through the selected camera", "Shift+C"),
+    once(SELECT, "open menu", "list of what can be done with what is under the pointer", "right click"),
     once(SELECT, "select light", "select the next light", "L"),
     once(LOOK, "orbit", "orbit the camera around the selected element", "right drag"),
     once(LOOK, "pan", "slide the camera", "middle drag"),
@@ -156,6 +156,14 @@ BINDINGS = (
     once(WINDOW, "toggle full screen", "full screen on or off", "Ctrl+F", "F11"),
     once(WINDOW, "quit", "quit", "Escape", "Ctrl+Q"),
 )
+
+
+BY_ACTION = {each.action: each for each in BINDINGS}
+
+
+def keys_of(action: str, layout: str) -> tuple[str, ...]:
+    """Return the keys of an action on a keyboard of this layout, with the names of this platform; none of a tool."""
+    return tuple(map(platform_spelling, BY_ACTION[action].spellings(layout))) if action in BY_ACTION else ()
 
 
 def key_groups(layout: str, search: str = "", translate: Callable[[str], str] = str) -> Iterator[KeyGroup]:

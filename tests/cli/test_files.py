@@ -346,12 +346,14 @@ def test_a_scene_that_shows_nothing_names_options_that_show_it(run: Run, folder:
 
 
 def test_the_error_of_a_file_in_a_dialect_says_what_its_lines_may_mean(run: Run, folder: Path) -> None:
-    (folder / "other.rt").write_text("A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nsp 0,0,0 2,5 red\nqd 1,2,3 4 5,6,7\n")
+    (folder / "other.rt").write_text(
+        "A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nL 0,9,-9 1\nsp 0,0,0 2,5 red\nqd 1,2,3 4 5,6,7\n"
+    )
     status, _, errors = run("other.rt", "-o", "a.png")
     assert status == 1
-    assert errors.startswith("Error\nother.rt:3:10: sphere")
+    assert errors.startswith("Error\nother.rt:4:10: sphere")
     assert errors.endswith(
-        "line 3: did you mean 'sp 0,0,0 2.5 255,0,0'?\n"
+        "line 4: did you mean 'sp 0,0,0 2.5 255,0,0'?\n"
         "--lenient reads this file without 1 of its shapes, and tells what it makes of it\n"
     )
     assert not (folder / "a.png").exists()

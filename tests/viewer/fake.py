@@ -144,10 +144,11 @@ def played(
     text: str = TEXT,
     path: Path = Path("scene.rt"),
     keys: str = "qwerty",
+    size: tuple[int, int] = (64, 48),
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
     """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
-    return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys, watch=watch)
+    return play(scene(text), lines, renderer=FakeRenderer(), size=size, path=path, keys=keys, watch=watch)
 
 
 def write(path: Path, text: str) -> None:

@@ -15,7 +15,7 @@ from minirt.mlx import Button, Key, Modifier
 from minirt.mlx.memory import Memory
 from minirt.scene import Camera, describe, dump, load
 from minirt.shapes import Plane, Sphere
-from minirt.viewer.app.choosing import LISTS
+from minirt.viewer.app.choosing import LISTS, OPEN_MENU
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.events import PANEL
 from minirt.viewer.app.session import Session
@@ -48,7 +48,7 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, "select at pointer", TYPE, PANEL}
+    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, OPEN_MENU, "select at pointer", TYPE, PANEL}
     assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)
@@ -204,6 +204,8 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
         ("press Ctrl+D", *SPHERE),
         lambda _, after: isinstance(after.state.element, Camera) and after.state.scene.shown == 0,
     ),
+    "look through": (("press Ctrl+D",), lambda _, after: after.state.scene.shown == 1),
+    "open menu": ((), lambda _, after: bool(after.screen.list_box and after.screen.list_box.keys)),
     "select light": (SPHERE, lambda _, after: after.state.element.title == "light"),
     "left": (SPHERE, moved((-1, 0, 0))),
     "right": (SPHERE, moved((1, 0, 0))),
@@ -229,7 +231,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "shrink": (SPHERE, resized(-1)),
     "type value": (
         SPHERE,
-        lambda _, after: after.screen.panel is not None and "diameter: =_" in after.screen.panel.title,
+        lambda _, after: after.screen.list_box is not None and "diameter: =_" in after.screen.list_box.title,
     ),
     "nearer": ((), approached(1)),
     "farther": ((), approached(-1)),

@@ -12,8 +12,10 @@ from minirt.element import Record, fields_of
 from minirt.materials import Compound
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer import language
+from minirt.viewer.app.choosing import MENU
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE, key_groups
 from minirt.viewer.display.screen import TIPS
+from minirt.viewer.display.tool_row import TOOLS
 from minirt.viewer.editing.values import part_names
 from tests.paths import ROOT
 from tests.viewer.fake import played
@@ -64,6 +66,7 @@ def english() -> set[str]:
     files = (file for part in PARTS for file in (ROOT / "minirt" / part).rglob("*.py"))
     texts = {text for file in files for text in messages(file.read_text(encoding="utf-8"))}
     texts |= {each.help for each in BINDINGS} | {each.group for each in BINDINGS} | {FINE_NOTE[1]}
+    texts |= {*MENU.values()} | {tool.name for tool in TOOLS}
     texts |= {group for line in TIPS.split("\n") for group in line.split(language.GAP)}
     return texts | {name for name in names() if len(name) > 1}
 
@@ -115,8 +118,8 @@ def test_other_languages_stay_english(monkeypatch: pytest.MonkeyPatch, value: st
 def test_the_window_draws_its_texts_in_french_and_searches_them(french: None, monkeypatch: pytest.MonkeyPatch) -> None:
     cone = played("press N", "press c", "press o", "press n", "press e")
     assert cone.state.element.title == "cone"
-    assert cone.screen.panel is not None
-    assert cone.screen.panel.rows[0] == "cône"
+    assert cone.screen.list_box is not None
+    assert cone.screen.list_box.rows[0] == "cône"
     lines = ("press Tab", "press Delete"), ("press h",), ("press N",), ("press Tab", "text 7"), ("press I",)
     frames = [played(*each).screen.frame.copy() for each in lines]
     assert next(key_groups("qwerty", "lumiere", language.translated))[1] == [("L", "sélectionner la lumière suivante")]

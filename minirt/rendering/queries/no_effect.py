@@ -20,6 +20,7 @@ CONVEX = (Sphere, Box, Cylinder, Cone, Ellipsoid, Paraboloid)
 UNBOUNDED = ((-np.inf,) * 3, (np.inf,) * 3)  # box of a plane
 MOST_COMPARED = 200  # shapes of which one may be inside of another
 CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
+AMBIENT_ALONE = "no light is on but the ambient one, which is the same everywhere: a line L adds another"
 COARSE = 48, 27  # pixels of pictures that show what a light lights
 MOST_LIT = 100  # shapes, times lights: in a twentieth of a second
 
@@ -32,7 +33,7 @@ def covers(shape: Shape) -> bool:
 
 def is_clear(shape: Shape) -> bool:
     """Whether a shape with an inside is of clear glass, which does not show its colour."""
-    is_glass = bool(shape.glass and shape.glass.share == 1 and not shape.tint)
+    is_glass = bool(shape.glass and shape.glass.share == 1 and not shape.tint and not shape.glow)
     return is_glass and shape.solid and not shape.infinite and len({*shape.colour}) > 1
 
 
@@ -51,6 +52,8 @@ def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
     idle = [name for name in idle_lights(scene) if not any(each.startswith(name) for each in inside)]
     if idle:
         yield f"nothing that is in view seems to be lit by {', '.join(idle)}"
+    if shapes and scene.ambient and scene.ambient.brightness and not emitting_lights(scene):
+        yield AMBIENT_ALONE
     bounded = np.flatnonzero(np.isfinite(boxes).all(axis=(1, 2)))
     low, high = rectangles(scene.camera, size, boxes[bounded])
     tiny = (((high - low) * size < 1) & (low > 0) & (high < 1)).all(axis=1)

@@ -1,78 +1,116 @@
-"""Choosing an element or an attribute from a list.
+"""Choosing from a list: an element or an attribute to add, or what to do with what is under the pointer.
 
-Letters filter, arrows go through the list and Enter takes the choice, which is in the scene at once, so that the
-picture shows it. Escape takes it out again, and any key that means nothing to the list leaves it there, as the last
-change.
+Letters filter, arrows, the wheel and the pointer go through the list, Enter and a click take a row. An element or an
+attribute is in the scene as soon as it is chosen by a key, so that the picture shows it. Escape takes it out again, and
+any key that means nothing to the list leaves it there, as the last change.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
-from minirt.mlx import Key
+from minirt.fields import Triple
+from minirt.mlx import Button, Key
+from minirt.scene import Camera
+from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import ENTER
-from minirt.viewer.bindings import SIGNIFICANT, Binding
-from minirt.viewer.display.overlay import Panel
+from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
+from minirt.viewer.display.lists import ListBox, layout_of
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import searchable, translated
 
 ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
 LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
+OPEN_MENU = "open menu"  # the action that opens the list of what can be done
+MENU = {  # its rows: actions, and what they are called there
+    "add": "add here >",
+    "add attribute": "add an attribute >",
+    "duplicate": "duplicate",
+    "delete": "delete",
+    "drop": "drop onto what lies beneath",
+    "look at": "bring into view",
+    "look through": "look through",
+    "focus": "focus here",
+    "undo": "undo",
+    "redo": "redo",
+}
+WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}
+
+
+class Row(NamedTuple):
+    """A row of a list, which leads to a state that the picture shows, or to an action."""
+
+    title: str
+    state: State | None = None
+    action: str = ""
 
 
 class Choosing:
-    """The list that is open; it is so as long as its last choice is the last change of the scene."""
+    """The list that is open. One of states is so as long as the last one that was chosen is the last change."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, perform: Callable[[Binding, float], None]) -> None:
         self.session = session
+        self._perform = perform
+        self._title = ""
         self._letters = ""
-        self._choices: list[State] = []  # with the last change in place of the last choice
-        self._group = structure.ELEMENT
-        self._before: State | None = None
+        self._every: list[Row] = []
+        self._chosen: Row | None = None
+        self._group = ""  # of the last change, in a list of states
+        self._before: State | None = None  # while the list is open
+        self._place: tuple[int, int] | None = None  # pixel where it was asked for; None: its usual place
 
     @property
     def is_open(self) -> bool:
         last = self.session.state.last_change
-        return self._before is not None and last is not None and last[0] == self._group
+        return self._before is not None and (not self._group or (last is not None and last[0] == self._group))
 
     def begin(self, action: str, state: State) -> None:
         """Add the first choice of an action of LISTS, or an element of the kind that was added last; show the list."""
-        self._letters, self._group, self._before = "", LISTS[action], state
-        self._choices = list(structure.choices(state, self._group))
-        if self._choices:
-            again = (each for each in self._choices if type(each.element) is state.added_kind)
-            self.choose(self._choices[0] if self._group == structure.ATTRIBUTE else next(again, self._choices[0]))
-        else:
+        self._before, self._group, self._letters = state, LISTS[action], ""
+        is_element = self._group == structure.ELEMENT
+        self._title = "element" if is_element else "attribute"
+        choices = list(structure.choices(state, self._group))
+        titles = [each.element.title if is_element else each.active.field.title for each in choices]
+        self._every = [Row(translated(title), choice) for title, choice in zip(titles, choices, strict=True)]
+        if not choices:
             self.session.show(state.with_message(f"{state.element.title} has no attribute that can be added"))
+            return
+        again = (row for row, each in zip(self._every, choices, strict=True) if type(each.element) is state.added_kind)
+        self.choose(next(again, self._every[0]) if is_element else self._every[0])
+
+    def begin_menu(self, place: tuple[int, int], point: Triple | None) -> None:
+        """Show what can be done with the selected element, or at a pixel that shows a point of the scene or none."""
+        state = self.session.state
+        self._before, self._group, self._letters, self._place = state, "", "", place
+        self._title = state.element.title
+        self._every = [Row(translated(MENU[action]), action=action) for action in menu_of(state, point)]
+        self.choose(self._every[0])
 
     def end(self) -> None:
         """Close the list; what it added stays."""
         if self._before is not None:
-            self._before = None
+            self._before = self._place = None
             self.show()
 
     def takes(self, key: int, pressed: Binding | None) -> bool:
         """Take a key press; False if the list is closed or the key means nothing to it."""
         if not self.is_open:
             return False
-        rows, action = self.rows(), pressed.action if pressed and not self._letters else ""
-        if LISTS.get(action) == self._group:  # again: the next choice
-            self.choose(rows[(self.chosen(rows) + ADDING.get(action, 1)) % len(rows)])
-        elif action in LISTS or self.session.modifiers & SIGNIFICANT:
+        action = pressed.action if pressed and not self._letters else ""
+        if self._group and LISTS.get(action) == self._group:  # again: the next choice
+            self.step(ADDING.get(action, 1))
+        elif (self._group and action in LISTS) or self.session.modifiers & SIGNIFICANT:
             return False
         elif key in ENTER:
-            self.session.state = self.session.state.end_merging()
-            self.end()
+            self.take()
         elif key == Key.ESCAPE:
-            assert self._before
-            before, self._before = self._before, None
-            self.session.screen.panel = None
-            self.session.show(replace(before, aim=None, message=""))
+            self.cancel()
         elif key in (Key.UP, Key.DOWN):
-            if rows:
-                self.choose(rows[(self.chosen(rows) + (1 if key == Key.DOWN else -1)) % len(rows)])
+            self.step(1 if key == Key.DOWN else -1)
         elif key == Key.BACKSPACE and self._letters:
             self.filter(self._letters[:-1])
         elif Key.A <= key <= Key.Z or (key == Key.SPACE and self._letters):
@@ -81,8 +119,75 @@ class Choosing:
             return False
         return True
 
+    def takes_button(self, button: int, x: int, y: int) -> bool:
+        """Take a button that goes down on a row, or the wheel; False if the list is closed or it means nothing to it.
+
+        Beside a list of actions any button closes it.
+        """
+        if not self.is_open:
+            return False
+        row = self.row_at(x, y)
+        if button in WHEEL:
+            self.step(WHEEL[button])
+        elif row and button == Button.LEFT:
+            self.choose(row)
+            self.take()
+        elif not self._group:
+            self.end()
+        else:
+            return False
+        return True
+
+    def takes_motion(self, x: int, y: int) -> bool:
+        """Choose the action under the pointer; False if no list of actions is open."""
+        if not self.is_open or self._group:
+            return False
+        row = self.row_at(x, y)
+        if row and row is not self._chosen:
+            self.choose(row)
+        return True
+
+    def row_at(self, x: int, y: int) -> Row | None:
+        """Return the row at a pixel of the window; None beside the list."""
+        screen, window = self.session.screen, self.session.window
+        if screen.list_box is None:
+            return None
+        layout = layout_of(screen.list_box, window.width - screen.covered, window.height, screen.text_size)
+        index = layout.row_at(x, y)
+        return None if index is None else self.rows()[index]
+
+    def take(self) -> None:
+        """Take the chosen row: its state stays, or its action is performed where it was asked for."""
+        row, place = self._chosen, self._place
+        if self._group:
+            self.session.state = self.session.state.end_merging()
+        self.end()
+        if row and row.action and place and row in self.rows():
+            self.session.pointer = place
+            self.perform_at(place, row.action)
+
+    def perform_at(self, place: tuple[int, int], action: str) -> None:
+        """Perform an action, whose list is at a place of the window if it opens one."""
+        self._place = place
+        self._perform(BY_ACTION[action], 1.0)
+        if not self.is_open:
+            self._place = None
+
+    def cancel(self) -> None:
+        """Close the list, and take out what it added."""
+        before = self._before
+        assert before
+        self.end()
+        if self._group:
+            self.session.show(replace(before, aim=None, message=""))
+
+    def step(self, step: int) -> None:
+        """Choose a further row, cyclically."""
+        if rows := self.rows():
+            self.choose(rows[(self.index_in(rows) + step) % len(rows)])
+
     def filter(self, letters: str) -> None:
-        """Show the choices that contain some letters, and choose the first of them."""
+        """Show the rows that contain some letters, and choose the first of them."""
         self._letters = letters
         rows = self.rows()
         if rows and letters:
@@ -90,39 +195,58 @@ class Choosing:
         else:
             self.show()
 
-    def choose(self, choice: State) -> None:
-        """Replace the last choice in the scene by another one."""
-        self.session.state = choice
-        self.show()
-        self.session.show(choice)
+    def choose(self, row: Row) -> None:
+        """Choose a row: its state replaces the last one in the scene."""
+        self._chosen = row
+        if row.state:
+            self.session.state = row.state
+            self.show()
+            self.session.show(row.state)
+        else:
+            self.show()
 
-    def title(self, choice: State) -> str:
-        """What a choice is called in the list."""
-        is_attribute = self._group == structure.ATTRIBUTE
-        return translated(choice.active.field.title if is_attribute else choice.element.title)
-
-    def rows(self) -> list[State]:
-        """The choices that contain the letters: first those that begin with them, then those of which a word does."""
+    def rows(self) -> list[Row]:
+        """The rows that contain the letters: first those that begin with them, then those of which a word does."""
         letters = self._letters
-        titles = [(searchable(self.title(choice)), choice) for choice in self._choices]
-        found = [(title, choice) for title, choice in titles if letters in title]
+        found = [(searchable(row.title), row) for row in self._every if letters in searchable(row.title)]
         if letters:
-            found.sort(key=lambda row: (not row[0].startswith(letters), f" {letters}" not in row[0]))
-        return [choice for _, choice in found]
+            found.sort(key=lambda each: (not each[0].startswith(letters), f" {letters}" not in each[0]))
+        return [row for _, row in found]
 
-    def chosen(self, rows: list[State]) -> int:
-        """Index of the last choice in `rows`, or 0."""
-        element = self.session.state.element
-        return next((index for index, row in enumerate(rows) if row.element == element), 0)
+    def index_in(self, rows: list[Row]) -> int:
+        """Index of the chosen row, or 0."""
+        return next((index for index, row in enumerate(rows) if row is self._chosen), 0)
 
     def show(self) -> None:
         """Show the list, or nothing if it is closed."""
         screen = self.session.screen
-        screen.panel = None
+        screen.list_box = None
         if self.is_open:
             rows = self.rows()
-            noun = "element" if self._group == structure.ELEMENT else "attribute"
             hint = "" if rows else "    nothing is called so"
-            title = f"{noun}: {self._letters}_{hint}    type, arrows, Enter    Esc: none"
-            screen.panel = Panel(title, tuple(map(self.title, rows)), self.chosen(rows))
+            title = self._title
+            if self._group or self._letters:
+                title = f"{title}: {self._letters}_{hint}"
+            if self._group:
+                title += "    type, arrows, click or Enter    Esc: none"
+            layout = self.session.keymap.layout
+            keys = [keys_of(row.action, layout)[0] for row in rows if row.action]
+            titles = tuple(row.title for row in rows)
+            screen.list_box = ListBox(title, titles, self.index_in(rows), tuple(map(translated, keys)), self._place)
         self.session.refresh()
+
+
+def menu_of(state: State, point: Triple | None) -> Iterator[str]:
+    """Yield the actions of a list about the selected element, at a point of the scene or where there is none."""
+    element = state.element
+    without = {
+        "delete": element.required,
+        "drop": not isinstance(element, Shape) or element.infinite,
+        "look through": not isinstance(element, Camera) or element is state.scene.camera,
+        "focus": point is None,
+        "undo": not state.undo_stack,
+        "redo": not state.redo_stack,
+    }
+    for action in MENU:
+        if not without.get(action):
+            yield action

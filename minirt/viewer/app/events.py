@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.errors import MlxError
 from minirt.mlx.events import MODIFIER_KEYS, Button, Event
-from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
+from minirt.viewer.app.choosing import ADDING, LISTS, OPEN_MENU, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 PANEL = "toggle panel"  # the action that opens the panel
 NO_PANEL = "the panel needs a window of its own, and slimgui: pip install 'minirt[panel]'"
+BESIDE = 30  # pixels from the pointer on a tool to the list that it opens
 NEAR = 3.0  # sizes of the tab of the panel: a pointer so close to it shows it
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
@@ -36,7 +37,7 @@ class EventDispatcher:
         self.session = session
         self.mouse = Mouse(session, self.perform)
         self.typing = Typing(session)
-        self.choosing = Choosing(session)
+        self.choosing = Choosing(session, self.perform)
         self.panel: Panel | None = None  # once it was opened
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
         self._tick_hook = self.as_hook(self.on_tick)
@@ -69,15 +70,34 @@ class EventDispatcher:
         match event, arguments:
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if screen.has_tab and screen.is_on_tab(x, y):
                 self.toggle_panel()
+            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if not self.choosing.row_at(x, y) and screen.tool_at(x, y):
+                self.use_tool(x, y)
             case Event.MOTION_NOTIFY, (x, y):
+                if self.choosing.takes_motion(x, y):
+                    return
                 handler(x, y)
                 is_busy = session.pressed or (self.panel and self.panel.is_open)
                 near = not is_busy and screen.is_on_tab(x, y, NEAR)
-                if near != screen.has_tab:
-                    screen.has_tab = near
+                tool = None if session.pressed else screen.tool_at(x, y)
+                if (near, tool) != (screen.has_tab, screen.tool):
+                    screen.has_tab, screen.tool = near, tool
                     session.refresh()
             case _:
                 handler(*arguments)
+
+    def use_tool(self, x: int, y: int) -> None:
+        """Use the tool at a pixel; an open list or a typed value is closed first, and a tool that opens a list does no
+        more then."""
+        session, is_open = self.session, self.choosing.is_open
+        session.pointer, tool = (x, y), session.screen.tool_at(x, y)
+        assert tool
+        self.typing.end()
+        self.choosing.end()
+        if tool.handles:
+            session.screen.handle_kind = "" if session.screen.handle_kind == tool.handles else tool.handles
+            session.refresh()
+        elif not (is_open and tool.action in LISTS):
+            self.choosing.perform_at((x + BESIDE, y), tool.action)
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -102,6 +122,8 @@ class EventDispatcher:
         """A mouse button goes down, or the wheel turns."""
         if self.session.screen.help:
             help_takes(self.session, button, None)
+            return
+        if self.choosing.takes_button(button, x, y):
             return
         self.typing.end()
         self.choosing.end()
@@ -181,6 +203,9 @@ class EventDispatcher:
         session.release_button()
         if action in (TYPE, PANEL):
             self.typing.begin("=") if action == TYPE else self.toggle_panel()
+            return
+        if action == OPEN_MENU:
+            self.choosing.begin_menu(session.pointer, self.mouse.select_for_menu())
             return
         if action in LISTS:
             aim = self.mouse.aim() if action in ADDING else session.state.aim

@@ -67,7 +67,7 @@ class Mouse:
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
                 session.show(look_at(state.select(owner), 1.0, session.now))
                 return True
-        handles = handles_of(state.element, session.view, screen.scale) if screen.handles else []
+        handles = handles_of(state.element, session.view, screen.scale, screen.handle_kind) if screen.handles else []
         handle = handle_at(handles, x + PIXEL_CENTRE, y + PIXEL_CENTRE, screen.scale)
         if handle:
             start = DragStart(session.view, x, y, state.element, state.scene.camera, handle.centre, Button.LEFT)
@@ -108,21 +108,35 @@ class Mouse:
 
     def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
         """Return the point of the scene under the pointer, None if there is none; select the element there."""
+        session = self.session
+        owner, point = self.element_at(x, y)
+        if selecting:
+            state = session.state.with_message("there is nothing" if owner is None else "")
+            session.show(state if owner is None else state.select(owner))
+        return point
+
+    def select_for_menu(self) -> Triple | None:
+        """Select the element under the pointer, or the camera where there is none; return the point there."""
+        session = self.session
+        owner, point = self.element_at(*session.pointer)
+        state = session.state.with_message("")
+        if owner is None:
+            owner = index_of(state.scene, state.scene.camera)
+        session.show(state if owner == state.selected else state.select(owner))
+        return point
+
+    def element_at(self, x: int, y: int) -> tuple[int | None, Triple | None]:
+        """Return the index of the element at a pixel, by its icon or as a shape, and the point there; None for none."""
         session, state, screen = self.session, self.session.state, self.session.screen
         icons = visible_icons(state.scene, state.selected, session.view, screen.scale, screen.icons)
         reach = SIZE * screen.scale / 2 if screen.level > HudLevel.NOTHING else -1.0
         under = [each for each in icons if max(abs(each.x - x), abs(each.y - y)) <= reach]
         if under:
             icon = under[-1]  # which is drawn on top
-            if selecting:
-                session.show(state.with_message("").select(icon.owner))
             element = state.scene.elements[icon.owner]
-            return None if element is state.scene.camera else position_of(element)
+            return icon.owner, None if element is state.scene.camera else position_of(element)
         shape, point = session.surface_at(x, y)
-        if selecting:
-            state = state.with_message("" if shape else "there is nothing")
-            session.show(state.select(index_of(state.scene, shape)) if shape else state)
-        return point
+        return index_of(state.scene, shape) if shape else None, point
 
     def aim(self) -> Aim | None:
         """Return the place for a new element: under the pointer, or while it is elsewhere on top of the selected shape.
@@ -130,8 +144,9 @@ class Mouse:
         Where no bounded shape is selected it is in the middle of the picture. None if textures cannot be read.
         """
         session, element = self.session, self.session.state.element
-        x, y = session.window.pointer
-        if (x, y) == (0, 0) or not self.inside:
+        x, y = session.pointer
+        is_elsewhere = session.window.pointer == (0, 0) or not self.inside
+        if is_elsewhere or not session.screen.shows_picture_at(x, y):
             if isinstance(element, Shape) and element.bounds():
                 return aim_at_top(session.view, element)
             x, y = session.window.width // 2, int(AHEAD * session.window.height)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from minirt.mlx import Key
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.overlay import Panel
+from minirt.viewer.display.lists import ListBox
 from minirt.viewer.editing.typed import CHARACTERS, set_typed
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
@@ -55,5 +55,5 @@ class Typing:
         session = self.session
         self.text = text
         hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it"
-        session.screen.panel = Panel(hint) if text else None
+        session.screen.list_box = ListBox(hint) if text else None
         session.refresh()

@@ -40,12 +40,20 @@ PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns o
 
 
 def draw_marks(
-    pixels: Pixels, state: State, scene: Scene, scale: float, *, moving: bool, icons: bool, handles: bool = False
+    pixels: Pixels,
+    state: State,
+    scene: Scene,
+    scale: float,
+    *,
+    moving: bool,
+    icons: bool,
+    handles: bool = False,
+    kind: str = "",
 ) -> None:
     """Draw all marks over a picture of `scene`, which may be another version of the state's scene.
 
     The marks fit the picture: an element that it does not show yet has none. `icons`: show those of all lights;
-    `handles`: show those of the selected element.
+    `handles`: show those of the selected element, or of a kind alone.
     """
     height, width = pixels.shape[:2]
     view = projection_of(scene.camera, width, height)
@@ -61,7 +69,7 @@ def draw_marks(
             start, end = (view.pixel(linear_combination(1.0, around[0], way, axis)) for way in (-reach, reach))
             if start and end:
                 draw_line(pixels, start, end, AXIS_COLOURS[state.frame])
-        for handle in handles_of(element, view, scale) if handles else []:
+        for handle in handles_of(element, view, scale, kind) if handles else []:
             draw_handle(pixels, handle, view.pixel(handle.centre), scale)
     for direction in arrows(scene, selected, view, icons).values():
         draw_arrow(pixels, direction, scale)

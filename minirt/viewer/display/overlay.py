@@ -1,32 +1,26 @@
-"""Text over the picture: heads-up display with hints on keys, messages, and the panel of a typed value or a list."""
+"""Text over the picture: heads-up display with hints on keys, messages, and the tab of the panel."""
 
 from __future__ import annotations
 
 import re
 import textwrap
 from enum import IntEnum
-from functools import partial
-from typing import NamedTuple
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
+from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import Value
 from minirt.viewer.language import GAP, translated
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
-MARGIN, PADDING = 10, 4  # pixels
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
 USUAL_WINDOW = 1920, 1080  # pixels: in larger windows text is larger, too
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
-ROW_COLOUR = 0xC0C0C0  # of the rows that are not chosen
-PANEL_BACKGROUND = 0xC0000000  # with its opacity
-TOP, BOTTOM = 2, 2  # lines above and below the panel, which belong to the information and to messages
 TAB = "< F1"  # on the tab that opens the panel
-MARK = "> "  # before the chosen row
 
 
 class HudLevel(IntEnum):
@@ -158,35 +152,8 @@ def short_numbers(text: str) -> str:
     return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", text)
 
 
-draw_on_dark = partial(draw_text, background=PANEL_BACKGROUND, padding=PADDING)
-
-
 def draw_tab(pixels: Pixels, size: int) -> None:
     """Draw the tab at the right edge that opens the panel."""
     width, height = measure(TAB, size)
     left, top = pixels.shape[1] - width - PADDING, (pixels.shape[0] - height) // 2
     draw_on_dark(pixels, left, top, TAB, MESSAGE_COLOUR, size=size)
-
-
-class Panel(NamedTuple):
-    """A title with rows below, of which one is chosen."""
-
-    title: str
-    rows: tuple[str, ...] = ()
-    chosen: int = 0
-
-
-def draw_panel(pixels: Pixels, panel: Panel, size: int) -> None:
-    """Draw a panel in text of a size, above the messages; of a long list the rows around the chosen one."""
-    line = measure(" ", size)[1]
-    top = MARGIN + TOP * line
-    draw_on_dark(pixels, MARGIN, top, translated(panel.title), MESSAGE_COLOUR, size=size)
-    count = max(1, (pixels.shape[0] - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM)
-    first = min(max(panel.chosen - count // 2, 0), max(len(panel.rows) - count, 0))
-    rows = [translated(row) for row in panel.rows[first : first + count]]
-    if rows:
-        top, left = top + line + 2 * PADDING, MARGIN + measure(MARK, size)[0]
-        draw_on_dark(pixels, left, top, "\n".join(rows), ROW_COLOUR, size=size)
-        chosen = panel.chosen - first
-        draw_text(pixels, MARGIN, top + chosen * line, MARK, MESSAGE_COLOUR, size=size)
-        draw_text(pixels, left, top + chosen * line, rows[chosen], MESSAGE_COLOUR, size=size)

@@ -19,9 +19,11 @@ from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import key_groups
 from minirt.viewer.display import overlay
+from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
-from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, Panel, wrap
+from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, wrap
 from minirt.viewer.display.painter import Outcome, Pixels
+from minirt.viewer.display.tool_row import Tool, draw_tools, tool_at
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import translated
 
@@ -49,8 +51,10 @@ class Screen:
         self.tips = False  # whether help for the first minute is shown
         self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
-        self.panel: Panel | None = None  # a value that is typed, or a list to choose from
-        self.handles = False  # whether those of the selected element are shown
+        self.list_box: ListBox | None = None  # a value that is typed, or a list to choose from
+        self.handles = False  # whether those of the selected element are shown, and the tool row
+        self.handle_kind = ""  # of the handles that are shown alone
+        self.tool: Tool | None = None  # the one under the pointer
         self.covered = 0  # columns at the right that the panel covers: text keeps clear of them
         self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
@@ -84,6 +88,15 @@ class Screen:
         size = reach * min(self.text_size, width // TAB_PARTS)
         return x >= width - 3 * size and abs(y - height // 2) <= size
 
+    def tool_at(self, x: int, y: int) -> Tool | None:
+        """Return the tool of the tool row at a pixel, None beside it."""
+        is_shown = self.handles and self.level and not self.help
+        return tool_at(x, y, self.window.width, self.window.height, self.scale) if is_shown else None
+
+    def shows_picture_at(self, x: int, y: int) -> bool:
+        """Whether neither the panel nor the tool row covers the picture at a pixel."""
+        return x < self.window.width - self.covered and not self.tool_at(x, y)
+
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
@@ -94,8 +107,9 @@ class Screen:
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
-        shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
-        contents = described, picture, message, *shown, self.covered, width, height, scale
+        shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips
+        row = handles, self.handles, self.handle_kind, self.tool
+        contents = described, picture, message, *shown, *row, self.covered, width, height, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
@@ -107,12 +121,14 @@ class Screen:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
                 marks = {"icons": self.icons, "handles": handles}
-                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
+                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, kind=self.handle_kind, **marks)
+            if self.handles:
+                draw_tools(self.frame, scale, size, self.tool, self.handle_kind, self.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
         if self.has_tab and not self.help:
             overlay.draw_tab(self.frame, size)
-        if self.panel and not self.help:
-            overlay.draw_panel(clear, self.panel, size)
+        if self.list_box and not self.help:
+            draw_list(clear, self.list_box, size)
         elif self.tips and self.level and not message and not self.covered:
             message = TIPS
         if message and not self.help:  # above the text at the bottom

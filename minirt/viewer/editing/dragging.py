@@ -196,8 +196,9 @@ DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
 }
 
 
-def handles_of(element: Element, view: Projection, scale: float) -> list[Handle]:
-    """The handles of an element in the picture; none of a camera, or where the picture does not show its middle."""
+def handles_of(element: Element, view: Projection, scale: float, kind: str = "") -> list[Handle]:
+    """The handles of an element in the picture, or those of a kind, MOVE with SLIDE; none of a camera, or where the
+    picture does not show its middle."""
     around = None if isinstance(element, Camera) else extent(element)
     if not around or not view.pixel(around[0]) or min(view.width, view.height) < LEAST:
         return []
@@ -221,7 +222,7 @@ def handles_of(element: Element, view: Projection, scale: float) -> list[Handle]
     lengths = (each for each in own if isinstance(each.leaf, single) and not isinstance(each.current(element), tuple))
     for (axis, (x, y, z)), value in zip(enumerate(AXES), lengths, strict=False):
         add(SIZE, axis, (BOX * x, BOX * y, BOX * z), value=value)
-    return found
+    return [each for each in found if kind in ("", each.kind) or (kind == MOVE and each.kind == SLIDE)]
 
 
 def handle_at(handles: list[Handle], x: float, y: float, scale: float) -> Handle | None:

@@ -139,6 +139,7 @@ EDITS: dict[str, Edit] = {
     "select next": partial(states.select_neighbour, 1),
     "select previous": partial(states.select_neighbour, -1),
     "select camera": states.select_camera,
+    "look through": states.look_through,
     "select light": states.select_next_light,
     "left": partial(move, RIGHT, -1.0),
     "right": partial(move, RIGHT, 1.0),

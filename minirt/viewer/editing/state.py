@@ -163,9 +163,21 @@ def select_camera(state: State, _amount: float = 1.0, now: float = 0.0) -> State
     count = len(state.scene.cameras)
     if state.element is not state.scene.camera or count == 1:
         return state.select(index_of(state.scene, state.scene.camera))
-    scene = state.scene.seen_by((state.scene.shown + 1) % count + 1)
+    return seen_by(state, (state.scene.shown + 1) % count, now)
+
+
+def look_through(state: State, _amount: float = 1.0, now: float = 0.0) -> State:
+    """Look through the selected camera."""
+    if not isinstance(state.element, Camera):
+        return state.with_message(f"{state.element.title} is no camera")
+    return seen_by(state, next(n for n, each in enumerate(state.scene.cameras) if each is state.element), now)
+
+
+def seen_by(state: State, index: int, now: float) -> State:
+    """Look through a camera of the scene, and select it."""
+    scene = state.scene.seen_by(index + 1)
     state = state.select(state.selected).change(scene, "", now, index_of(scene, scene.camera))
-    return state.with_message(f"camera {scene.shown + 1} of {count}")
+    return state.with_message(f"camera {scene.shown + 1} of {len(scene.cameras)}")
 
 
 def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:

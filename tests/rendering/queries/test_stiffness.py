@@ -15,7 +15,7 @@ from minirt.rendering.packing.camera import pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.stiffness import ACROSS, DOWN, Stiff, coincident, stiff_shapes
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Ambient, Camera, Scene
+from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Cylinder, Disc, Mesh, Plane, Shape, Sphere, Square
 from tests.paths import SCENES
 
@@ -144,7 +144,7 @@ def test_planes_that_only_float32_takes_for_one() -> None:
 def test_a_picture_in_single_precision_tells_surfaces_that_only_float32_takes_for_one(gap: float, told: bool) -> None:
     floor = Square((0, 0, 9), (0, 0, -1), 8, GREY)
     carpet = Square((0, 0, 9 - gap), (0, 0, -1), 5, RED)
-    scene, packing = Scene((Ambient(1, GREY), EYE, floor, carpet)), Packing(precision="single")
+    scene, packing = Scene((Ambient(1, GREY), EYE, Light((0, 0, -9), 1), floor, carpet)), Packing(precision="single")
     packing.pack(scene, 64, 36)
     notices = list(notices_about(scene, np.eye(36, 64, dtype=np.uint8)[..., None] * 255, (64, 36), packing))
     start = "single precision cannot show square 1 and square 2: taken for one surface in single precision"

@@ -11,7 +11,7 @@ import pytest
 from minirt.materials import Checker
 from minirt.rendering.notices import NOT_COMPUTED, notices_about
 from minirt.rendering.queries import unseen as module
-from minirt.rendering.queries.no_effect import covers, without_effect
+from minirt.rendering.queries.no_effect import AMBIENT_ALONE, covers, without_effect
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.queries.preview import render_interpreted
 from minirt.rendering.queries.unseen import is_blank, notice_about
@@ -241,6 +241,7 @@ def test_lights_that_light_nothing_in_view_are_named(lines: str, names: str) -> 
     scene = parse(f"{GREY}{BALL}\npl 0,-2,0 0,1,0 200,200,200\n{lines}\n").scene
     found = [each for each in without_effect(scene, (640, 360)) if each.startswith(IDLE)]
     assert found == ([IDLE + names] if names else [])
+    assert (AMBIENT_ALONE in without_effect(scene, (640, 360))) == (lines == "L 4,9,0 0")
     away = scene.replace(scene.camera, scene.camera.replace(position=(0, 9, 0), direction=(0, 1, 0)))
     assert not [each for each in without_effect(away, (640, 360)) if each.startswith(IDLE)]  # nothing is in view
 
@@ -248,7 +249,7 @@ def test_lights_that_light_nothing_in_view_are_named(lines: str, names: str) -> 
 def told(text: str) -> list[str]:
     """The sentences about a scene but those about lights, which have a test of their own."""
     sentences = without_effect(parse(f"{GREY}{text}\n").scene, (640, 360))
-    return [each for each in sentences if not each.startswith(IDLE)]
+    return [each for each in sentences if not each.startswith((IDLE, AMBIENT_ALONE))]
 
 
 @pytest.mark.parametrize(("line", "is_hidden"), HIDDEN.items())

@@ -28,7 +28,7 @@ PAGE = read("minirt/viewer/README.md")
 
 def title(session: Session) -> str:
     """The title of the panel, or nothing."""
-    return session.screen.panel.title if session.screen.panel else ""
+    return session.screen.list_box.title if session.screen.list_box else ""
 
 
 @pytest.mark.parametrize(("keys", "pointer"), [("snowman-keys", 7), ("snowman-keyboard", 0)])

@@ -250,4 +250,4 @@ def test_letters_search_the_help() -> None:
     assert len(table(640, 480, "build")[1][0][0][0].split("\n")) > 5  # the title of a group finds all of it
     harness.play("press Backspace", "text 3", "press Escape", "press h")
     assert (screen.help, screen.search) == (1, "")
-    assert screen.panel is None  # nothing was typed as a value
+    assert screen.list_box is None  # nothing was typed as a value

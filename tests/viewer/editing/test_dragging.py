@@ -196,6 +196,6 @@ def test_a_click_with_a_small_movement_moves_nothing():
     assert harness.session.state.undo_stack == ()
 
 
-def test_a_right_click_selects_the_camera_and_a_right_drag_does_not():
+def test_a_right_click_on_nothing_selects_the_camera_and_a_right_drag_does_not():
     assert played("click 33,23", "click 5,5 right").state.element.title == "camera"
     assert played("click 33,23", "drag 5,5 30,5 right").state.element.title == "sphere"
