@@ -63,7 +63,7 @@ class Mouse:
         if screen.level == HudLevel.NOTHING or session.modifiers & (Modifier.SHIFT | Modifier.ALT):
             return False
         for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
-            tip = arrow_tip(way, session.window.width, session.window.height, screen.scale)
+            tip = arrow_tip(way, *screen.size, screen.scale)
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
                 session.show(look_at(state.select(owner), 1.0, session.now))
                 return True
@@ -130,11 +130,11 @@ class Mouse:
         Where no bounded shape is selected it is in the middle of the picture. None if textures cannot be read.
         """
         session, element = self.session, self.session.state.element
-        x, y = session.window.pointer
-        if (x, y) == (0, 0) or not self.inside:
+        (x, y), (width, height) = session.window.pointer, session.screen.size
+        if (x, y) == (0, 0) or not self.inside or x >= width:
             if isinstance(element, Shape) and element.bounds():
                 return aim_at_top(session.view, element)
-            x, y = session.window.width // 2, int(AHEAD * session.window.height)
+            x, y = width // 2, int(AHEAD * height)
         try:
             at = session.surface_at(x, y)
         except MiniRTError as error:

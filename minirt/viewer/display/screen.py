@@ -51,7 +51,7 @@ class Screen:
         self.banner = ""  # a message that stays until its reason is gone
         self.panel: Panel | None = None  # a value that is typed, or a list to choose from
         self.handles = False  # whether those of the selected element are shown
-        self.covered = 0  # columns at the right that the panel covers: text keeps clear of them
+        self.covered = 0  # columns at the right that the panel covers: the picture is as wide as the others
         self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
         self.image = mlx.mlx_new_image(window.display, 1, 1)
@@ -61,6 +61,11 @@ class Screen:
     def frame(self) -> Pixels:
         """The pixels that were last brought to the window."""
         return self.image.pixels
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture, which lies beside the panel."""
+        return max(1, self.window.width - self.covered), self.window.height
 
     @property
     def scale(self) -> float:
@@ -74,7 +79,7 @@ class Screen:
 
     def turn_help(self, step: int) -> None:
         """Turn the pages of the help; a step of 0 opens or closes it."""
-        count = len(help_pages(self.layout, self.search, self.window.width, self.window.height, self.text_size)[1])
+        count = len(help_pages(self.layout, self.search, *self.size, self.text_size)[1])
         self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
         self.search = self.search if step else ""
 
@@ -90,24 +95,24 @@ class Screen:
         The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
         primary rays per second; `keys_held`: handles would be in the way.
         """
-        width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
+        scale, size = self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
         shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
-        contents = described, picture, message, *shown, self.covered, width, height, scale
+        contents = described, picture, message, *shown, self.size, self.window.width, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
-        self.image = Image(self.picture_alone(picture))
-        bottom, clear = 0, self.frame[:, : width - self.covered]
+        self.image = Image(self.beside_panel(self.picture_alone(picture)))
+        bottom, clear = 0, self.frame[:, : self.size[0]]
         if self.help:
-            draw_help(self.frame, self.layout, self.search, size, self.help)
+            draw_help(clear, self.layout, self.search, size, self.help)
         elif self.level:
-            if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
+            if picture and picture.job.size == self.size:  # not an old one, stretched
                 job = picture.job
                 marks = {"icons": self.icons, "handles": handles}
-                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
+                draw_marks(clear, state, job.scene, scale, moving=job.urgent, **marks)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
         if self.has_tab and not self.help:
             overlay.draw_tab(self.frame, size)
@@ -122,12 +127,20 @@ class Screen:
         return True
 
     def picture_alone(self, picture: Outcome | None) -> Pixels:
-        """Return a copy of the picture without overlay, stretched to the window; black if there is no picture yet."""
-        width, height = self.window.width, self.window.height
+        """Return a copy of the picture without overlay, stretched to `size`; black if there is no picture yet."""
+        width, height = self.size
         if picture is None or picture.pixels is None:
             return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
         same_size = picture.pixels.shape[:2] == (height, width)
         return picture.pixels.copy() if same_size else stretch(picture.pixels, width, height)
+
+    def beside_panel(self, picture: Pixels) -> Pixels:
+        """Return a frame of the window's size with the picture at the left, and black under the panel."""
+        if not self.covered:
+            return picture
+        frame = np.full((self.window.height, self.window.width, 4), (0, 0, 0, 255), np.uint8)
+        frame[:, : picture.shape[1]] = picture
+        return frame
 
 
 def give_back_memory() -> None:
