@@ -26,6 +26,7 @@ PIXELS = 6  # of a drag to the right or upwards, for one step
 SLIDE = ("value slide", 0.0)  # kind and time of the changes of a drag: the constant time merges them for undo
 SIGNS = {"+": 1.0, "-": -1.0}  # steps of a typed character
 TO_TYPE = 3  # frames until a text has the focus, and what began it
+AGAIN = " again"
 TYPING = imgui.InputTextFlags.ENTER_RETURNS_TRUE | imgui.InputTextFlags.AUTO_SELECT_ALL
 
 
@@ -37,8 +38,9 @@ class Numbers:
         self.gui = gui
         self.error = ("", "")  # name of the value that was refused, and why
         self.index = 0  # of the element whose rows are shown
-        self._typing: Value | None = None  # the number that is typed
+        self._typing: tuple[int, Value] | None = None  # the number that is typed, after the index of its element
         self._shows_typing = False  # whether the last frame shows it
+        self._again = ""  # or AGAIN: a part of the name of its widget
         self._text, self._first = "", ""  # what is typed, and the character that began it
         self.pressed = ""  # name of the number under the button that is down
         self._start: Element | None = None  # the element when the button went down
@@ -58,7 +60,7 @@ class Numbers:
 
     def number(self, value: Value, width: float, prefix: str = "") -> None:
         """Show a number, which is dragged, typed or stepped."""
-        if self._typing == value:
+        if self._typing == (self.index, value):
             self.type(value, width)
             return
         texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
@@ -95,7 +97,7 @@ class Numbers:
 
     def begin_typing(self, value: Value, first: str) -> None:
         """Turn a number into a text, all of it selected; `first` replaces it."""
-        self._typing, self._text, self._first = value, spelled(value.current(self.element)), first or " "
+        self._typing, self._text, self._first = (self.index, value), spelled(value.current(self.element)), first or " "
         self.gui.unsettled = TO_TYPE
 
     def type(self, value: Value, width: float) -> None:
@@ -103,8 +105,12 @@ class Numbers:
         if self._first:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(width)
-        entered, self._text = imgui.input_text(f"###{value.name}", self._text, TYPING)
+        entered, self._text = imgui.input_text(f"###{value.name}{self._again}", self._text, TYPING)
         self._shows_typing = True
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
+            self._again = "" if self._again else AGAIN  # another widget begins with all of the text selected
+            self._first, self.gui.unsettled = " ", TO_TYPE
+            return
         if self._first and imgui.is_item_active():
             self.gui.io.add_input_characters_utf8(self._first.strip())
             self._first = ""

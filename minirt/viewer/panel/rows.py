@@ -81,7 +81,7 @@ class Rows(Numbers):
                 imgui.set_cursor_pos_x(left)
             elif part:
                 imgui.same_line(0.0, gap)
-            prefix = name[:1].upper() if name in CHANNELS else name[:4]
+            prefix = name[:1].upper() if name in CHANNELS else translated(name)[:4]
             self.number(value._replace(channel=part), (room - (columns - 1) * gap) / columns, prefix)
 
     def pick_colour(self, value: Value) -> None:
