@@ -41,7 +41,7 @@ class Rows(Numbers):
                 self.set(value, not old)
             return
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
-        imgui.push_id(value.name)
+        imgui.push_id(f"{self.index} {value.name}")  # what is typed is that of no other element
         imgui.align_text_to_frame_padding()
         imgui.text(translated(leaf.title))
         range_of = f", {translated('in')} {leaf.range}" if leaf.range else ""
