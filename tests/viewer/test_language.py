@@ -25,7 +25,18 @@ except ImportError:  # no slimgui, so there is no panel
     TOOLS, GROUPS = {}, ()
 
 # Functions whose texts the window shows.
-SAYS = {"with_message", "say", "FieldError", "error", "FileError", "LookupError", "translated", "option", "whole"}
+SAYS = {
+    "with_message",
+    "say",
+    "FieldError",
+    "error",
+    "FileError",
+    "LookupError",
+    "translated",
+    "option",
+    "whole",
+    "hint",
+}
 PARTS = ("viewer", "fields", "materials", "scene")
 CATALOGUES = ROOT / "minirt/viewer/locale"
 AXIS = "a b.rt:5:10: sphère axe ne doit pas être 0,0,0 : cela n'indique aucune direction\net 2 de plus"

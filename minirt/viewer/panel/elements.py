@@ -75,7 +75,7 @@ class Elements:
         imgui.push_id(index)
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
-        imgui.set_item_tooltip(translated("shown while you edit; the file keeps it"))
+        self.rows.gui.hint("shown while you edit; the file keeps it")
         if changed:
             self.rows.gui.show(replace(state, hidden=state.hidden ^ {index}))
         imgui.same_line()

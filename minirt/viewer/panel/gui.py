@@ -186,6 +186,12 @@ class Gui:
             if imgui.button(f"{translated(title)}###{action}"):
                 self.wanted = action
 
+    def hint(self, text: str, limits: str = "") -> None:
+        """Show a text while the pointer rests on the last widget, with the limits of a value."""
+        if text and imgui.begin_item_tooltip():
+            imgui.text(translated(text) + (f", {translated('in')} {limits}" if limits else ""))
+            imgui.end_tooltip()
+
     def go_on(self, width: float) -> None:
         """Show the next widget beside the last one if there is so much room, below it otherwise."""
         imgui.same_line()

@@ -19,7 +19,6 @@ from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.typed import CHARACTERS, set_typed, with_value
 from minirt.viewer.editing.values import Value
-from minirt.viewer.language import translated
 from minirt.viewer.panel.gui import Gui
 
 PIXELS = 6  # of a drag to the right or upwards, for one step
@@ -66,7 +65,7 @@ class Numbers:
         texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
         text = next((each for each in texts if imgui.calc_text_size(each)[0] < room), texts[-1])
         entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
-        imgui.set_item_tooltip(translated("drag it, click to type it, or + and -; Shift: finer"))
+        self.gui.hint("drag it, click to type it, or + and -; Shift: finer")
         if imgui.is_item_activated():
             self.pressed, self._start, self._slid = value.name, self.element, 0.0
             self.session.state = self.session.state.end_merging()

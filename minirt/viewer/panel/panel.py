@@ -62,7 +62,10 @@ class Panel(Gui):
         """Make a frame if the session shows something else than the last one."""
         self._pages.tell_end()
         if self.is_open and self._shown != self.inputs:
-            self.frame()
+            if self.session.held_keys:  # another one follows
+                self.frame()
+            else:
+                self.settle()
             self.session.update()
             self.session.refresh()
 

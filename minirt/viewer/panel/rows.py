@@ -44,8 +44,7 @@ class Rows(Numbers):
         imgui.push_id(f"{self.index} {value.name}")  # what is typed is that of no other element
         imgui.align_text_to_frame_padding()
         imgui.text(translated(leaf.title))
-        range_of = f", {translated('in')} {leaf.range}" if leaf.range else ""
-        imgui.set_item_tooltip(translated(leaf.doc) + range_of)
+        self.gui.hint(leaf.doc, leaf.range)
         if imgui.get_item_rect_size()[0] < LABEL * width:
             imgui.same_line()
         room = (1 - LABEL) * width
@@ -126,7 +125,7 @@ class Rows(Numbers):
         imgui.begin_disabled(disabled)
         clicked, _ = imgui.checkbox(f"{translated(title)}###{title} on", is_on)
         imgui.end_disabled()
-        imgui.set_item_tooltip(translated(doc))
+        self.gui.hint(doc)
         return bool(clicked)
 
     def choose_file(self, value: Value, room: float) -> None:
