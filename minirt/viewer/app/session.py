@@ -123,10 +123,7 @@ class Session:
             self.refinement.resolution.display_times.append(self._current_at - start)
 
     def take_screenshot(self) -> None:
-        """Save the picture if a screenshot is pending and the picture is complete. FileError.
-
-        It is as large as the window, also beside an open panel: what the window shows goes on after that.
-        """
+        """Save the picture, as large as the window, once it is complete; then the shown one goes on. FileError."""
         pixels = self.refinement.finished(self.window_size) if self.screenshot_pending else None
         if pixels is not None:
             self.screenshot_pending = False
