@@ -103,8 +103,9 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
         return f"miniRT {__version__}"
     if options.list_keys:
         from minirt.viewer.bindings import keys_text
+        from minirt.viewer.language import translated
 
-        return keys_text()
+        return keys_text(translate=translated)
     if options.completion:
         from minirt.cli.options import completion
 

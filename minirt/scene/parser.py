@@ -205,12 +205,20 @@ NEEDS = {
 }
 
 
+def lacked_by(element: Element, name: str) -> tuple[str, ...]:
+    """Names of the fields without which an attribute has no effect, if the element has none of them.
+
+    Meshes may have them in a file.
+    """
+    needs = NEEDS.get(name, ())
+    return () if isinstance(element, Mesh) or any(getattr(element, each) for each in needs) else needs
+
+
 def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> None:
-    """Add a notice for each attribute of a line that has no effect without another; meshes may have that in a file."""
+    """Add a notice for each attribute of a line that has no effect without another."""
     for slot in slots:
-        needs = NEEDS.get(slot.field.name, ())
-        if needs and not any(getattr(element, name) for name in needs) and not isinstance(element, Mesh):
-            keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in needs)
+        if lacked := lacked_by(element, slot.field.name):
+            keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in lacked)
             log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
 
 

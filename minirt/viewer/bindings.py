@@ -181,9 +181,9 @@ def key_groups(layout: str, search: str = "", translate: Callable[[str], str] = 
     yield "", [(FINE_NOTE[0], translate(FINE_NOTE[1]))]
 
 
-def keys_text(layout: str = "auto") -> str:
-    """Text that `--list-keys` prints."""
-    listed = list(key_groups(resolve_layout(layout)))
+def keys_text(layout: str = "auto", translate: Callable[[str], str] = str) -> str:
+    """Text that `--list-keys` prints; `translate` is given titles, keys and help."""
+    listed = list(key_groups(resolve_layout(layout), translate=translate))
     width = max(len(keys) for _, rows in listed for keys, _ in rows)
     texts = ("\n".join(f"  {keys:{width}}  {help}" for keys, help in rows) for _, rows in listed)
     return "\n\n".join(f"{title}\n{text}" if title else text for (title, _), text in zip(listed, texts, strict=True))

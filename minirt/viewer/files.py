@@ -182,3 +182,10 @@ def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFil
     """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
     is_mesh = isinstance(file, MeshFile)
     return next(usable_files(scene, is_mesh, file.name if isinstance(file, MeshFile) else file, steps), file)
+
+
+def title_of(path: Path, scene: Scene) -> str:
+    """Return the title of the window; it tells which shapes of the file a lenient reader could not read."""
+    names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
+    count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
+    return f"miniRT - {path.name}" + (f": {count}: {names}" if names else "")

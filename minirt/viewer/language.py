@@ -78,7 +78,7 @@ def phrase(text: str, code: str) -> str:
             return meaning.format(*(phrase(group, code) for group in found.groups()))
     if located := LOCATION.fullmatch(text):
         return located[1] + phrase(located[2], code)
-    for blank in re.finditer(":? ", text):
+    for blank in reversed([*re.finditer(":? ", text)]):
         if text[: blank.start()] in texts:
             return texts[text[: blank.start()]] + blank[0] + phrase(text[blank.end() :], code)
     return text

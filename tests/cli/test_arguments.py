@@ -257,6 +257,13 @@ def test_texts_need_no_scene(run: Run, option: str, lines: int) -> None:
     assert len(ended.out.splitlines()) > lines
 
 
+def test_the_keys_are_listed_in_the_language_of_the_user(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LANGUAGE", "fr")
+    text = run("--list-keys").out.decode()
+    assert "sélectionner l'élément suivant" in text
+    assert "select the next element" not in text
+
+
 def test_depth_limits_the_reflections(run: Run, folder: Path) -> None:
     assert arguments.MAX_DEPTH == whitted.MAX_DEPTH
     for default in (f"pixel ({arguments.SAMPLES})", f"moves ({arguments.WINDOW_SAMPLES})", f"ray ({features.DEPTH})"):

@@ -14,14 +14,31 @@ from minirt.scene.registry import ELEMENTS
 from minirt.viewer import language
 from minirt.viewer.app.choosing import MENU
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE, key_groups
+from minirt.viewer.display import tool_row
 from minirt.viewer.display.screen import TIPS
-from minirt.viewer.display.tool_row import TOOLS
 from minirt.viewer.editing.values import part_names
 from tests.paths import ROOT
 from tests.viewer.fake import played
 
+try:
+    from minirt.viewer.panel.elements import TOOLS
+    from minirt.viewer.panel.groups import GROUPS
+except ImportError:  # no slimgui, so there is no panel
+    TOOLS, GROUPS = {}, ()
+
 # Functions whose texts the window shows.
-SAYS = {"with_message", "say", "FieldError", "error", "FileError", "LookupError", "translated", "option", "whole"}
+SAYS = {
+    "with_message",
+    "say",
+    "FieldError",
+    "error",
+    "FileError",
+    "LookupError",
+    "translated",
+    "option",
+    "whole",
+    "hint",
+}
 PARTS = ("viewer", "fields", "materials", "scene")
 CATALOGUES = ROOT / "minirt/viewer/locale"
 AXIS = "a b.rt:5:10: sphère axe ne doit pas être 0,0,0 : cela n'indique aucune direction\net 2 de plus"
@@ -57,7 +74,7 @@ def names() -> Iterator[str]:
     for kind in kinds:
         yield getattr(kind, "title", "")
         for field in fields_of(kind):
-            yield from (field.title, *part_names(field))
+            yield from (field.title, field.doc, *part_names(field))
             kinds += [field.record] if isinstance(field, Compound) and field.record not in kinds else []
 
 
@@ -66,8 +83,9 @@ def english() -> set[str]:
     files = (file for part in PARTS for file in (ROOT / "minirt" / part).rglob("*.py"))
     texts = {text for file in files for text in messages(file.read_text(encoding="utf-8"))}
     texts |= {each.help for each in BINDINGS} | {each.group for each in BINDINGS} | {FINE_NOTE[1]}
-    texts |= {*MENU.values()} | {tool.name for tool in TOOLS}
+    texts |= {*MENU.values()} | {each.name for each in tool_row.TOOLS}
     texts |= {group for line in TIPS.split("\n") for group in line.split(language.GAP)}
+    texts |= {*GROUPS, *TOOLS.values()}
     return texts | {name for name in names() if len(name) > 1}
 
 
@@ -98,6 +116,8 @@ def test_a_text_that_lacks_a_translation_is_found() -> None:
         ("sphere: + - diameter 3.8    H: help", "sphère: + - diamètre 3.8    H : aide"),
         ("saved: /tmp/a sphere.rt; what another program had written is in b.rt", SAVED),
         ("not a text of the catalogue", "not a text of the catalogue"),
+        ("light of its own: glow:0.5", "lumière propre: glow:0.5"),
+        ("640x480 at 1/3    4 of 16 samples    error 0.003", "640x480 à 1/3    4 sur 16 échantillons    erreur 0.003"),
         ("", ""),
         ("{} }{", "{} }{"),
     ],

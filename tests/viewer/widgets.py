@@ -11,7 +11,8 @@ from typing import Any
 
 from slimgui import imgui
 
-NAMED = "button", "checkbox", "selectable", "input_text", "input_text_with_hint", "input_int", "color_edit3"
+NAMED = "button", "checkbox", "selectable", "input_text", "input_text_with_hint", "input_int", "color_button"
+GROUPS = ("collapsing_header",)
 TABS = "begin_tab_item", "tab_item_button"
 
 
@@ -23,7 +24,7 @@ class Widgets:
         self.focused = ""
         self._list = ""  # the one that is open
         self._index = ""  # of the element whose row is made
-        for name in (*NAMED, *TABS):
+        for name in (*NAMED, *TABS, *GROUPS):
             follow(name, lambda _, label, *__: self.note(label))
         follow("begin_combo", lambda is_open, label, *_: self.open(label) if is_open else self.note(label))
         follow("end_combo", lambda _: self.open(""))

@@ -62,6 +62,7 @@ class Choosing:
         self._group = ""  # of the last change, in a list of states
         self._before: State | None = None  # while the list is open
         self._place: tuple[int, int] | None = None  # pixel where it was asked for; None: its usual place
+        self.target: tuple[int, int] | None = None  # pixel that an action of it is about, while it is performed
 
     @property
     def is_open(self) -> bool:
@@ -149,10 +150,10 @@ class Choosing:
 
     def row_at(self, x: int, y: int) -> Row | None:
         """Return the row at a pixel of the window; None beside the list."""
-        screen, window = self.session.screen, self.session.window
+        screen = self.session.screen
         if screen.list_box is None:
             return None
-        layout = layout_of(screen.list_box, window.width - screen.covered, window.height, screen.text_size)
+        layout = layout_of(screen.list_box, *screen.size, screen.text_size)
         index = layout.row_at(x, y)
         return None if index is None else self.rows()[index]
 
@@ -163,8 +164,9 @@ class Choosing:
             self.session.state = self.session.state.end_merging()
         self.end()
         if row and row.action and place and row in self.rows():
-            self.session.pointer = place
+            self.session.pointer = self.target = place
             self.perform_at(place, row.action)
+            self.target = None
 
     def perform_at(self, place: tuple[int, int], action: str) -> None:
         """Perform an action, whose list is at a place of the window if it opens one."""

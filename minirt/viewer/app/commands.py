@@ -15,12 +15,12 @@ from minirt.scene import describe, dump, load, parse
 from minirt.scene.files import MAX_BYTES, SUFFIX, check_name
 from minirt.scene.parser import load_for_window
 from minirt.viewer import files
-from minirt.viewer.app.session import Session, title_of
+from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.state import initial_state, state_after_reading, with_edited_cameras
-from minirt.viewer.files import contents_differ, looks
+from minirt.viewer.files import contents_differ, looks, title_of
 from minirt.viewer.recovery import FoundChanges, find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest

@@ -65,6 +65,9 @@ class EventDispatcher:
     def offer(self, event: Event | str, handler: Callable[..., object], *arguments: Any) -> None:
         """Offer an event to the panel, and handle it if the panel does not take it."""
         if self.panel and self.panel.is_open and self.panel.takes(event, *arguments):
+            if event == Event.BUTTON_PRESS:  # a click beside a list or a typed value closes it
+                self.typing.end()
+                self.choosing.end()
             return
         session, screen = self.session, self.session.screen
         match event, arguments:
@@ -208,7 +211,7 @@ class EventDispatcher:
             self.choosing.begin_menu(session.pointer, self.mouse.select_for_menu())
             return
         if action in LISTS:
-            aim = self.mouse.aim() if action in ADDING else session.state.aim
+            aim = self.mouse.aim(self.choosing.target) if action in ADDING else session.state.aim
             self.choosing.begin(action, replace(session.state, aim=aim))
             return
         if action in EDITS:
@@ -230,7 +233,7 @@ class EventDispatcher:
             session.say(NO_PANEL)
             session.refresh()
         else:
-            self.panel = self.panel or Panel(session, self.toggle_panel)
+            self.panel = self.panel or Panel(session, self.perform)
             self.panel.open(not self.panel.is_open, has_keys)
         if session.recovery:
             remember_panel(is_open=bool(self.panel and self.panel.is_open))

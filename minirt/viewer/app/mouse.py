@@ -63,7 +63,7 @@ class Mouse:
         if screen.level == HudLevel.NOTHING or session.modifiers & (Modifier.SHIFT | Modifier.ALT):
             return False
         for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
-            tip = arrow_tip(way, session.window.width, session.window.height, screen.scale)
+            tip = arrow_tip(way, *screen.size, screen.scale)
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
                 session.show(look_at(state.select(owner), 1.0, session.now))
                 return True
@@ -138,21 +138,22 @@ class Mouse:
         shape, point = session.surface_at(x, y)
         return index_of(state.scene, shape) if shape else None, point
 
-    def aim(self) -> Aim | None:
-        """Return the place for a new element: under the pointer, or while it is elsewhere on top of the selected shape.
+    def aim(self, at: tuple[int, int] | None = None) -> Aim | None:
+        """Return the place for a new element: at a pixel, or under the pointer, or while that is elsewhere on top of the
+        selected shape.
 
         Where no bounded shape is selected it is in the middle of the picture. None if textures cannot be read.
         """
         session, element = self.session, self.session.state.element
-        x, y = session.pointer
-        is_elsewhere = session.window.pointer == (0, 0) or not self.inside
-        if is_elsewhere or not session.screen.shows_picture_at(x, y):
+        (x, y), (width, height) = at or session.window.pointer, session.screen.size
+        is_elsewhere = (x, y) == (0, 0) or not self.inside or not session.screen.shows_picture_at(x, y)
+        if is_elsewhere and not at:
             if isinstance(element, Shape) and element.bounds():
                 return aim_at_top(session.view, element)
-            x, y = session.window.width // 2, int(AHEAD * session.window.height)
+            x, y = width // 2, int(AHEAD * height)
         try:
-            at = session.surface_at(x, y)
+            hit = session.surface_at(x, y)
         except MiniRTError as error:
             session.show_error(error)
             return None
-        return aim(session.view, session.state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *at)
+        return aim(session.view, session.state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *hit)

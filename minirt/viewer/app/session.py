@@ -26,18 +26,11 @@ from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
 from minirt.viewer.editing.projection import Projection, projection_of
 from minirt.viewer.editing.state import Hidden, State, initial_state
-from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary
+from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary, title_of
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
 WORDS_DELAY = 0.04  # seconds in which words wait for their picture, which drawing them twice would delay
-
-
-def title_of(path: Path, scene: Scene) -> str:
-    """Return the title of the window; it tells which shapes of the file a lenient reader could not read."""
-    names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
-    count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
-    return f"miniRT - {path.name}" + f": {count}: {names}" * bool(names)
 
 
 class Session:
@@ -88,7 +81,7 @@ class Session:
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, title_of(path, scene), resizable=True)
-        self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), self.window, samples)
+        self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
         self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
@@ -110,7 +103,9 @@ class Session:
         """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
         if self.recovery:
             self.recovery.keep(Version(self.state.scene, self.saved, self.path))
-        self.refinement.request_missing(self.shown_scene, moving=bool(self.held_keys) or self.slides)
+        moving = bool(self.held_keys) or self.slides
+        size = self.window_size if self.screenshot_pending and not moving else self.screen.size
+        self.refinement.request_missing(self.shown_scene, size, moving=moving)
 
     def refresh(self) -> None:
         """Draw the window, unless words wait for their picture and it has not come, for at most WORDS_DELAY."""
@@ -121,17 +116,19 @@ class Session:
     def draw(self) -> None:
         """Draw the latest picture and its overlay in the window, and measure how long that takes."""
         start = self.now
-        self._described, self._drawn = self.state.scene, self.refinement.latest
+        self._described, self._drawn = self.state.scene, self.refinement.shown(self._drawn, self.screen.size)
         if self.screen.draw(self.state, self._drawn, self.refinement.resolution.rate, keys_held=bool(self.held_keys)):
             self.mlx.mlx_sync(self.display, self.mlx.SYNC_WIN_FLUSH, self.window)
             self._current_at = self.now
             self.refinement.resolution.display_times.append(self._current_at - start)
 
     def take_screenshot(self) -> None:
-        """Save the picture if a screenshot is pending and the picture is complete. FileError."""
-        if self.screenshot_pending and self.refinement.complete:
+        """Save the picture, as large as the window, once it is complete; then the shown one goes on. FileError."""
+        pixels = self.refinement.finished(self.window_size) if self.screenshot_pending else None
+        if pixels is not None:
             self.screenshot_pending = False
-            file = create_numbered(self.path, ".png", Image.from_bgra(self.picture).encode())
+            self.refinement.resume(self._drawn, self.screen.size)
+            file = create_numbered(self.path, ".png", Image.from_bgra(pixels).encode())
             self.say(f"picture: {file}")
 
     def give_back_memory(self) -> None:
@@ -187,7 +184,7 @@ class Session:
 
     def surface_at(self, x: int, y: int) -> Picked:
         """Return the shape at a pixel of the window, and the point on it."""
-        return self.pick(self.shown_scene, self.window.width, self.window.height, x, y)
+        return self.pick(self.shown_scene, *self.screen.size, x, y)
 
     def release_button(self) -> None:
         """Forget the mouse button that is down; the edits of a drag are then one undo step."""
@@ -226,11 +223,15 @@ class Session:
 
     @property
     def view(self) -> Projection:
-        return projection_of(self.state.scene.camera, self.window.width, self.window.height)
+        return projection_of(self.state.scene.camera, *self.screen.size)
+
+    @property
+    def window_size(self) -> tuple[int, int]:
+        return self.window.width, self.window.height
 
     @property
     def picture(self) -> Pixels:
-        """The picture at the size of the window, without overlay."""
+        """The picture as large as it is shown, without overlay."""
         return self.screen.picture_alone(self.refinement.latest)
 
     @property

@@ -70,7 +70,7 @@ def last_lines(text: str, count: int) -> str:
     lines = text.split("\n")
     missing = len(lines) - count
     if missing > 0 and count > 1:
-        return "\n".join([f"... {missing + 1} more lines: miniRT -v", *lines[missing + 1 :]])
+        return "\n".join([translated(f"... {missing + 1} more lines: miniRT -v"), *lines[missing + 1 :]])
     return "\n".join(lines[-count:])
 
 

@@ -34,7 +34,7 @@ class Job:
     """A request for a picture."""
 
     scene: Scene
-    width: int  # of the window
+    width: int  # at which it is shown
     height: int
     divisor: int = 1  # of width and height, for a coarser picture
     urgent: bool = False  # something moves: finish it although a newer request waits
@@ -48,9 +48,14 @@ class Job:
         """Shape of the picture's array, which is smaller than the window if the picture is coarse."""
         return -(-self.height // self.divisor), -(-self.width // self.divisor), 4
 
-    def shows(self, scene: Scene, width: int, height: int) -> bool:
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height at which the picture is shown."""
+        return self.width, self.height
+
+    def shows(self, scene: Scene, size: tuple[int, int]) -> bool:
         """Whether this is a picture, however coarse, of that scene at that size."""
-        return self.scene is scene and (self.width, self.height) == (width, height)
+        return self.scene is scene and self.size == size
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,4 +246,4 @@ class BackgroundPainter(Painter):
     def _is_superseded(self, job: Job) -> bool:
         """Whether a newer request makes this picture useless."""
         waiting = self._waiting
-        return waiting is not None and not (job.urgent and job.shows(job.scene, waiting.width, waiting.height))
+        return waiting is not None and not (job.urgent and job.shows(job.scene, waiting.size))

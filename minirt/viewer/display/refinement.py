@@ -6,9 +6,8 @@ from collections import deque
 from math import prod
 from statistics import median_low
 
-from minirt.mlx import Window
 from minirt.scene import Scene
-from minirt.viewer.display.painter import Job, Outcome, Painter
+from minirt.viewer.display.painter import Job, Outcome, Painter, Pixels
 
 FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
 DIVISORS = (1, 2, 3, 4, 6, 8, 12)  # of width and height
@@ -20,11 +19,10 @@ TRIAL_INTERVAL = 30  # ... after so many pictures in a row
 class Refinement:
     """The sequence of pictures of one window; the final one has `samples` rays per pixel."""
 
-    def __init__(self, painter: Painter, window: Window, samples: int) -> None:
+    def __init__(self, painter: Painter, samples: int) -> None:
         self.painter = painter
         self.resolution = AdaptiveResolution()
         self.latest: Outcome | None = None  # the latest picture
-        self._window = window
         self.samples = samples
         self._requested: Job | None = None
 
@@ -32,20 +30,35 @@ class Refinement:
         """Let the next request be that of a first picture, whose final one has so many rays per pixel."""
         self.samples, self._requested = samples, None
 
+    def shown(self, drawn: Outcome | None, size: tuple[int, int]) -> Outcome | None:
+        """The latest picture; or the one that is drawn, of this size, while the same is rendered at another one."""
+        latest = self.latest
+        is_kept = drawn and latest and latest.job.size != size and drawn.job.shows(latest.job.scene, size)
+        return drawn if is_kept else latest
+
+    def finished(self, size: tuple[int, int]) -> Pixels | None:
+        """The pixels of the final picture, if that is complete and of this size."""
+        return self.latest.pixels if self.complete and self.latest and self.latest.job.size == size else None
+
+    def resume(self, drawn: Outcome | None, size: tuple[int, int]) -> None:
+        """Go on after the picture that was kept while another size was rendered."""
+        kept = self.shown(drawn, size)
+        if kept and kept is not self.latest:
+            self.latest, self._requested = kept, kept.job
+
     @property
     def complete(self) -> bool:
         """Whether the latest picture is the final one of the last request."""
         return self._answer is not None and self._answer.is_final
 
-    def request_missing(self, scene: Scene, moving: bool) -> None:
+    def request_missing(self, scene: Scene, size: tuple[int, int], moving: bool) -> None:
         """Request the next picture of a scene, if one is missing; `moving`: the scene will change again soon."""
-        width, height = self._window.width, self._window.height
         last = self._requested
         if last is None:
-            self._request(Job(scene, width, height, goal=self.samples))
-        elif not last.shows(scene, width, height):
-            divisor = self.resolution.divisor(width, height)
-            self._request(Job(scene, width, height, divisor, urgent=True, goal=self.samples))
+            self._request(Job(scene, *size, goal=self.samples))
+        elif not last.shows(scene, size):
+            divisor = self.resolution.divisor(*size)
+            self._request(Job(scene, *size, divisor, urgent=True, goal=self.samples))
         elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.is_final:
             self._request(answer.next())
 

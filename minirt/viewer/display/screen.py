@@ -55,7 +55,7 @@ class Screen:
         self.handles = False  # whether those of the selected element are shown, and the tool row
         self.handle_kind = ""  # of the handles that are shown alone
         self.tool: Tool | None = None  # the one under the pointer
-        self.covered = 0  # columns at the right that the panel covers: text keeps clear of them
+        self.covered = 0  # columns at the right that the panel covers: the picture is as wide as the others
         self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
         self.image = mlx.mlx_new_image(window.display, 1, 1)
@@ -65,6 +65,11 @@ class Screen:
     def frame(self) -> Pixels:
         """The pixels that were last brought to the window."""
         return self.image.pixels
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture, which lies beside the panel."""
+        return max(1, self.window.width - self.covered), self.window.height
 
     @property
     def scale(self) -> float:
@@ -78,7 +83,7 @@ class Screen:
 
     def turn_help(self, step: int) -> None:
         """Turn the pages of the help; a step of 0 opens or closes it."""
-        count = len(help_pages(self.layout, self.search, self.window.width, self.window.height, self.text_size)[1])
+        count = len(help_pages(self.layout, self.search, *self.size, self.text_size)[1])
         self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
         self.search = self.search if step else ""
 
@@ -91,11 +96,11 @@ class Screen:
     def tool_at(self, x: int, y: int) -> Tool | None:
         """Return the tool of the tool row at a pixel, None beside it."""
         is_shown = self.handles and self.level and not self.help
-        return tool_at(x, y, self.window.width, self.window.height, self.scale) if is_shown else None
+        return tool_at(x, y, *self.size, self.scale) if is_shown else None
 
     def shows_picture_at(self, x: int, y: int) -> bool:
         """Whether neither the panel nor the tool row covers the picture at a pixel."""
-        return x < self.window.width - self.covered and not self.tool_at(x, y)
+        return x < self.size[0] and not self.tool_at(x, y)
 
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
@@ -103,27 +108,27 @@ class Screen:
         The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
         primary rays per second; `keys_held`: handles would be in the way.
         """
-        width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
+        scale, size = self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips
         row = handles, self.handles, self.handle_kind, self.tool
-        contents = described, picture, message, *shown, *row, self.covered, width, height, scale
+        contents = described, picture, message, *shown, *row, self.size, self.window.width, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
-        self.image = Image(self.picture_alone(picture))
-        bottom, clear = 0, self.frame[:, : width - self.covered]
+        self.image = Image(self.beside_panel(self.picture_alone(picture)))
+        bottom, clear = 0, self.frame[:, : self.size[0]]
         if self.help:
-            draw_help(self.frame, self.layout, self.search, size, self.help)
+            draw_help(clear, self.layout, self.search, size, self.help)
         elif self.level:
-            if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
+            if picture and picture.job.size == self.size:  # not an old one, stretched
                 job = picture.job
                 marks = {"icons": self.icons, "handles": handles}
-                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, kind=self.handle_kind, **marks)
+                draw_marks(clear, state, job.scene, scale, moving=job.urgent, kind=self.handle_kind, **marks)
             if self.handles:
-                draw_tools(self.frame, scale, size, self.tool, self.handle_kind, self.layout)
+                draw_tools(clear, scale, size, self.tool, self.handle_kind, self.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
         if self.has_tab and not self.help:
             overlay.draw_tab(self.frame, size)
@@ -138,12 +143,20 @@ class Screen:
         return True
 
     def picture_alone(self, picture: Outcome | None) -> Pixels:
-        """Return a copy of the picture without overlay, stretched to the window; black if there is no picture yet."""
-        width, height = self.window.width, self.window.height
+        """Return a copy of the picture without overlay, stretched to `size`; black if there is no picture yet."""
+        width, height = self.size
         if picture is None or picture.pixels is None:
             return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
         same_size = picture.pixels.shape[:2] == (height, width)
         return picture.pixels.copy() if same_size else stretch(picture.pixels, width, height)
+
+    def beside_panel(self, picture: Pixels) -> Pixels:
+        """Return a frame of the window's size with the picture at the left, and black under the panel."""
+        if not self.covered:
+            return picture
+        frame = np.full((self.window.height, self.window.width, 4), (0, 0, 0, 255), np.uint8)
+        frame[:, : picture.shape[1]] = picture
+        return frame
 
 
 def give_back_memory() -> None:

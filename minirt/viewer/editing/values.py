@@ -8,6 +8,7 @@ mesh file, the next value is the next file beside the scene. Edited numbers are 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from math import asin, atan2, degrees, floor, hypot, log10
 from typing import Any, NamedTuple, TypeVar
 
@@ -194,9 +195,10 @@ def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
         return round_changes(before, after, stride)
     if isinstance(field, (Factor, Length)):
         return round_length(after)
-    if isinstance(field, Point):
+    if isinstance(field, Point | Lengths):
         places = leading_decimal(stride) + POINT_DECIMALS
-        return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))
+        rounded = round_length if isinstance(field, Lengths) else partial(round, ndigits=places)
+        return tuple(b if a == b else rounded(b) for a, b in zip(before, after, strict=True))
     if isinstance(field, Direction):
         return neat_direction(after, keep_heading=True)
     if isinstance(field, Angle):

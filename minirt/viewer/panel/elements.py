@@ -1,4 +1,4 @@
-"""Elements: the list of all elements of the scene, and the attributes of the selected one."""
+"""Elements: the list of all elements of the scene, and the values of the selected one."""
 
 from __future__ import annotations
 
@@ -9,47 +9,47 @@ from itertools import pairwise
 from slimgui import imgui
 
 from minirt.element import Element, fields_of
-from minirt.errors import ElementError
-from minirt.fields import Colour, Field
+from minirt.fields import Colour
 from minirt.scene import Scene
 from minirt.viewer.app.session import Session
-from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import State
 from minirt.viewer.language import searchable, translated
-from minirt.viewer.panel.gui import Rgba
+from minirt.viewer.panel.groups import Groups
 from minirt.viewer.panel.rows import Rows
+from minirt.viewer.panel.style import Rgba
 
 AROUND = 3  # rows above and below those that are seen: the arrow keys go on to them
 LISTED = 0.35  # of the height: the list of elements
+TOOLS = {"add": "+ Add", "duplicate": "copy", "delete": "delete"}  # actions of the buttons above the list
 PLAIN = (128, 128, 128)  # the square of an element without a colour
 
 
 class Elements:
     """The page of the list and of the selected element."""
 
-    def __init__(self, session: Session, rows: Rows) -> None:
+    def __init__(self, session: Session, rows: Rows, groups: Groups) -> None:
         self.session = session
         self.rows = rows
+        self.groups = groups
         self._wanted = ""  # what is searched for
         self._followed = -1  # the selected element that the list was scrolled to
         self._named: tuple[Scene | None, str] = None, ""  # scene and search of the next two
         self._names: list[str] = []
         self._found: Sequence[int] = ()  # indices
-        self._asked: tuple[Scene | None, int] = None, -1  # scene and index of the element whose reasons are known
-        self._reasons: dict[str, str] = {}  # why attributes cannot be had, by their names
 
     def show(self) -> None:
         """Show the list, and below it the rows of the selected element."""
+        self.rows.gui.buttons(TOOLS)
+        hint = translated("search")
+        self.rows.gui.go_on(2 * imgui.calc_text_size(hint)[0])
         imgui.set_next_item_width(-1.0)
-        self._wanted = imgui.input_text_with_hint("###search", translated("search"), self._wanted)[1]
+        self._wanted = imgui.input_text_with_hint("###search", hint, self._wanted)[1]
         height = imgui.get_content_region_avail()[1]
         self.list(LISTED * height)
         if imgui.begin_child("values", (0.0, 0.0), imgui.ChildFlags.NAV_FLATTENED):
             state = self.session.state
             imgui.separator_text(translated(state.element.title))
-            self.rows.show(state.selected)
-            self.attributes()
+            self.groups.show(state.selected)
         imgui.end_child()
 
     def list(self, height: float) -> None:
@@ -75,7 +75,7 @@ class Elements:
         imgui.push_id(index)
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
-        imgui.set_item_tooltip(translated("shown while you edit; the file keeps it"))
+        self.rows.gui.hint("shown while you edit; the file keeps it")
         if changed:
             self.rows.gui.show(replace(state, hidden=state.hidden ^ {index}))
         imgui.same_line()
@@ -93,50 +93,6 @@ class Elements:
             self.rows.gui.show(apply(session.state, "look at", 1.0, session.now))
         imgui.pop_item_flag()
         imgui.pop_id()
-
-    # --- attributes ---
-
-    def attributes(self) -> None:
-        """Show a section for each attribute that the element of the rows may lack, with a box that switches it."""
-        for field in optional_fields(self.rows.element):
-            self.attribute(field)
-
-    def attribute(self, field: Field) -> None:
-        """Show the box of an attribute, with its rows or the reason why it cannot be had."""
-        there = getattr(self.rows.element, field.name) is not None
-        reason = "" if there else self.reasons().get(field.name, "")
-        changed = self.rows.box(field.title, there, field.doc, disabled=bool(reason))
-        if reason:
-            imgui.text_disabled(translated(reason))
-        if changed:
-            switch = structure.without_attribute if there else structure.with_attribute
-            self.rows.apply(lambda state: switch(state, field).end_merging(), field.title)
-        elif there:
-            imgui.indent()
-            self.rows.show_field(field)
-            imgui.unindent()
-
-    def reasons(self) -> dict[str, str]:
-        """Why attributes cannot be had, by their names; as it was at the press while a number is dragged."""
-        asked = self.session.state.scene, self.rows.index
-        if self._asked != asked and not self.rows.pressed:
-            self._asked = asked
-            self._reasons = dict(refusals(self.session.state.select(self.rows.index)))
-        return self._reasons
-
-
-def optional_fields(element: Element) -> list[Field]:
-    """The attributes that an element may have or not."""
-    return [field for field in fields_of(type(element)) if field.keyed and field.default is None]
-
-
-def refusals(state: State) -> Iterator[tuple[str, str]]:
-    """Yield the names of the attributes that the selected element cannot have, and why."""
-    for field in optional_fields(state.element):
-        try:
-            structure.with_attribute(state, field)
-        except (LookupError, ElementError) as error:
-            yield field.name, str(error)
 
 
 def names(scene: Scene) -> list[str]:

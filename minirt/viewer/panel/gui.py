@@ -13,7 +13,10 @@ from slimgui import imgui
 
 from minirt.mlx.events import Button, Event, Key, Modifier
 from minirt.viewer.app.session import Session
+from minirt.viewer.bindings import BINDINGS, Binding
 from minirt.viewer.editing.state import State
+from minirt.viewer.language import translated
+from minirt.viewer.panel.style import set_colours, set_spaces
 
 ARROWS = {key: f"KEY_{key.name}_ARROW" for key in (Key.LEFT, Key.RIGHT, Key.UP, Key.DOWN)}
 ENTER = {Key.RETURN: "KEY_ENTER", Key.KEYPAD_ENTER: "KEY_ENTER"}
@@ -27,16 +30,15 @@ WHEEL = {Button.WHEEL_UP: 1.0, Button.WHEEL_DOWN: -1.0}
 NOWHERE = -3.4028234663852886e38  # where the pointer is when it has left the window
 SETTLING = 2  # frames after an event: the second one shows what the first one has changed
 SHORTEST = 1e-3  # seconds between two frames
-Rgba = tuple[float, float, float, float]
-GOLD: Rgba = (1.0, 0.84, 0.37, 1.0)  # on blue and grey, which people with any kind of colour blindness tell apart
 
 
 class Gui:
     """A context of Dear ImGui for the window of a session."""
 
-    def __init__(self, session: Session, build: Callable[[], None]) -> None:
-        """`build` declares the widgets of a frame."""
-        self.session, self._build = session, build
+    def __init__(self, session: Session, build: Callable[[], None], perform: Callable[[Binding, float], None]) -> None:
+        """`build` declares the widgets of a frame; `perform` performs an action of the table of keys."""
+        self.session, self._build, self._perform = session, build, perform
+        self.wanted = ""  # the action of a button that was clicked, until the end of the frame
         self.is_open = False
         self.io = imgui.create_context().io
         self.size = 0  # of text, in pixels
@@ -60,7 +62,7 @@ class Gui:
         accented = imgui.FontConfig()  # letters that the first font lacks
         accented.merge_mode = True
         self.io.fonts.add_font_default(accented)
-        imgui.get_style().colors[imgui.Col.NAV_CURSOR] = GOLD
+        set_colours()
 
     @property
     def is_busy(self) -> bool:
@@ -171,15 +173,36 @@ class Gui:
         if self._is_changed:
             self._is_changed = False
             self.session.show(self.session.state)
+        if self.wanted:
+            action, self.wanted = self.wanted, ""
+            self._perform(next(each for each in BINDINGS if each.action == action), 1.0)
+            self.is_left |= self.session.screen.list_box is not None  # a list that opened has the keys
+
+    def buttons(self, titles: dict[str, str]) -> None:
+        """Show buttons for actions of the table of keys, beside each other as far as they fit."""
+        for number, (action, title) in enumerate(titles.items()):
+            if number:
+                self.go_on(imgui.calc_text_size(translated(title))[0] + 2 * imgui.get_style().frame_padding[0])
+            if imgui.button(f"{translated(title)}###{action}"):
+                self.wanted = action
+
+    def hint(self, text: str, limits: str = "") -> None:
+        """Show a text while the pointer rests on the last widget, with the limits of a value."""
+        if text and imgui.begin_item_tooltip():
+            imgui.text(translated(text) + (f", {translated('in')} {limits}" if limits else ""))
+            imgui.end_tooltip()
+
+    def go_on(self, width: float) -> None:
+        """Show the next widget beside the last one if there is so much room, below it otherwise."""
+        imgui.same_line()
+        if imgui.get_content_region_avail()[0] < width:
+            imgui.new_line()
 
     def resize_text(self, size: int) -> None:
         """Set the size of text, and of all spaces with it, from the next frame on."""
         if size != self.size:
             self.size = size
-            style = imgui.get_style()
-            style.window_padding = style.item_spacing = 0.4 * size, 0.25 * size
-            style.frame_padding = style.item_inner_spacing = 0.22 * size, 0.15 * size
-            style.indent_spacing, style.scrollbar_size, style.grab_min_size = 0.5 * size, 0.7 * size, 0.7 * size
+            set_spaces(size)
 
     def paint(self, painter: Any) -> None:
         """Draw the last frame over the canvas: see `Mlx.mlx_overlay_hook`."""

@@ -16,7 +16,6 @@ from minirt.rendering.image import Image
 from minirt.rendering.settings import render
 from minirt.scene import Lamp, Scene
 from minirt.scene.registry import ELEMENTS
-from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import BINDINGS
 from minirt.viewer.editing import structure
@@ -24,11 +23,12 @@ from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.motion import turntable
 from minirt.viewer.editing.state import Snapshot
 from minirt.viewer.language import translated
-from minirt.viewer.panel.elements import Elements, seen
+from minirt.viewer.panel.elements import seen
+from minirt.viewer.panel.groups import Groups
 from minirt.viewer.panel.rows import Rows
 
 SAMPLES = ("1", "4", "16", "64", "256")  # rays per pixel
-BUTTONS = [each for each in BINDINGS if each.action in ("screenshot", "save", "save copy")]
+BUTTONS = {each.action: each.help for each in BINDINGS if each.action in ("screenshot", "save", "save copy")}
 ONCE = [kind for kind in ELEMENTS.values() if kind.once and not issubclass(kind, Lamp)]  # settings of a scene
 MOST_PICTURES, BEST_QUALITY = 3600, 100  # as on the command line
 
@@ -36,12 +36,13 @@ MOST_PICTURES, BEST_QUALITY = 3600, 100  # as on the command line
 class Pages:
     """The pages of a session's panel, apart from that of the elements."""
 
-    def __init__(self, session: Session, rows: Rows, elements: Elements) -> None:
-        self.session, self.rows, self.elements = session, rows, elements
+    def __init__(self, session: Session, rows: Rows, groups: Groups) -> None:
+        self.session, self.rows, self.groups = session, rows, groups
         self.film = ""  # what the window shows of the film: its progress, or its end
         self._share = 0.0  # of the film that is made
         self._format, self._pictures, self._quality = ".gif", 120, QUALITY
-        self._is_stopped = False
+        self._is_running = self._is_stopped = False
+        self._end = ""  # what became of the film, until it is said
         self._thread: Thread | None = None
 
     def scene(self) -> None:
@@ -66,8 +67,7 @@ class Pages:
             self.rows.gui.show(after)
             return
         if index is not None:
-            self.rows.show(index)
-            self.elements.attributes()
+            self.groups.show(index)
 
     def history(self) -> None:
         """Show the steps of undo and redo, the oldest first; a click goes there."""
@@ -84,23 +84,20 @@ class Pages:
 
     def picture(self) -> None:
         """Show the buttons that save the picture and the scene, and the settings of a film of a turntable."""
-        for binding in BUTTONS:
-            if imgui.button(f"{translated(binding.help)}###{binding.action}"):
-                self.session.attempt(COMMANDS[binding.action])
-                self.rows.gui.show(self.session.state)
+        self.rows.gui.buttons(BUTTONS)
         imgui.separator_text(translated("turntable"))
         self._format = self.rows.option("format", FILMS, self._format) or self._format
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
         if FILMS[self._format].is_lossy:
             self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
         imgui.text(f"{self._pictures / FPS:g} s")
-        is_running = self._thread is not None and self._thread.is_alive()
-        if imgui.button(translated("stop" if is_running else "save a film") + "###film"):
-            self._is_stopped = is_running
-            if not is_running:
+        if imgui.button(translated("stop" if self._is_running else "save a film") + "###film"):
+            self._is_stopped = self._is_running
+            if not self._is_running:
+                self._is_running = True
                 self._thread = Thread(target=self.make_film, name="minirt-film", daemon=True)
                 self._thread.start()
-        if is_running:
+        if self._is_running:
             imgui.progress_bar(self._share, overlay=translated(self.film))
         else:
             imgui.text_wrapped(translated(self.film))
@@ -114,13 +111,22 @@ class Pages:
         self._share = 0.0
         try:
             pictures = self.frames(self.session.shown_scene, self._pictures)
-            self.say(f"film: {save_movie(pictures, file, quality=quality)[0]}")
+            end = f"film: {save_movie(pictures, file, quality=quality)[0]}"
         except (MiniRTError, OSError) as error:
-            self.say(str(error))
+            end = str(error)
+        self._end, self._is_running = end, False
+        self.say(end)
+
+    def tell_end(self) -> None:
+        """Say over the picture, once, that the film is finished or why not, also where the panel is closed."""
+        if self._end and not self._is_running:
+            self.session.say(self._end)
+            self._end = ""
+            self.session.refresh()
 
     def frames(self, scene: Scene, total: int) -> Iterator[Image]:
         """Yield the pictures of the film, as large and with as many samples as the picture in the window."""
-        size, samples = (self.session.window.width, self.session.window.height), self.session.refinement.samples
+        size, samples = self.session.window_size, self.session.refinement.samples
         for number, view in enumerate(turntable(scene, total), 1):
             if self._is_stopped:
                 raise MiniRTError("the film was stopped")
@@ -138,7 +144,9 @@ def step_title(before: Snapshot, after: Snapshot) -> str:
     """Description of the edit between two versions of a scene."""
     old, new = before.scene.elements, after.scene.elements
     if len(old) != len(new):
-        return f"+ {new[after.selected].title}" if len(new) > len(old) else f"- {old[before.selected].title}"
+        is_more = len(new) > len(old)
+        changed = new[after.selected] if is_more else old[before.selected]
+        return f"{'+' if is_more else '-'} {translated(changed.title)}"
     one, other = old[after.selected], new[after.selected]
-    changed = (each for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None))
-    return f"{one.title}: {', '.join(each.title for each in changed)}"
+    fields = (each for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None))
+    return f"{translated(one.title)}: {', '.join(translated(each.title) for each in fields)}"

@@ -11,8 +11,10 @@ from collections.abc import Callable
 from slimgui import imgui
 
 from minirt.viewer.app.session import Session
+from minirt.viewer.bindings import Binding
 from minirt.viewer.language import translated
 from minirt.viewer.panel.elements import Elements
+from minirt.viewer.panel.groups import Groups
 from minirt.viewer.panel.gui import Gui
 from minirt.viewer.panel.pages import Pages
 from minirt.viewer.panel.rows import Rows
@@ -20,20 +22,22 @@ from minirt.viewer.panel.rows import Rows
 WIDTH, SHARE = 21.0, 0.6  # of the panel: in sizes of text, and of a narrow window
 LETTERS, READABLE = 30, 12  # in a narrow window text becomes smaller, so that so many fit, but not below so many pixels
 FRAME = imgui.WindowFlags.NO_DECORATION | imgui.WindowFlags.NO_MOVE | imgui.WindowFlags.NO_SAVED_SETTINGS
+TABS = imgui.TabBarFlags.FITTING_POLICY_SHRINK | imgui.TabBarFlags.DRAW_SELECTED_OVERLINE
 ANY_POPUP = imgui.PopupFlags.ANY_POPUP_ID | imgui.PopupFlags.ANY_POPUP_LEVEL
 
 
 class Panel(Gui):
     """The panel of a session. It is closed at first."""
 
-    def __init__(self, session: Session, close: Callable[[], None]) -> None:
-        super().__init__(session, self.build)
+    def __init__(self, session: Session, perform: Callable[[Binding, float], None]) -> None:
+        """`perform` performs an action of the table of keys, as a press does."""
+        super().__init__(session, self.build, perform)
         self.rows = Rows(session, self)
-        self._close = close
         self._wants_focus = False
         self._shown: tuple[object, ...] = ()  # inputs of the last frame
-        elements = Elements(session, self.rows)
-        self._pages = Pages(session, self.rows, elements)
+        groups = Groups(self.rows)
+        elements = Elements(session, self.rows, groups)
+        self._pages = Pages(session, self.rows, groups)
         self._tabs = {
             translated("Elements"): elements.show,
             translated("Scene"): self._pages.scene,
@@ -48,14 +52,21 @@ class Panel(Gui):
         paint = (lambda painter, _: self.paint(painter)) if is_open else None
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
         self.session.screen.covered, self.session.slides = 0, False
+        self.unsettled = 0
         if is_open:
             self.settle()
+        self.session.update()
         self.session.refresh()
 
     def follow(self) -> None:
         """Make a frame if the session shows something else than the last one."""
+        self._pages.tell_end()
         if self.is_open and self._shown != self.inputs:
-            self.frame()
+            if self.session.held_keys:  # another one follows
+                self.frame()
+            else:
+                self.settle()
+            self.session.update()
             self.session.refresh()
 
     @property
@@ -78,7 +89,7 @@ class Panel(Gui):
             imgui.set_next_window_focus()
             self._wants_focus = False
         imgui.begin("panel", False, FRAME)
-        if imgui.begin_tab_bar("pages", imgui.TabBarFlags.FITTING_POLICY_SHRINK):
+        if imgui.begin_tab_bar("pages", TABS):
             for name, show in self._tabs.items():
                 visible, _ = imgui.begin_tab_item(name)
                 if visible:
@@ -87,7 +98,7 @@ class Panel(Gui):
                     imgui.end_child()
                     imgui.end_tab_item()
             if imgui.tab_item_button(">###close", imgui.TabItemFlags.TRAILING):
-                self._close()
+                self.wanted = "toggle panel"
             imgui.end_tab_bar()
         self.has_popup = imgui.is_popup_open("", ANY_POPUP)
         imgui.end()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from threading import Semaphore
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,12 +25,12 @@ def pictures(text: str, samples: int, precision: str = "double") -> list[Outcome
     scene, done, found = parse(text).scene, Semaphore(0), []
     Renderer(1, "single").specialise(scene)
     painter = BackgroundPainter(Renderer(2, precision), done.release)
-    refinement = Refinement(painter, SimpleNamespace(width=SIZE[0], height=SIZE[1]), samples)
+    refinement = Refinement(painter, samples)
     x, y, z = scene.camera.position
     steps = [scene.replace(scene.camera, position=(x + step / 8, y, z)) for step in range(12)]
     while not (refinement.complete and scene is steps[-1]):
         scene = steps[min(len(found), len(steps) - 1)]
-        refinement.request_missing(scene, moving=scene is not steps[-1])
+        refinement.request_missing(scene, SIZE, moving=scene is not steps[-1])
         assert done.acquire(timeout=HANG_LIMIT)
         assert not refinement.collect()
         assert refinement.latest

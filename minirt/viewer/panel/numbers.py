@@ -1,0 +1,162 @@
+"""Numbers of an element that are dragged, typed or stepped, and how they change the scene.
+
+A number is dragged to slide it (Shift: finer), clicked to type it, or changed by + and - while it has the focus; a
+digit begins to type. One drag is one step of undo.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from slimgui import imgui
+
+from minirt.element import Element
+from minirt.errors import MiniRTError
+from minirt.fields import spelled
+from minirt.viewer.app.session import FINE_STEP, Session
+from minirt.viewer.editing.placing import keep_standing
+from minirt.viewer.editing.state import State
+from minirt.viewer.editing.typed import CHARACTERS, set_typed, with_value
+from minirt.viewer.editing.values import Value
+from minirt.viewer.panel.gui import Gui
+
+PIXELS = 6  # of a drag to the right or upwards, for one step
+SLIDE = ("value slide", 0.0)  # kind and time of the changes of a drag: the constant time merges them for undo
+SIGNS = {"+": 1.0, "-": -1.0}  # steps of a typed character
+TO_TYPE = 3  # frames until a text has the focus, and what began it
+AGAIN = " again"
+TYPING = imgui.InputTextFlags.ENTER_RETURNS_TRUE | imgui.InputTextFlags.AUTO_SELECT_ALL
+
+
+class Numbers:
+    """Numbers as widgets. What the user does is applied at once to the element, which is selected by that."""
+
+    def __init__(self, session: Session, gui: Gui) -> None:
+        self.session = session
+        self.gui = gui
+        self.error = ("", "")  # name of the value that was refused, and why
+        self.index = 0  # of the element whose rows are shown
+        self._typing: tuple[int, Value] | None = None  # the number that is typed, after the index of its element
+        self._shows_typing = False  # whether the last frame shows it
+        self._again = ""  # or AGAIN: a part of the name of its widget
+        self._text, self._first = "", ""  # what is typed, and the character that began it
+        self.pressed = ""  # name of the number under the button that is down
+        self._start: Element | None = None  # the element when the button went down
+        self._slid = 0.0  # steps since
+
+    @property
+    def element(self) -> Element:
+        """The element whose rows are shown, as it is now."""
+        return self.session.state.scene.elements[self.index]
+
+    def begin_frame(self) -> None:
+        """Begin a frame: a number that is not shown any more is not typed any more."""
+        if not self._first and not self._shows_typing:
+            self._typing = None
+        self._shows_typing = False
+        self.session.slides = bool(self.pressed) and imgui.is_mouse_down(imgui.MouseButton.LEFT)
+
+    def number(self, value: Value, width: float, prefix: str = "") -> None:
+        """Show a number, which is dragged, typed or stepped."""
+        if self._typing == (self.index, value):
+            self.type(value, width)
+            return
+        texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
+        text = next((each for each in texts if imgui.calc_text_size(each)[0] < room), texts[-1])
+        entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
+        self.gui.hint("drag it, click to type it, or + and -; Shift: finer")
+        if imgui.is_item_activated():
+            self.pressed, self._start, self._slid = value.name, self.element, 0.0
+            self.session.state = self.session.state.end_merging()
+        if self.pressed == value.name:
+            self.drag(value)
+        if entered and not self._slid:
+            self.begin_typing(value, "")
+        elif imgui.is_item_focused() and self.gui.typed and not self.gui.types:
+            self.on_character(value, self.gui.typed)
+        if self.pressed == value.name and not imgui.is_item_active():
+            self.pressed = ""
+            self.gui.show(self.session.state.end_merging())
+
+    def drag(self, value: Value) -> None:
+        """Slide the number under the button that is down, to the right or upwards to increase it."""
+        right, down = self.gui.io.mouse_delta
+        if self._start and (right or down) and imgui.is_mouse_dragging(imgui.MouseButton.LEFT):
+            self._slid += (right - down) / PIXELS * (FINE_STEP if self.gui.io.key_shift else 1.0)
+            self.step(value, self._start, self._slid)
+
+    def on_character(self, value: Value, text: str) -> None:
+        """A character was typed while a number has the focus: it steps the number, or begins to type it."""
+        if text in SIGNS:
+            steps = SIGNS[text] * (FINE_STEP if self.gui.io.key_shift and text == "-" else 1.0)
+            self.step(value, self.element, steps)
+        elif text in CHARACTERS:
+            self.begin_typing(value, text)
+
+    def begin_typing(self, value: Value, first: str) -> None:
+        """Turn a number into a text, all of it selected; `first` replaces it."""
+        self._typing, self._text, self._first = (self.index, value), spelled(value.current(self.element)), first or " "
+        self.gui.unsettled = TO_TYPE
+
+    def type(self, value: Value, width: float) -> None:
+        """Show the text of the number that is typed; Enter, and the focus of another widget, set it."""
+        if self._first:
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(width)
+        entered, self._text = imgui.input_text(f"###{value.name}{self._again}", self._text, TYPING)
+        self._shows_typing = True
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
+            self._again = "" if self._again else AGAIN  # another widget begins with all of the text selected
+            self._first, self.gui.unsettled = " ", TO_TYPE
+            return
+        if self._first and imgui.is_item_active():
+            self.gui.io.add_input_characters_utf8(self._first.strip())
+            self._first = ""
+        left = imgui.is_item_deactivated_after_edit() and not imgui.is_key_down(imgui.Key.KEY_ESCAPE)
+        if entered or left:
+            self.apply(lambda state: set_typed(state, value, self._text.strip(), self.session.now), value.name)
+        if entered or (not self._first and not imgui.is_item_active()):
+            self._typing = None
+
+    # --- changes of the scene ---
+
+    def step(self, value: Value, start: Element, steps: float) -> None:
+        """Change a value by a number of steps from what it was in `start`."""
+        state = self.session.state
+        self.change(value, start, lambda: value.stepped(start, steps, state.scene, state.stride))
+
+    def change(self, value: Value, start: Element, field: Callable[[], Any]) -> None:
+        """Change a field of an element that was `start`; changes that follow each other are undone together."""
+
+        def edit(state: State) -> State:
+            changed = start.replace(**{value.field.name: field()})
+            return state.edit_element(keep_standing(state, changed), *SLIDE)
+
+        self.apply(edit, value.name)
+
+    def set(self, value: Value, new: Any) -> None:
+        """Set a value at once, as one step of undo."""
+        self.apply(lambda state: with_value(state, value, new, self.session.now), value.name)
+
+    def apply(self, edit: Callable[[State], State], name: str = "") -> None:
+        """Select the element and edit it; a change that is refused is told below the row of the value `name`."""
+        state = self.session.state.with_message("")
+        if state.selected != self.index:
+            state = state.select(self.index)
+        try:
+            after = edit(state)
+        except (MiniRTError, ValueError, LookupError) as error:
+            after = state.with_message(str(error))
+        self.error = (name, after.message) if after.message and after.scene is state.scene else ("", "")
+        self.gui.show(after)
+
+
+def spellings(number: float, prefix: str) -> Iterator[str]:
+    """Yield shorter and shorter texts for a number: with its name and without, and with fewer digits."""
+    exact = f"{number:.6g}"
+    for digits in (6, 4, 3, 2):
+        text = f"{number:.{digits}g}"
+        if ("e" in text) == ("e" in exact):  # 200 and not 2e+02
+            yield f"{prefix} {text}".strip()
+            yield text
