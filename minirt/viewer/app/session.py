@@ -89,7 +89,8 @@ class Session:
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, title_of(path, scene), resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), self.window, samples)
-        self.screen = Screen(mlx, self.window, self.keymap.layout)
+        self.keymap = Keymap(keys, self.window.letter_at)
+        self.screen = Screen(mlx, self.window, self.keymap)
         self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window

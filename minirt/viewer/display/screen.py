@@ -17,7 +17,7 @@ import numpy as np
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
-from minirt.viewer.bindings import key_groups
+from minirt.viewer.bindings import Keymap, key_groups
 from minirt.viewer.display import overlay
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, Panel, wrap
@@ -39,10 +39,10 @@ Column = tuple[str, str]  # lines of keys, titles among them, and of their help
 class Screen:
     """The frame of a window, and the settings of what is drawn over the picture."""
 
-    def __init__(self, mlx: Mlx, window: Window, layout: str) -> None:
+    def __init__(self, mlx: Mlx, window: Window, keymap: Keymap) -> None:
         self.mlx = mlx
         self.window = window
-        self.layout = layout  # of the keyboard, for the help
+        self.keymap = keymap  # for the help
         self.level = HudLevel.LINE
         self.help = 0  # its page in the window, counted from 1
         self.search = ""  # the letters that the rows of the help contain
@@ -74,7 +74,8 @@ class Screen:
 
     def turn_help(self, step: int) -> None:
         """Turn the pages of the help; a step of 0 opens or closes it."""
-        count = len(help_pages(self.layout, self.search, self.window.width, self.window.height, self.text_size)[1])
+        size = self.window.width, self.window.height, self.text_size
+        count = len(help_pages(self.keymap.layout, self.search, *size)[1])
         self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
         self.search = self.search if step else ""
 
@@ -95,14 +96,14 @@ class Screen:
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
         shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
-        contents = described, picture, message, *shown, self.covered, width, height, scale
+        contents = described, picture, message, *shown, self.covered, width, height, scale, self.keymap.layout
         if contents == self._drawn:
             return False
         self._drawn = contents
         self.image = Image(self.picture_alone(picture))
         bottom, clear = 0, self.frame[:, : width - self.covered]
         if self.help:
-            draw_help(self.frame, self.layout, self.search, size, self.help)
+            draw_help(self.frame, self.keymap.layout, self.search, size, self.help)
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
