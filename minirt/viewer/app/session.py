@@ -26,18 +26,12 @@ from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.editor import HeldKey
 from minirt.viewer.editing.projection import Projection, projection_of
 from minirt.viewer.editing.state import Hidden, State, initial_state
-from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary
+from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, error_summary, title_of
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
+NO_SHAPES = "the scene has no shapes; the grid marks the ground y = 0, and is on no picture"
 WORDS_DELAY = 0.04  # seconds in which words wait for their picture, which drawing them twice would delay
-
-
-def title_of(path: Path, scene: Scene) -> str:
-    """Return the title of the window; it tells which shapes of the file a lenient reader could not read."""
-    names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
-    count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
-    return f"miniRT - {path.name}" + f": {count}: {names}" * bool(names)
 
 
 class Session:
@@ -76,7 +70,6 @@ class Session:
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
         self.slides = False  # whether a number of the panel is dragged
         self.wants_panel = False  # whether the panel opens with the first picture, as it was open in the last window
-        self.keymap = Keymap(keys)
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
         self.pressed: DragStart | None = None
         self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
@@ -100,8 +93,7 @@ class Session:
 
     def show(self, state: State) -> None:
         """Make `state` the current one."""
-        if not self.words_wait:
-            self._current_at = self.now
+        self._current_at = self._current_at if self.words_wait else self.now
         self.state = state
         self.screen.tips = self.screen.tips and not contents_differ(state.scene, self.opened)
         self.update()
@@ -153,9 +145,10 @@ class Session:
             from minirt.rendering.notices import notices_about
             from minirt.rendering.queries.unseen import SHOWN_BY
 
-            height, width = latest.pixels.shape[:2]
+            scene, (height, width) = latest.job.scene, latest.pixels.shape[:2]
             before = f"{self.state.message}\n" if self.state.message else ""
-            for notice in islice(notices_about(latest.job.scene, latest.pixels[..., :3], (width, height)), 1):
+            notices = notices_about(scene, latest.pixels[..., :3], (width, height)) if scene.runs else iter([NO_SHAPES])
+            for notice in islice(notices, 1):
                 why, can_be_shown, _ = notice.partition(SHOWN_BY)
                 self.say(before + (f"{why}; {named('F')} brings the scene into view" if can_be_shown else notice))
 

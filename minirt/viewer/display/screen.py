@@ -19,6 +19,7 @@ from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import Keymap, key_groups
 from minirt.viewer.display import overlay
+from minirt.viewer.display.ground import ground_lines
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, Panel, wrap
 from minirt.viewer.display.painter import Outcome, Pixels
@@ -27,9 +28,10 @@ from minirt.viewer.language import translated
 
 TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow window
 # Shown until the first edit; the keys are the same on all keyboards.
-TIPS = """drag an object to move it, or nothing to look around
-N adds an object where the pointer is
-F1: panel    H: all keys    Ctrl+S: save"""
+TIPS = """drag an object to move it, or nothing to look around    wheel: zoom    right drag: turn around
+right click: add, copy, delete and more
+H: all keys    F1: panel    Ctrl+Z: undo    Ctrl+S: save"""
+GRID_COLOUR = (84, 75, 68, 255)  # BGRA
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
 
@@ -107,6 +109,8 @@ class Screen:
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
+                if not job.scene.runs:
+                    self.frame[ground_lines(job.scene.camera, width, height)] = GRID_COLOUR
                 marks = {"icons": self.icons, "handles": handles}
                 draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
@@ -114,8 +118,8 @@ class Screen:
             overlay.draw_tab(self.frame, size)
         if self.panel and not self.help:
             overlay.draw_panel(clear, self.panel, size)
-        elif self.tips and self.level and not message and not self.covered:
-            message = TIPS
+        elif self.tips and self.level and not self.covered:
+            message = f"{message}\n{TIPS}" if message else TIPS
         if message and not self.help:  # above the text at the bottom
             words = wrap(translated(message), clear.shape[1], size)
             overlay.draw_lines(clear, -MARGIN - bottom, words, MESSAGE_COLOUR, size)
