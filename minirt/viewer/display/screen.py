@@ -103,6 +103,9 @@ class Screen:
             return False
         self._drawn = contents
         self.image = Image(self.picture_alone(picture))
+        background = state.scene.background
+        if not picture and background and not isinstance(background.paint, str):  # while kernels are compiled
+            self.frame[..., :3] = background.paint[::-1]
         bottom, clear = 0, self.frame[:, : width - self.covered]
         if self.help:
             draw_help(self.frame, self.keymap.layout, self.search, size, self.help)

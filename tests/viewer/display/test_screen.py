@@ -125,6 +125,15 @@ def test_a_scene_without_shapes_shows_the_horizon_and_a_grid_on_the_ground_that_
     assert not (session.screen.frame == GRID_COLOUR).all(axis=2).any()
 
 
+def test_the_colour_of_the_sky_is_there_before_the_first_picture() -> None:
+    harness = SessionHarness()
+    screen = harness.session.screen
+    harness.play(f"resize {WIDTH}x{HEIGHT}")
+    for line, colour in (("", (0, 0, 0)), ("bg 150,190,235\n", (235, 190, 150))):
+        screen.draw(initial_state(scene(f"A 0.2 255,255,255\nC 0,0,9 0,0,-1 70\n{line}")), None)
+        assert tuple(screen.frame[HEIGHT // 2, WIDTH // 2, :3]) == colour
+
+
 # Memory that is given back to the system: once after each resize or reload, and really.
 
 
