@@ -99,13 +99,7 @@ def check_name(path: str | os.PathLike[str]) -> None:
 
 def is_absent(path: str | os.PathLike[str]) -> bool:
     """Whether a path is that of a scene file which is not there, in a folder that is."""
-    try:
-        Path(path).lstat()
-    except FileNotFoundError:
-        return Path(path).suffix == SUFFIX and file_io.is_folder(Path(path).parent)
-    except (OSError, ValueError):  # no file can have this name, or nobody can look at it
-        return False
-    return False
+    return Path(path).suffix == SUFFIX and file_io.is_absent(path)
 
 
 def read(path: str | os.PathLike[str]) -> bytes:

@@ -135,7 +135,7 @@ def find_changes(file: Path) -> FoundChanges | None:
     found = []
     with suppress(OSError, FileError, UnicodeDecodeError):
         text, saved = "", 0.0
-        if not files.is_absent(file):
+        if not file_io.is_absent(file):
             text, saved = file_io.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
         beside = sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt"))
         for path in [*abandoned(file, saved), *beside]:
