@@ -89,7 +89,8 @@ class Element(Record):
 
     def as_kind(self, kind: type[Kind]) -> Kind:
         """An element of another kind with the same fields, such as a further light for a light."""
-        return kind(**vars(self) | {"source": ""})
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return kind(**values | {"source": ""})
 
     def conflict(self) -> tuple[str, str] | None:
         """A field that contradicts the others, by name, and what it must be; None if there is none."""

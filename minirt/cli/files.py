@@ -26,10 +26,11 @@ PLACE = "{name}"  # in an output, stands for the name of the scene's file withou
 def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool = False) -> Reading:
     """Load the scene, with notices about tolerated mistakes. `new`: an empty file is one.
 
-    For a window a file in another dialect, which a strict reader refuses, is read as --lenient does, after its error.
+    For a window a file that is not there is a new scene, and one in another dialect, which a strict reader refuses, is
+    read as --lenient does, after its error.
     """
-    from minirt.scene import Reading, load, parse
-    from minirt.scene.parser import example, load_for_window
+    from minirt.scene import Reading, files, load, parse
+    from minirt.scene.parser import NEW, example, load_for_window
 
     path = options.scene[0]
     words = (options.cone, options.camera_as, options.up and f"{options.up}-up")
@@ -42,7 +43,9 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
             reading = parse(stream_data(path, name), name, options.lenient, Path())
         else:
             try:
-                if for_window:
+                if for_window and not options.fallback and files.is_absent(path):
+                    reading = parse(NEW, path)
+                elif for_window:
                     reading, refused = load_for_window(path, options.lenient, new=new)
                     if refused:
                         tell(f"Error\n{refused}\nThe window shows the scene as --lenient reads it")

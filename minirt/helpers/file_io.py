@@ -203,6 +203,17 @@ def is_folder(path: str | os.PathLike[str]) -> bool:
     return bool((status := found(path)) and stat.S_ISDIR(status.st_mode))
 
 
+def is_absent(path: str | os.PathLike[str]) -> bool:
+    """Whether a folder that is there has no file of a name, which a file may have."""
+    try:
+        Path(path).lstat()
+    except FileNotFoundError:
+        return is_folder(Path(path).parent)
+    except (OSError, ValueError):
+        return False
+    return False
+
+
 def reason(error: OSError | ValueError) -> str:
     """Return the system's reason for a failure; a ValueError is about a path that no file can have."""
     return str(error.strerror).lower() if isinstance(error, OSError) else "no file can have this name"

@@ -163,6 +163,10 @@ class Window(Handle, ABC):
     def move_pointer(self, x: int, y: int) -> None:
         """Move the pointer to x, y from the window's top left corner."""
 
+    def letter_at(self, american: str) -> str:
+        """The letter that a key prints which has another one on American keyboards, '' if the platform tells none."""
+        return ""
+
     def get_clipboard(self) -> str:
         """The text on the clipboard, or an empty string; that of this program alone if the platform has none."""
         return self.display.clipboard

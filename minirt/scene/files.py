@@ -97,6 +97,11 @@ def check_name(path: str | os.PathLike[str]) -> None:
         raise file_error(path, "is a folder" if is_folder else f"the name of a scene file ends in '{SUFFIX}'")
 
 
+def is_absent(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is that of a scene file which is not there, in a folder that is."""
+    return Path(path).suffix == SUFFIX and file_io.is_absent(path)
+
+
 def read(path: str | os.PathLike[str]) -> bytes:
     """Return the bytes of a scene file, or of the scene in a PNG picture; SceneError when it cannot be read."""
     if not is_picture(path):

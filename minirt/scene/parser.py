@@ -23,7 +23,17 @@ from minirt.scene.required import check_required
 from minirt.scene.scene import MISSING, Scene
 from minirt.shapes import Mesh
 
-NEW = b"A 0.2 255,255,255\nC 0,3,9 0,-0.12,-0.992774 70\n"  # of a new scene
+# A new scene: elements like any others, which one may change and delete.
+NEW = b"""A 0.4 255,255,255
+C 0,3,9 0,-0.12,-0.992774 70
+L -6,12,8 0.7 255,255,255
+
+# sky
+bg 150,190,235
+
+# ground
+pl 0,0,0 0,1,0 125,150,110
+"""
 
 
 class Reading(NamedTuple):

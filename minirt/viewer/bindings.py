@@ -61,10 +61,18 @@ def platform_spelling(spelling: str) -> str:
     return "+".join(PLATFORM_NAMES.get(word, word) for word in spelling.split("+")) if len(spelling) > 1 else spelling
 
 
-def resolve_layout(layout: str) -> str:
-    """Replace `auto` by the layout of the user's locale; other layouts stay."""
+def resolve_layout(layout: str, letter_at: Callable[[str], str] = lambda _: "") -> str:
+    """Replace `auto` by the layout of the keyboard, or where nothing tells its letters of the user's locale.
+
+    `letter_at` gives the letter of a key by the one on American keyboards. Other layouts than `auto` stay.
+    """
     if layout != "auto":
         return layout
+    first = letter_at("q")
+    if first == "a":
+        return "azerty"
+    if first:
+        return "qwertz" if letter_at("y") == "z" else "qwerty"
     return "azerty" if locale.getlocale()[0] in AZERTY_LOCALES else "qwerty"
 
 
@@ -198,9 +206,17 @@ def chords_of(binding: Binding, layout: str) -> list[Chord]:
 class Keymap:
     """The table of bindings, indexed by chord."""
 
-    def __init__(self, layout: str = "qwerty") -> None:
-        self.layout = resolve_layout(layout)
-        self._bindings = {each: binding for binding in BINDINGS for each in chords_of(binding, self.layout)}
+    def __init__(self, layout: str = "qwerty", letter_at: Callable[[str], str] = lambda _: "") -> None:
+        self._wanted = layout
+        self.layout = ""
+        self.follow(letter_at)
+
+    def follow(self, letter_at: Callable[[str], str]) -> None:
+        """Take the layout that the keyboard has now, if none was asked for: its user may have switched to another."""
+        layout = resolve_layout(self._wanted, letter_at)
+        if layout != self.layout:
+            self.layout = layout
+            self._bindings = {each: binding for binding in BINDINGS for each in chords_of(binding, layout)}
 
     def find(self, code: int | str, modifiers: Modifier = Modifier.NONE) -> Binding | None:
         """Return the binding of a key, button or typed character with these modifiers, or None."""

@@ -18,10 +18,19 @@ from minirt.materials.pictures import picture
 from minirt.meshes import BY_TRIMESH, load_mesh
 from minirt.scene import Camera, Item, Scene, dump
 from minirt.scene.files import SUFFIX, read
+from minirt.viewer.language import translated
 
 INTERVAL = 0.25  # seconds between two checks of the file
 PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
 MESH_SUFFIXES = {".obj", *BY_TRIMESH}
+
+
+def title_of(path: Path, scene: Scene) -> str:
+    """Return the title of the window; it tells that the file is not there yet, or which shapes could not be read."""
+    new = "" if file_io.found(path) else f" ({translated('new')})"
+    names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
+    count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
+    return f"miniRT - {path.name}{new}" + (f": {count}: {names}" if names else "")
 
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
@@ -182,10 +191,3 @@ def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFil
     """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
     is_mesh = isinstance(file, MeshFile)
     return next(usable_files(scene, is_mesh, file.name if isinstance(file, MeshFile) else file, steps), file)
-
-
-def title_of(path: Path, scene: Scene) -> str:
-    """Return the title of the window; it tells which shapes of the file a lenient reader could not read."""
-    names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
-    count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
-    return f"miniRT - {path.name}" + (f": {count}: {names}" if names else "")

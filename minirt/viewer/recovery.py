@@ -131,10 +131,12 @@ class FoundChanges(NamedTuple):
 
 
 def find_changes(file: Path) -> FoundChanges | None:
-    """Return the last unsaved changes of a scene file that are newer than the file and differ from it."""
+    """Return the last unsaved changes of a scene file that differ from it and are newer, if it is there."""
     found = []
     with suppress(OSError, FileError, UnicodeDecodeError):
-        text, saved = file_io.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
+        text, saved = "", 0.0
+        if not file_io.is_absent(file):
+            text, saved = file_io.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
         beside = sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt"))
         for path in [*abandoned(file, saved), *beside]:
             with suppress(OSError, SceneError, UnicodeDecodeError):

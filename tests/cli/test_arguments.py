@@ -177,6 +177,27 @@ def test_a_scene_that_is_no_file_is_an_error(run: Run, folder: Path, name: str) 
     assert ended.err.startswith(f"Error\n{name}: ")
 
 
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("new.rt", ["--check"]),
+        ("new.rt", ["-o", "x.png"]),
+        ("new.rt", ["--replay", "ball.rt"]),
+        ("new.rt", ["--fallback", "x.png"]),
+        ("none/new.rt", []),
+        ("ball.rt/new.rt", []),
+        ("new.txt", []),
+        ("n" * 300 + ".rt", []),
+    ],
+)
+def test_a_scene_that_is_not_there_is_new_only_in_a_window_and_where_it_can_be_written(
+    run: Run, folder: Path, name: str, options: list[str]
+) -> None:
+    ended = run(name, *options)
+    assert_refused(ended, folder)
+    assert ended.err.split("\n")[1].startswith(f"{name}: ")
+
+
 def test_an_error_names_file_line_and_column_and_shows_the_line(run: Run, folder: Path) -> None:
     (folder / "bad.rt").write_text(SCENE + "sp 0,0,20 -3 10,0,255\nspp 0,0,0 1 1,2,3\n")
     lines = run("bad.rt", "-o", "x.png").err.split("\n")

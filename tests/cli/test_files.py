@@ -18,6 +18,7 @@ from minirt.cli import argument_parser
 from minirt.cli.files import OPENING_PICTURE, choose_example
 from minirt.formats import png
 from minirt.scene import files
+from minirt.scene.parser import NEW
 from tests.cli.program import SCENE, Result, Run, program
 from tests.cli.test_output import pixels
 from tests.paths import SCENES
@@ -319,7 +320,9 @@ def test_an_empty_file_is_a_new_scene_for_the_window_and_an_error_for_a_picture(
     assert run(str(path), "-o", str(tmp_path / "new.png")).status == 1
     keys.write_text("press N\npress Return\npress Ctrl+S\n")
     assert run(str(path), "--replay", str(keys)).status == 0
-    assert [line.split()[0] for line in path.read_text().splitlines()] == ["A", "C", "sp", "L"]
+    *begun, added = minirt.load(path).elements
+    assert begun == [*minirt.loads(NEW).elements]
+    assert isinstance(added, minirt.Sphere)
 
 
 def test_standard_input_that_is_closed_is_an_error(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

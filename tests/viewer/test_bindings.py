@@ -91,6 +91,18 @@ def test_auto_follows_the_locale(monkeypatch):
         assert resolve_layout("qwertz") == "qwertz"
 
 
+@pytest.mark.parametrize("letters", ["aw azerty", "qy qwerty", "qz qwertz", "py qwerty"])
+def test_auto_follows_the_letters_of_the_keyboard_before_the_locale(monkeypatch, letters):
+    monkeypatch.setattr("locale.getlocale", lambda: ("fr_FR", "UTF-8"))
+    (q, y), layout = letters.split()
+    keymap = Keymap("auto")
+    assert keymap.layout == "azerty"
+    keymap.follow({"q": q, "y": y}.__getitem__)
+    assert keymap.layout == layout
+    assert keymap.find(Key.W if layout != "azerty" else Key.Z).action == "forward"
+    assert resolve_layout("qwerty", {"q": "a"}.__getitem__) == "qwerty"
+
+
 @pytest.mark.parametrize("spelling", ["Tabb", "Hyper+A", "Ctrl+?", "", "é"])
 def test_spellings_are_parsed_and_unknown_ones_raise(spelling):
     known = {"Tab": Key.TAB, "a": Key.A, "F12": Key.F12, "PageUp": Key.PAGE_UP, "+": "+", "wheel up": Button.WHEEL_UP}

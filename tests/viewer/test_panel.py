@@ -11,6 +11,7 @@ import re
 import sys
 from math import dist, hypot
 from pathlib import Path
+from shutil import copyfile
 from typing import Any
 
 import pytest
@@ -515,10 +516,10 @@ def undone(state: State) -> State:
 
 
 def built_in(actions: int, name: str, folder: Path) -> Scene:
-    """The scene that a recording builds from an empty file, in so many actions."""
+    """The scene that a recording builds from a blank scene, in so many actions."""
     recording, file = ROOT / f"assets/{name}-panel.txt", folder / f"{name}.rt"
     assert max(map(int, re.findall(r"# (\d+)", recording.read_text()))) == actions
-    file.touch()
+    copyfile(ROOT / "assets/blank.rt", file)
     assert main([str(file), "--replay", str(recording), "--size", "960x540", "-o", str(file.with_suffix(".png"))]) == 0
     return load(file).scene
 

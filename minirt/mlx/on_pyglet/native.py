@@ -110,6 +110,9 @@ class NativeWindow(Window):
         width, height = self.pyglet.get_size()
         self.pyglet.set_mouse_position(x * width // self.width, height - y * height // self.height)
 
+    def letter_at(self, american: str) -> str:
+        return x11.letter_at(self.pyglet, american) if x11.is_x11(self.pyglet) else ""
+
     def get_clipboard(self) -> str:
         return str(self.pyglet.get_clipboard_text())
 

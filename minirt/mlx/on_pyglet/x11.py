@@ -127,6 +127,8 @@ POSITIONS = {first + n: ord(letter) for first, row in ROWS.items() for n, letter
 LETTERS = range(ord("a"), ord("z") + 1)  # a Latin letter is the same number in X11
 PRINTING_KEYS = range(10, 95)  # from 1 to the key beside the left Shift
 GROUPS = 4  # layouts between which the user of a display can switch
+CORE_KEYBOARD = 0x100  # the keyboard that all programs share
+STATE_BYTES = 64  # more than the keyboard's state has, which begins with its group
 
 
 def latin_letter(window: Any, event: Any) -> int | None:
@@ -138,6 +140,15 @@ def latin_letter(window: Any, event: Any) -> int | None:
     letter = next((each for each in others if each in LETTERS), POSITIONS[key])
     is_printed = any(_symbol(window, other, group) == letter for other in PRINTING_KEYS)
     return None if is_printed else letter
+
+
+def letter_at(window: Any, american: str) -> str:
+    """Return the Latin letter that a key prints: in the active layout, or in the first that has one."""
+    state = ctypes.create_string_buffer(STATE_BYTES)
+    xlib._lib.XkbGetState(window._x_display, CORE_KEYBOARD, state)
+    key = next(key for key, letter in POSITIONS.items() if letter == ord(american))
+    symbols = (_symbol(window, key, group) for group in (state.raw[0], *range(GROUPS)))
+    return next((chr(each) for each in symbols if each in LETTERS), "")
 
 
 def _symbol(window: Any, key: int, group: int) -> int:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from minirt.errors import SceneError
+from minirt.errors import SceneError, hint, nearest
 from minirt.helpers import file_io
 from minirt.scene import describe, dump, load, parse
 from minirt.scene.files import MAX_BYTES, SUFFIX, check_name
@@ -105,6 +105,7 @@ def save_scene(session: Session) -> None:
     session.saved, session.lenient = session.state.scene, False
     session.screen.banner = ""
     session.found_changes = None
+    session.mlx.mlx_set_window_title(session.window, title_of(session.path, session.saved))
     kept = f"; what another program had written is in {copy}" if copy else ""
     session.say(f"saved: {session.path}{kept}")
 
@@ -174,6 +175,18 @@ def tell_dialect(session: Session) -> None:
     if session.lenient and files.is_translated(session.saved, session.path):
         before = f"{session.state.message}\n" if session.state.message else ""
         session.say(before + TRANSLATED.format(session.path.name))
+
+
+def tell_new(session: Session) -> None:
+    """Say that the file of a new scene is not there yet, and which file beside it may be meant, if one has a like name.
+
+    An example is no such scene: it was read from a file of its own.
+    """
+    path = session.path
+    if session.saved.file == path and not session.file.known:
+        others = nearest(path.stem, [each.stem for each in path.parent.glob(f"*{SUFFIX}")])
+        meant = hint("".join(f"{each}{SUFFIX}" for each in others))
+        session.say(f"a new scene: {named('Ctrl+S')} writes {path.name}{meant}")
 
 
 def offer_found(session: Session) -> None:

@@ -19,7 +19,7 @@ from minirt.mlx import Image, Mlx
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Scene, size_of
-from minirt.viewer.app.commands import offer_found, tell_dialect
+from minirt.viewer.app.commands import offer_found, tell_dialect, tell_new
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import BackgroundPainter
@@ -66,6 +66,7 @@ def run(
     session.screen.text_scale = text_scale
     session.recovery = Recovery()
     session.wants_panel = panel_was_open()
+    tell_new(session)
     offer_found(session)
     tell_dialect(session)
     session.mlx.mlx_lost_hook(session.display, lose_window, session)

@@ -109,6 +109,7 @@ class EventDispatcher:
             for character in code:
                 self.on_character(character)
             return
+        session.keymap.follow(session.window.letter_at)
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
         if help_takes(session, code, pressed) or self.typing.takes(code) or self.choosing.takes(code, pressed):

@@ -139,10 +139,10 @@ class Mouse:
         return index_of(state.scene, shape) if shape else None, point
 
     def aim(self, at: tuple[int, int] | None = None) -> Aim | None:
-        """Return the place for a new element: at a pixel, or under the pointer, or while that is elsewhere on top of the
-        selected shape.
+        """Return the place for a new element: at a pixel, or under the pointer.
 
-        Where no bounded shape is selected it is in the middle of the picture. None if textures cannot be read.
+        While the pointer is elsewhere it is on top of the selected shape, or in the middle of the picture where no
+        bounded shape is selected. None if textures cannot be read.
         """
         session, element = self.session, self.session.state.element
         (x, y), (width, height) = at or session.window.pointer, session.screen.size

@@ -30,6 +30,7 @@ from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, e
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
+NO_SHAPES = "the scene has no shapes; the grid marks the ground y = 0, and is on no picture"
 WORDS_DELAY = 0.04  # seconds in which words wait for their picture, which drawing them twice would delay
 
 
@@ -69,7 +70,6 @@ class Session:
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
         self.slides = False  # whether a number of the panel is dragged
         self.wants_panel = False  # whether the panel opens with the first picture, as it was open in the last window
-        self.keymap = Keymap(keys)
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
         self.pressed: DragStart | None = None
         self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
@@ -82,7 +82,8 @@ class Session:
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, title_of(path, scene), resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), samples)
-        self.screen = Screen(mlx, self.window, self.keymap.layout)
+        self.keymap = Keymap(keys, self.window.letter_at)
+        self.screen = Screen(mlx, self.window, self.keymap)
         self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
@@ -92,8 +93,7 @@ class Session:
 
     def show(self, state: State) -> None:
         """Make `state` the current one."""
-        if not self.words_wait:
-            self._current_at = self.now
+        self._current_at = self._current_at if self.words_wait else self.now
         self.state = state
         self.screen.tips = self.screen.tips and not contents_differ(state.scene, self.opened)
         self.update()
@@ -149,9 +149,10 @@ class Session:
             from minirt.rendering.notices import notices_about
             from minirt.rendering.queries.unseen import SHOWN_BY
 
-            height, width = latest.pixels.shape[:2]
+            scene, (height, width) = latest.job.scene, latest.pixels.shape[:2]
             before = f"{self.state.message}\n" if self.state.message else ""
-            for notice in islice(notices_about(latest.job.scene, latest.pixels[..., :3], (width, height)), 1):
+            notices = notices_about(scene, latest.pixels[..., :3], (width, height)) if scene.runs else iter([NO_SHAPES])
+            for notice in islice(notices, 1):
                 why, can_be_shown, _ = notice.partition(SHOWN_BY)
                 self.say(before + (f"{why}; {named('F')} brings the scene into view" if can_be_shown else notice))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from enum import IntEnum
 
@@ -11,15 +10,14 @@ from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
 from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
 from minirt.viewer.display.painter import Outcome, Pixels
+from minirt.viewer.display.words import bracketed, short_numbers, title_in_words, values_in_words
 from minirt.viewer.editing.state import Frame, State
-from minirt.viewer.editing.values import Value
 from minirt.viewer.language import GAP, translated
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
 USUAL_WINDOW = 1920, 1080  # pixels: in larger windows text is larger, too
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
-LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
 TAB = "< F1"  # on the tab that opens the panel
 
 
@@ -42,20 +40,24 @@ def text_size(width: int, height: int, scale: float) -> int:
 
 
 def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLevel, rate: float, size: int) -> int:
-    """Draw the selected element as its line in the file, the active keys, and how the picture was rendered.
+    """Draw the selected element in words, the active keys, and how the picture was rendered.
 
-    `rate`: primary rays per second, 0 if unknown. Returns the height in pixels of the text at the bottom.
+    With all information there is the element's line in the file, too. `rate`: primary rays per second, 0 if unknown.
+    Returns the height in pixels of the text at the bottom.
     """
     width = pixels.shape[1]
     keys = hints(state, every=level == HudLevel.ALL)
     if level == HudLevel.LINE:
         rendered = f"{GAP}{status(shown)}" if shown else ""
-        line = fit_width(f"{element_line(state)}{GAP}{translated(keys + rendered)}", width, size)
+        words = f"{fitting_words(state, width - measure(GAP + translated(keys), size)[0], size)}{GAP}"
+        line = fit_width(words + translated(keys + rendered), width, size)
         draw_lines(pixels, MARGIN, line, TEXT_COLOUR, size)
         return 0
     position = f"element {state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
     max_lines = max(2, (pixels.shape[0] // 3 - 4 * PADDING) // measure(" ", size)[1])  # in a third of the window
-    lines = wrap(f"{element_line(state)}\n{translated(f'{keys}{GAP}{position}')}", width, size).split("\n")
+    words = ", ".join((title_in_words(state.element), *values_in_words(state)))
+    keys = translated(f"{keys}{GAP}{position}")
+    lines = wrap(f"{words}\n{element_line(state)}\n{keys}", width, size).split("\n")
     top = lines[: max_lines - 1]
     draw_lines(pixels, MARGIN, "\n".join(top), TEXT_COLOUR, size)
     bottom = wrap(translated("\n".join((*shown.about, status(shown, rate)))), width, size) if shown else ""
@@ -63,6 +65,18 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLeve
     if bottom:
         draw_lines(pixels, -MARGIN, bottom, TEXT_COLOUR, size)
     return measure(bottom, size)[1] + 2 * PADDING if bottom else 0
+
+
+def fitting_words(state: State, width: int, size: int) -> str:
+    """Return the title of the selected element, its active value, and as many others as fit on a line."""
+    first, *others = values_in_words(state)
+    words = f"{title_in_words(state.element)}, {first}"
+    for value in others:
+        longer = f"{words}, {value}"
+        if measure(longer, size)[0] > width - 2 * MARGIN:
+            break
+        words = longer
+    return words
 
 
 def last_lines(text: str, count: int) -> str:
@@ -84,14 +98,6 @@ def element_line(state: State) -> str:
         elif not field.keyed or getattr(element, field.name) != field.default:
             words.append(field_text(field, element))
     return short_numbers(" ".join(words))
-
-
-def bracketed(text: str, part: int | None) -> str:
-    """Put brackets around a field, or around one of its components."""
-    parts = text.split(",")
-    if part is None or part >= len(parts):  # a component at its default is not written
-        return f"[{text}]"
-    return ",".join([*parts[:part], f"[{parts[part]}]", *parts[part + 1 :]])
 
 
 def status(shown: Outcome, rate: float = 0.0) -> str:
@@ -121,35 +127,19 @@ def fit_width(text: str, width: int, size: int) -> str:
     return wrap(text, width, size)
 
 
-def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> None:
-    """Draw text at the left border; `y` is its top, or if negative the distance of its end from the bottom."""
+def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int, left: int = 0) -> None:
+    """Draw text at the left border, or `left` pixels from it; `y` is its top, or if negative the distance of its end
+    from the bottom."""
     top = y if y >= 0 else pixels.shape[0] + y - measure(text, size)[1]
-    draw_text(pixels, MARGIN, top, text, colour, size=size, background=BACKGROUND, padding=PADDING)
+    draw_text(pixels, left + MARGIN, top, text, colour, size=size, background=BACKGROUND, padding=PADDING)
 
 
 def hints(state: State, every: bool) -> str:
-    """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
-    active, title = state.active, state.element.title
-    groups = [f"{title}: + - {active.name} {value_text(state, active)}"]
-    if state.element is state.scene.camera:
-        groups.append("wheel: nearer")
+    """Present meanings of keys, the most useful first: `+ - diameter`. `every`: also what is as usual."""
+    groups = [f"+ - {state.active.name}", "V: next value"]
     if every or state.frame is not Frame.VIEW:
         groups.append(f"X: move {'in the ' if state.frame is Frame.VIEW else 'along the '}{state.frame.value}")
     return GAP.join([*groups, "H: help"])
-
-
-def value_text(state: State, active: Value) -> str:
-    """The active value as the file spells it, numbers to six digits."""
-    text = field_text(active.field, state.element).partition(":")[2] or field_text(active.field, state.element)
-    parts = text.split(",")
-    if active.part is not None and active.part < len(parts):
-        text = parts[active.part]
-    return short_numbers(text)
-
-
-def short_numbers(text: str) -> str:
-    """Shorten numbers in a text to six digits."""
-    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", text)
 
 
 def draw_tab(pixels: Pixels, size: int) -> None:

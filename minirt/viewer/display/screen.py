@@ -17,8 +17,9 @@ import numpy as np
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
-from minirt.viewer.bindings import key_groups
-from minirt.viewer.display import overlay
+from minirt.viewer.bindings import Keymap, key_groups
+from minirt.viewer.display import overlay, tool_row
+from minirt.viewer.display.ground import ground_lines
 from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, wrap
@@ -29,9 +30,10 @@ from minirt.viewer.language import translated
 
 TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow window
 # Shown until the first edit; the keys are the same on all keyboards.
-TIPS = """drag an object to move it, or nothing to look around
-N adds an object where the pointer is
-F1: panel    H: all keys    Ctrl+S: save"""
+TIPS = """drag an object to move it, or nothing to look around    wheel: zoom    right drag: turn around
+right click: add, copy, delete and more
+H: all keys    F1: panel    Ctrl+Z: undo    Ctrl+S: save"""
+GRID_COLOUR = (84, 75, 68, 255)  # BGRA
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
 
@@ -41,10 +43,10 @@ Column = tuple[str, str]  # lines of keys, titles among them, and of their help
 class Screen:
     """The frame of a window, and the settings of what is drawn over the picture."""
 
-    def __init__(self, mlx: Mlx, window: Window, layout: str) -> None:
+    def __init__(self, mlx: Mlx, window: Window, keymap: Keymap) -> None:
         self.mlx = mlx
         self.window = window
-        self.layout = layout  # of the keyboard, for the help
+        self.keymap = keymap  # for the help
         self.level = HudLevel.LINE
         self.help = 0  # its page in the window, counted from 1
         self.search = ""  # the letters that the rows of the help contain
@@ -83,7 +85,7 @@ class Screen:
 
     def turn_help(self, step: int) -> None:
         """Turn the pages of the help; a step of 0 opens or closes it."""
-        count = len(help_pages(self.layout, self.search, *self.size, self.text_size)[1])
+        count = len(help_pages(self.keymap.layout, self.search, *self.size, self.text_size)[1])
         self.help = min(max(self.help + step, 1), count) if step else int(not self.help)
         self.search = self.search if step else ""
 
@@ -102,6 +104,14 @@ class Screen:
         """Whether neither the panel nor the tool row covers the picture at a pixel."""
         return x < self.size[0] and not self.tool_at(x, y)
 
+    def tips_that_fit(self, message: str) -> str:
+        """Return the help for the first minute, or those of its lines for which a third of the window has room below a
+        message."""
+        width, height = self.size
+        tips, above = (wrap(translated(text), width, self.text_size).split("\n") for text in (TIPS, message))
+        room = height // 3 // measure(" ", self.text_size)[1] - len(above)
+        return "\n".join(tips[: max(0, room)])
+
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
@@ -114,31 +124,38 @@ class Screen:
         handles = self.handles and not keys_held
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips
         row = handles, self.handles, self.handle_kind, self.tool
-        contents = described, picture, message, *shown, *row, self.size, self.window.width, scale
+        contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout
         if contents == self._drawn:
             return False
         self._drawn = contents
         self.image = Image(self.beside_panel(self.picture_alone(picture)))
         bottom, clear = 0, self.frame[:, : self.size[0]]
+        background = state.scene.background
+        if not picture and background and not isinstance(background.paint, str):  # while kernels are compiled
+            clear[..., :3] = background.paint[::-1]
         if self.help:
-            draw_help(clear, self.layout, self.search, size, self.help)
+            draw_help(clear, self.keymap.layout, self.search, size, self.help)
         elif self.level:
             if picture and picture.job.size == self.size:  # not an old one, stretched
                 job = picture.job
+                if not job.scene.runs:
+                    clear[ground_lines(job.scene.camera, *self.size)] = GRID_COLOUR
                 marks = {"icons": self.icons, "handles": handles}
                 draw_marks(clear, state, job.scene, scale, moving=job.urgent, kind=self.handle_kind, **marks)
             if self.handles:
-                draw_tools(clear, scale, size, self.tool, self.handle_kind, self.layout)
+                draw_tools(clear, scale, size, self.tool, self.handle_kind, self.keymap.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
         if self.has_tab and not self.help:
             overlay.draw_tab(self.frame, size)
         if self.list_box and not self.help:
             draw_list(clear, self.list_box, size)
-        elif self.tips and self.level and not message and not self.covered:
-            message = TIPS
+        elif self.tips and self.level and not self.covered:
+            message = "\n".join(filter(None, (message, self.tips_that_fit(message))))
         if message and not self.help:  # above the text at the bottom
             words = wrap(translated(message), clear.shape[1], size)
-            overlay.draw_lines(clear, -MARGIN - bottom, words, MESSAGE_COLOUR, size)
+            left = tool_row.reach(*self.size, scale, measure(words, size)[1] + bottom) if self.handles else 0
+            words = wrap(translated(message), clear.shape[1] - left, size)
+            overlay.draw_lines(clear, -MARGIN - bottom, words, MESSAGE_COLOUR, size, left)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 

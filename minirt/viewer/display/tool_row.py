@@ -80,6 +80,12 @@ def layout(width: int, height: int, scale: float) -> tuple[int, int]:
     return (side, (height - side * len(TOOLS)) // 2) if has_room else (0, 0)
 
 
+def reach(width: int, height: int, scale: float, text: int) -> int:
+    """Return how far the row reaches from the left into text of so many pixels at the bottom of a window."""
+    side, top = layout(width, height, scale)
+    return side if top + side * len(TOOLS) > height - text - 3 * PADDING else 0
+
+
 def tool_at(x: int, y: int, width: int, height: int, scale: float) -> Tool | None:
     """Return the tool at a pixel of a window of that size."""
     side, top = layout(width, height, scale)

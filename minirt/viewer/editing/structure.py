@@ -94,10 +94,10 @@ def remove_attribute(state: State, _amount: float, _now: float) -> State:
     """Remove the attribute of the active value from the selected element."""
     active = state.active
     if not active.field.keyed:
-        return state.with_message(f"{active.name} is no attribute that can be removed")
+        return state.with_message(f"{state.element.title} needs its {active.name}")
     after = without_attribute(state, active.field)
     if after.element == state.element:
-        return state.with_message(f"{active.name} is as it is without the attribute")
+        return state.with_message(f"{active.name} has its usual value: there is nothing to remove")
     return after.with_message(f"no {active.field.title} any more")
 
 
@@ -190,5 +190,5 @@ def default_value(field: Field, state: State, length: float) -> Any:
     if usual is None and isinstance(field, Real):
         usual = (field.low + field.high) / 2
     if usual is None:
-        raise LookupError(f"{field.name} has no default value")
+        raise LookupError(f"{field.title} has no default value")
     return usual

@@ -7,9 +7,9 @@ import os
 import pytest
 
 from minirt.errors import RenderError, SceneError
-from minirt.scene import dump, load
+from minirt.scene import dump, load, parse
 from minirt.viewer.app import desktop
-from minirt.viewer.app.commands import offer_found, open_another, save_scene
+from minirt.viewer.app.commands import offer_found, open_another, save_scene, tell_new
 from minirt.viewer.app.desktop import end_recovery, lose_window
 from minirt.viewer.files import WatchedFile, contents_differ, merged
 from minirt.viewer.recovery import Recovery, state_folder
@@ -353,6 +353,34 @@ def test_taken_changes_can_be_undone(path):
     assert dump(harness.session.state.scene) == TEXT
     harness.play("press F5")
     assert "read again" in harness.session.state.message
+    end_recovery(harness.session)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("opning.rt", "a new scene: Ctrl+S writes opning.rt, did you mean 'opening.rt'?"),
+        ("new.rt", "a new scene: Ctrl+S writes new.rt"),
+        ("opening.rt", ""),
+    ],
+)
+def test_a_new_scene_is_said_with_a_file_of_a_like_name_that_may_be_meant(tmp_path, name, message):
+    (tmp_path / "opening.rt").write_text(TEXT)
+    harness = SessionHarness()
+    session = harness.session
+    session.watch_file(tmp_path / name)
+    session.saved = parse(TEXT, session.path).scene
+    tell_new(session)
+    assert session.state.message == message
+
+
+def test_the_changes_of_a_new_scene_are_offered_though_its_file_is_not_there(path):
+    edited = killed_after_an_edit(path)
+    path.unlink()
+    harness = opened(path)
+    assert "unsaved changes of " in harness.session.screen.banner
+    harness.play("press F5")
+    assert dump(harness.session.state.scene) == edited
     end_recovery(harness.session)
 
 

@@ -1,10 +1,11 @@
 """Every key binding on keyboards of several countries, also without Latin letters, in a real window.
 
-python -m tests.viewer.app.test_layouts LAYOUT LOG SCENE...   # logs the actions of keys, one scene after the other
+python -m tests.viewer.app.test_layouts LOG SCENE...   # logs the actions of keys, one scene after the other
 """
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -24,7 +25,7 @@ from tests.windows import SCREEN, Desktop
 
 pytestmark = pytest.mark.window
 
-KEYBOARDS = {  # X11's names, with the option --keys and the key codes of letters that the keyboard does not print
+KEYBOARDS = {  # X11's names, with the layout of the table and the key codes of letters that the keyboard does not print
     "fr": ("azerty", None),
     "de": ("qwertz", None),
     "us dvorak": ("qwerty", None),
@@ -46,7 +47,7 @@ def keyboard(desktop: Desktop, layout: str) -> Iterator[None]:
         desktop.run("setxkbmap", "us")
 
 
-def log_actions(layout: str, log: str, *scenes: str) -> int:
+def log_actions(log: str, *scenes: str) -> int:
     """Show the scenes and log the actions of their keys to a file; return the first exit status that is not 0."""
 
     def logged(perform: Callable[..., None]) -> Callable[..., None]:
@@ -59,9 +60,32 @@ def log_actions(layout: str, log: str, *scenes: str) -> int:
 
     for name in ("perform", "hold"):
         setattr(EventDispatcher, name, logged(getattr(EventDispatcher, name)))
-    options = {"size": SIZE, "keys": layout, "renderer": FakeRenderer()}
+    options = {"size": SIZE, "keys": "auto", "renderer": FakeRenderer()}
     statuses = (run(load(scene).scene, path=scene, **options) for scene in scenes)
     return next((status for status in statuses if status), 0)
+
+
+@contextmanager
+def logging(desktop: Desktop, log: Path, *scenes: Path) -> Iterator[subprocess.Popen[str]]:
+    """Run `log_actions`. The user's language tells nothing of the keyboard, and no other window had a panel."""
+    log.write_text("")
+    for scene in scenes:
+        scene.write_text(TEXT)
+    command = [sys.executable, "-W", "error", "-m", "tests.viewer.app.test_layouts", str(log), *map(str, scenes)]
+    with desktop.program("env", f"XDG_STATE_HOME={log.parent}", "LC_ALL=C", *command) as process:
+        yield process
+
+
+def test_the_keys_follow_the_layout_that_is_chosen_while_the_window_is_open(desktop: Desktop, tmp_path: Path) -> None:
+    log, scene = tmp_path / "log", tmp_path / "scene.rt"
+    actions: list[str] = []
+    with keyboard(desktop, "us"), logging(desktop, log, scene):
+        window = desktop.find(f"miniRT - {scene.name}")
+        for layout, key in (("us", "w"), ("fr", "z"), ("de", "w"), ("fr", "z")):
+            desktop.run("setxkbmap", layout)
+            do(desktop, window, f"press {key}")
+            actions.append("forward")
+            until(lambda: log.read_text().split("\n")[:-1] == actions, f"the action of {key} on {layout}")
 
 
 @pytest.mark.parametrize("layout", KEYBOARDS)
@@ -73,13 +97,8 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout:
     full_screen, quits = ([(key, action) for key, action in table if action == last] for last in LAST)
     assert len(full_screen) == 2
     scenes = [tmp_path / f"scene-{number}.rt" for number in range(len(quits))]  # one for each key that quits
-    for scene in scenes:
-        scene.write_text(TEXT)
     log = tmp_path / "log"
-    log.write_text("")
-    command = [sys.executable, "-W", "error", "-m", "tests.viewer.app.test_layouts", keys, str(log), *map(str, scenes)]
-    state = f"XDG_STATE_HOME={tmp_path}"  # no other program finds an open panel there
-    with keyboard(desktop, layout), desktop.program("env", state, *command) as process:
+    with keyboard(desktop, layout), logging(desktop, log, *scenes) as process:
 
         def press(scene: Path, size: tuple[int, int], *keys: str) -> None:
             """Press keys in a window until each of them has led to an action, or the program has ended."""

@@ -16,7 +16,8 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.scene import Scene
+from minirt.scene import Scene, parse
+from minirt.scene.parser import NEW
 from tests.processes import until_stopped
 from tests.viewer.fake import WITH_CYLINDER
 from tests.viewer.idle_waits import until_at_rest
@@ -241,6 +242,27 @@ def test_keys_edit_and_save_the_scene(viewer):
     viewer.shows(picture(viewer.path))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
+
+
+def test_a_file_that_is_not_there_opens_as_a_new_scene_and_is_written_by_a_key(desktop, tmp_path):
+    path = tmp_path / "opning.rt"
+    (tmp_path / "opening.rt").write_text(WITH_CYLINDER)
+    with viewing(desktop, path, text=None, title=" (new)") as viewer:
+        viewer.key("i", "i", "Tab")
+        viewer.shows(still(parse(NEW, path).scene))
+        sky, ground = desktop.screenshot(viewer.window)[[0, -1], 160]
+        assert sky[2] > sky[0] > 0
+        assert ground[1] > ground[2] > 0
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
+    assert not path.exists()
+    with viewing(desktop, path, text=None, title=" (new)") as viewer:
+        viewer.key("ctrl+s")
+        assert desktop.find("miniRT - opning.rt") == viewer.window
+        assert path.read_bytes() == NEW
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
+    assert len(list(tmp_path.iterdir())) == 2
 
 
 def test_a_scene_in_a_dialect_opens_says_what_is_missing_and_is_saved_after_a_question(desktop, tmp_path):

@@ -106,7 +106,7 @@ def test_the_window_has_the_requested_size_or_that_of_the_scene(tmp_path, reques
     memory.do(lambda: seen.append((memory.windows[0].width, memory.windows[0].height, memory.windows[0].title)))
     memory.tap(Key.ESCAPE)
     run(scene(text), path=tmp_path / "a b.rt", size=requested, renderer=FakeRenderer(), mlx=Mlx(memory))
-    assert seen == [(*expected, "miniRT - a b.rt")]
+    assert seen == [(*expected, "miniRT - a b.rt (new)")]
 
 
 def test_escape_ends_the_program_inside_the_compiler():

@@ -218,7 +218,7 @@ def harness() -> SessionHarness:
 
 def expected_frame(session: Session, state: State) -> np.ndarray:
     """Return the frame with the words of `state` over the picture that the session has."""
-    screen = Screen(session.mlx, session.window, session.screen.layout)
+    screen = Screen(session.mlx, session.window, session.keymap)
     screen.level, screen.list_box = session.screen.level, session.screen.list_box
     screen.draw(state, session.refinement.latest, session.refinement.resolution.rate)
     return screen.frame

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import minirt
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
 from minirt.viewer.display.overlay import (
@@ -20,6 +21,7 @@ from minirt.viewer.display.overlay import (
     draw_lines,
     element_line,
     fit_width,
+    fitting_words,
     last_lines,
     overlay_scale,
     status,
@@ -28,8 +30,10 @@ from minirt.viewer.display.overlay import (
 )
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.screen import Column, draw_help, help_pages, width_of
+from minirt.viewer.display.words import colour_word
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
+from tests.paths import ROOT
 from tests.viewer.fake import TEXT, scene
 from tests.viewer.session_harness import SessionHarness
 
@@ -62,6 +66,56 @@ def test_the_line_of_the_selected_element_marks_the_active_value(actions, text):
     for action in actions:
         state = apply(state, action)
     assert element_line(state) == text
+
+
+@pytest.mark.parametrize(
+    ("actions", "text"),
+    [
+        ([], "camera, fov [90], position 0,0,10, direction 0,0,-1"),
+        (["next value"], "camera, roll [0], fov 90, position 0,0,10, direction 0,0,-1"),
+        (["select previous", "shrink"], "white ambient light, brightness [0.15], colour 255,255,255"),
+        (["select next"], "white light, brightness [0.5], position 5,5,5, colour 255,255,255"),
+        (["select next"] * 2, "red sphere, diameter [2], centre 0,0,0, colour 255,0,0"),
+        (["select next"] * 2 + ["next value"] * 2, "red sphere, colour [255],0,0, diameter 2, centre 0,0,0"),
+        (["select next"] * 4, "blue cylinder, diameter [1], height 4, centre 3,0,0, colour 0,0,255, axis 0,1,0"),
+        (
+            ["select next", *["next value"] * 3],
+            "black sphere, specular 0.5,[20], diameter 2, centre 0,0,0, colour 9,9,9",
+        ),
+    ],
+)
+def test_words_say_what_is_selected_and_its_active_value_first(actions, text):
+    state = initial_state(scene(SHINY if "specular" in text else TEXT))
+    for action in actions:
+        state = apply(state, action)
+    assert fitting_words(state, 10_000, 16) == text
+    title, first, *_ = text.split(", ")
+    assert fitting_words(state, 100, 16) == f"{title}, {first}"
+
+
+def test_words_are_translated_and_the_colour_follows_in_french(monkeypatch):
+    monkeypatch.setenv("LANGUAGE", "fr")
+    state = apply(apply(initial_state(scene()), "select next"), "select next")
+    assert fitting_words(state, 10_000, 16) == "sphère (rouge), diamètre [2], centre 0,0,0, couleur 255,0,0"
+
+
+@pytest.mark.parametrize("language", ["en", "fr"])
+@pytest.mark.parametrize("name", ["demo", "gallery-table", "material-patterns"])
+def test_all_words_are_one_line_of_a_usual_window(monkeypatch, language, name):
+    monkeypatch.setenv("LANGUAGE", language)
+    state = initial_state(minirt.load(ROOT / f"scenes/{name}.rt"))
+    for index in range(len(state.scene.elements)):
+        pixels = blank(1280, 720)
+        draw_hud(pixels, state.select(index), Outcome(Job(state.scene, 1280, 720)), HudLevel.LINE, 0.0, 16)
+        changed = (pixels != 255).any(axis=(1, 2))
+        assert changed[:20].any()
+        assert not changed[40:].any()
+
+
+def test_colours_have_the_words_of_their_nearest_ones():
+    colours = [(255, 0, 0), (128, 0, 0), (38, 54, 92), (255, 128, 0), (240, 240, 240), (0, 255, 0), (255, 192, 203)]
+    words = ["red", "dark red", "dark blue", "orange", "white", "green", "pink"]
+    assert [colour_word(each) for each in colours] == words
 
 
 def test_brackets_are_around_one_component_or_the_whole_value():

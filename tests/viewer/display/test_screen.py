@@ -13,8 +13,10 @@ from minirt.mlx.text import measure
 from minirt.viewer.app import session
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, text_size
 from minirt.viewer.display.painter import Pixels
+from minirt.viewer.display.screen import GRID_COLOUR
+from minirt.viewer.editing.state import initial_state
 from tests.processes import run
-from tests.viewer.fake import played
+from tests.viewer.fake import played, scene
 from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 640, 480
@@ -80,23 +82,56 @@ def test_no_message_covers_the_help() -> None:
 
 
 def test_tips_are_shown_until_the_first_edit() -> None:
-    """Looking around and selecting is no edit."""
+    """Looking around and selecting is no edit, and a message stands above them."""
     harness = SessionHarness()
     screen = harness.session.screen
     screen.tips = True
     harness.play("resize 500x333", "press C", "press d", "press Tab", "press Tab")
     harness.finish(0.001)
     assert screen.tips
-    frames = []
-    for screen.tips in (True, False):
-        screen.draw(harness.session.state.with_message(""), harness.session.refinement.latest)
-        frames.append(screen.frame.copy())
-    rows, _ = np.nonzero((frames[0] != frames[1]).any(axis=2))
-    assert rows.min() > 240
-    assert rows.max() > 315
+    tops = []
+    for message in ("", TEXT):
+        frames = []
+        for screen.tips in (True, False):
+            screen.draw(harness.session.state.with_message(message), harness.session.refinement.latest)
+            frames.append(screen.frame.copy())
+        rows, _ = np.nonzero((frames[0] != frames[1]).any(axis=2))
+        assert rows.max() > 315
+        tops.append(rows.min())
+    assert 200 < tops[1] < tops[0]
     screen.tips = True
     harness.play("press d")
     assert not screen.tips
+
+
+@pytest.mark.parametrize("height", [0.0, 3.0, -3.0])
+def test_a_scene_without_shapes_shows_the_horizon_and_a_grid_on_the_ground_that_no_picture_has(height: float) -> None:
+    """The camera looks along -z: the horizon is in the middle, the ground below it or, from below, above it."""
+    harness = SessionHarness()
+    session = harness.session
+    harness.play(f"resize {WIDTH}x{HEIGHT}")
+    session.show(initial_state(scene(f"A 0.2 255,255,255\nC 0,{height},9 0,0,-1 70\n")))
+    while harness.painter.busy:
+        harness.finish(0.001)
+    session.screen.level = HudLevel.LINE
+    session.draw()
+    assert (session.picture == session.picture[0, 0]).all()
+    is_grid = (session.screen.frame == GRID_COLOUR).all(axis=2)[60:-60]  # without words
+    rows = np.flatnonzero(is_grid.any(axis=1)) + 60
+    assert is_grid[HEIGHT // 2 - 60].all()
+    assert set(np.sign(rows // 2 - HEIGHT // 4)) - {0} == ({np.sign(height)} - {0})
+    harness.play("press N")
+    harness.finish(0.001)
+    assert not (session.screen.frame == GRID_COLOUR).all(axis=2).any()
+
+
+def test_the_colour_of_the_sky_is_there_before_the_first_picture() -> None:
+    harness = SessionHarness()
+    screen = harness.session.screen
+    harness.play(f"resize {WIDTH}x{HEIGHT}")
+    for line, colour in (("", (0, 0, 0)), ("bg 150,190,235\n", (235, 190, 150))):
+        screen.draw(initial_state(scene(f"A 0.2 255,255,255\nC 0,0,9 0,0,-1 70\n{line}")), None)
+        assert tuple(screen.frame[HEIGHT // 2, WIDTH // 2, :3]) == colour
 
 
 # Memory that is given back to the system: once after each resize or reload, and really.

@@ -5,6 +5,7 @@ The tests take all kinds from the registry and all fields from their tables, so 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from PIL import Image
 
 from minirt.element import Element, fields_of
+from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Length, Lengths, MeshFile, Picture, Point, Whole, unit
 from minirt.materials import Compound, Mirror
 from minirt.rendering.packing.camera import camera_frame
@@ -22,10 +24,11 @@ from minirt.scene import Background, Camera, Resolution, Scene, dump, load, pars
 from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Box, Ellipsoid, Mesh, Shape, Sphere, Square
-from minirt.viewer.editing.editor import apply
+from minirt.viewer.display.overlay import fitting_words, hints
+from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.editing.projection import field_names, position_of, projection_of
 from minirt.viewer.editing.state import State, index_of, initial_state
-from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, addable_kinds, choices
+from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, addable_kinds, choices, with_attribute
 from minirt.viewer.editing.typed import set_typed
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
@@ -79,6 +82,49 @@ def test_all_kinds_and_attributes_are_covered() -> None:
     assert len(EDITABLE) > 15
     assert {name for _, name in KEYED} >= {"specular", "mirror", "glass", "checker", "texture", "bump", "normal_map"}
     assert {name for _, name in KEYED} >= {"marble", "wood", "clouds"}
+
+
+def messages(state: State) -> Iterator[str]:
+    """Yield what the window says of the selected element after each action, and each typed value."""
+    for action in EDITS:
+        yield apply(state, action).message
+    for index, value in enumerate(values(state.element)):
+        active = replace(state, value_index=index)
+        yield from (hints(active, every=True), fitting_words(active, 10_000, 16))
+        yield from (apply(active, action, 1e9).message for action in ("grow", "shrink", "remove attribute"))
+        yield from (
+            set_typed(active, value, text, 0.0).message for text in ("-3", "0", "1e99", "1,2", "1,2,3", "*", "/0")
+        )
+
+
+@pytest.mark.parametrize("with_files", [True, False])
+@pytest.mark.parametrize("kind", EDITABLE)
+def test_messages_are_words_without_underscores_and_none_twice(
+    kind: type[Element], path: Path, with_files: bool
+) -> None:
+    state = holding(kind, path)
+    if not with_files:
+        for picture in path.parent.rglob("*.png"):
+            picture.unlink()
+    said = [*messages(state)]
+    for field in fields_of(kind):
+        if getattr(state.element, field.name) is None:
+            try:
+                added = with_attribute(state, field)
+                said += [added.message, *messages(added)]
+            except (LookupError, ElementError) as error:
+                said.append(str(error))
+    assert len(set(said)) > 20
+    doubled = re.compile(r"\b([a-z]{2,})[ :]+\1\b", re.IGNORECASE)
+    assert [each for each in said if "_" in each or doubled.search(each)] == []
+
+
+@pytest.mark.parametrize("kind", [kind for kind in ELEMENTS.values() if issubclass(kind, Shape)])
+def test_a_shape_is_copied_also_after_its_bounds_were_asked_for(kind: type[Element], path: Path) -> None:
+    state = holding(kind, path)
+    assert isinstance(state.element, Shape)
+    state.element.bounds()
+    assert apply(state, "duplicate").element == state.element
 
 
 @pytest.mark.parametrize("kind", ADDED[:-1], ids=lambda kind: kind.code)
@@ -246,7 +292,7 @@ def test_an_attribute_is_removed_from_an_element_that_has_it() -> None:
     both = next(choices(shiny, ATTRIBUTE))
     assert (both.element.specular, both.element.mirror) == (shiny.element.specular, Mirror(0.3))
     assert shiny.element.specular.share == pytest.approx(0.55)
-    assert "no attribute" in apply(shiny.select(0), "remove attribute").message
+    assert apply(shiny.select(0), "remove attribute").message == "ambient light needs its brightness"
     assert apply(both, "remove attribute").element == shiny.element
 
 

@@ -1,0 +1,87 @@
+"""Words for an element: "red sphere", and "diameter [1.6]" with the active value in brackets."""
+
+from __future__ import annotations
+
+import re
+
+from minirt.element import Element, fields_of
+from minirt.fields import Colour, Direction, Field, Point, Triple
+from minirt.scene.writer import field_text
+from minirt.viewer.editing.state import State
+from minirt.viewer.language import translated
+
+LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
+LAST = (Point, Colour, Direction)  # sorts of fields that are said after all others, in this order
+COLOURS: dict[str, Triple] = {
+    "black": (0, 0, 0),
+    "dark grey": (70, 70, 70),
+    "grey": (130, 130, 130),
+    "light grey": (195, 195, 195),
+    "white": (255, 255, 255),
+    "dark red": (120, 10, 10),
+    "red": (230, 30, 30),
+    "pink": (255, 160, 190),
+    "beige": (240, 220, 180),
+    "brown": (130, 75, 30),
+    "orange": (255, 140, 0),
+    "yellow": (255, 235, 40),
+    "dark green": (10, 90, 20),
+    "green": (40, 180, 50),
+    "light green": (150, 230, 140),
+    "turquoise": (50, 195, 190),
+    "light blue": (150, 195, 255),
+    "blue": (30, 80, 210),
+    "dark blue": (25, 40, 110),
+    "purple": (140, 40, 190),
+}
+
+
+def colour_word(colour: Triple) -> str:
+    """Return the word whose colour is nearest."""
+    return min(COLOURS, key=lambda word: sum((a - b) ** 2 for a, b in zip(COLOURS[word], colour, strict=True)))
+
+
+def title_in_words(element: Element) -> str:
+    """Return what an element is called, with its first colour if it has one: "red sphere"."""
+    title = translated(element.title)
+    values = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
+    if not values or isinstance(values[0], str):  # the file of a picture
+        return title
+    return translated("{colour} {element}").format(colour=translated(colour_word(values[0])), element=title)
+
+
+def values_in_words(state: State) -> list[str]:
+    """Return the values of the selected element with their titles, the active one first, those at their default not."""
+    element, active = state.element, state.active
+    fields = [
+        field
+        for field in fields_of(type(element))
+        if field == active.field or not field.keyed or getattr(element, field.name) != field.default
+    ]
+    fields.sort(key=lambda field: (field != active.field, order(field)))
+    return [value_in_words(state, field) for field in fields]
+
+
+def order(field: Field) -> int:
+    """Return where the sort of a field stands among those of an element: sizes first, directions last."""
+    return next((place for place, sort in enumerate(LAST, 1) if isinstance(field, sort)), 0)
+
+
+def value_in_words(state: State, field: Field) -> str:
+    """Return the title and the value of a field as the file spells it, numbers to six digits."""
+    text, active = field_text(field, state.element).removeprefix(field.prefix), state.active
+    text = bracketed(text, active.part) if field == active.field else text
+    return f"{translated(field.title)} {short_numbers(text)}"
+
+
+def bracketed(text: str, part: int | None) -> str:
+    """Put brackets around a field, or around one of its components."""
+    parts = text.split(",")
+    if part is None or part >= len(parts):  # a component at its default is not written
+        return f"[{text}]"
+    return ",".join([*parts[:part], f"[{parts[part]}]", *parts[part + 1 :]])
+
+
+def short_numbers(text: str) -> str:
+    """Shorten numbers in a text to six digits."""
+    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", text)
