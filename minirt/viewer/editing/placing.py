@@ -25,7 +25,6 @@ DOWN = (0.0, -1.0, 0.0)
 GRID_REACH = 3.0  # cells of the grid between a point of a surface and the next one on the grid
 AHEAD = 0.55  # of the picture's height: where an element goes while there is no pointer
 PICTURE = 640, 360  # pixels of a usual window, where none is known
-BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
 SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
 TOP = 0.7  # cosine of the slope, of 45 degrees, up to which a surface is the top of its shape
 TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a new element on its top, or elsewhere
@@ -39,9 +38,9 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     ray, height = view.ray(x, y), view.eye[1]
     to_ground = -height / ray[1] if height * ray[1] < 0 else inf
     normal: Triple | None = None
-    if shape and point and dist(view.eye, point) <= BACKGROUND * size:
+    if shape and point and dist(view.eye, point) <= projection.BACKGROUND * size:
         normal = surface_normal(shape, point, ray)
-    elif shape or to_ground > BACKGROUND * size:
+    elif shape or to_ground > projection.BACKGROUND * size:
         shape, point = None, linear_combination(1.0, view.eye, size, ray)
     else:
         x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
@@ -152,18 +151,42 @@ def lift_of(shape: Shape, normal: Triple) -> float:
     return FLAT_LIFT * middle_of(shape)[1] if flat else 0.0
 
 
-def keep_standing(state: State, changed: Element) -> Element:
-    """The changed selected element; one that still is where it was added stands there again, unless it is moved."""
-    old, aim = state.element, state.aim
-    if aim is None or not isinstance(old, Shape) or not isinstance(changed, Shape):
+def keep_standing(state: State, old: Element, changed: Element) -> Element:
+    """The changed selected element, which was `old`: unless it is moved or turned, it stands where it stood.
+
+    One that still is where it was added stands there again; any other one stays on the end of its axis that is lower.
+    """
+    if not isinstance(old, Shape) or not isinstance(changed, Shape) or old.bounds() is None:
         return changed
-    scene, stride = state.scene.edit(state.selected), state.stride
-    there = settled(old, aim, scene, stride)
     points = {name: getattr(old, name) for name in field_names(type(old), Point)}
-    near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
     names = *points, *field_names(type(old), Direction)
-    stays = all(getattr(old, name) == getattr(changed, name) for name in names)
-    return settled(changed, aim, scene, stride) if near and stays and there.replace(**points) == old else changed
+    if any(getattr(old, name) != getattr(changed, name) for name in names):
+        return changed
+    if state.aim:
+        scene, stride = state.scene.edit(state.selected), state.stride
+        there = settled(old, state.aim, scene, stride)
+        near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
+        if near and there.replace(**points) == old:
+            return settled(changed, state.aim, scene, stride)
+    return on_its_foot(old, changed)
+
+
+def on_its_foot(old: Shape, changed: Shape) -> Shape:
+    """The changed shape, moved along its axis so that its lower end stays, if its position is not in its middle.
+
+    A level one keeps the end on which a new one of its kind stands.
+    """
+    field = direction_of(old)
+    if field is None:
+        return changed
+    axis: Triple = getattr(old, field.name)
+    leading = axis if abs(axis[1]) > LEVEL else field.initial or field.instead
+    sign = copysign(1.0, leading[1])
+    before, after = (each.replace(**{field.name: (0.0, sign, 0.0)}) for each in (old, changed))
+    position, ((_, middle, _), radius) = position_of(before), middle_of(before)
+    if position is None or abs(middle - position[1]) < SAME * radius:
+        return changed
+    return shifted(changed, axis, sign * (lowest_along(before, UP) - lowest_along(after, UP)))
 
 
 def lowest_along(shape: Shape, direction: Triple) -> float:

@@ -236,7 +236,7 @@ class Rows:
 
         def edit(state: State) -> State:
             changed = start.replace(**{value.field.name: field()})
-            return state.edit_element(keep_standing(state, changed), *SLIDE)
+            return state.edit_element(keep_standing(state, start, changed), *SLIDE)
 
         self.apply(edit, value.name)
 
