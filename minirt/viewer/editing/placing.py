@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import copysign, dist, hypot, inf, isfinite
 
 from minirt.element import Element, fields_of
@@ -154,7 +155,8 @@ def lift_of(shape: Shape, normal: Triple) -> float:
 def keep_standing(state: State, old: Element, changed: Element) -> Element:
     """The changed selected element, which was `old`: unless it is moved or turned, it stands where it stood.
 
-    One that still is where it was added stands there again; any other one stays on the end of its axis that is lower.
+    One that still is where it was added stands there again. Any other one that stands on something, and whose position
+    is not in its middle, keeps its lower end: a cone grows upwards.
     """
     if not isinstance(old, Shape) or not isinstance(changed, Shape) or old.bounds() is None:
         return changed
@@ -162,31 +164,43 @@ def keep_standing(state: State, old: Element, changed: Element) -> Element:
     names = *points, *field_names(type(old), Direction)
     if any(getattr(old, name) != getattr(changed, name) for name in names):
         return changed
+    stride = state.stride
     if state.aim:
-        scene, stride = state.scene.edit(state.selected), state.stride
+        scene = state.scene.edit(state.selected)
         there = settled(old, state.aim, scene, stride)
         near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
         if near and there.replace(**points) == old:
             return settled(changed, state.aim, scene, stride)
-    return on_its_foot(old, changed)
+    way, growth = growth_below(old, changed)
+    if not growth or abs(gap_below(old, state.scene.edit(state.selected).shapes)) > SAME * stride:
+        return changed
+    return shifted(changed, way, growth)
 
 
-def on_its_foot(old: Shape, changed: Shape) -> Shape:
-    """The changed shape, moved along its axis so that its lower end stays, if its position is not in its middle.
+def growth_below(old: Shape, changed: Shape) -> tuple[Triple, float]:
+    """The axis of a shape, upwards, and by how much its lower end has moved down along it.
 
-    A level one keeps the end on which a new one of its kind stands.
+    0 for one that lies on its side or has its position in its middle.
     """
-    field = direction_of(old)
-    if field is None:
-        return changed
-    axis: Triple = getattr(old, field.name)
-    leading = axis if abs(axis[1]) > LEVEL else field.initial or field.instead
-    sign = copysign(1.0, leading[1])
+    field, position = direction_of(old), position_of(old)
+    axis: Triple = getattr(old, field.name) if field else UP
+    if field is None or position is None or abs(axis[1]) < LEVEL:
+        return axis, 0.0
+    sign = copysign(1.0, axis[1])
     before, after = (each.replace(**{field.name: (0.0, sign, 0.0)}) for each in (old, changed))
-    position, ((_, middle, _), radius) = position_of(before), middle_of(before)
-    if position is None or abs(middle - position[1]) < SAME * radius:
-        return changed
-    return shifted(changed, axis, sign * (lowest_along(before, UP) - lowest_along(after, UP)))
+    (_, middle, _), radius = middle_of(before)
+    off_middle = abs(middle - position[1]) > SAME * radius
+    growth = lowest_along(before, UP) - lowest_along(after, UP) if off_middle else 0.0
+    return linear_combination(sign, axis, 0.0, axis), growth
+
+
+def gap_below(shape: Shape, others: Sequence[Shape]) -> float:
+    """How far a bounded shape can fall onto others, or onto the ground y = 0."""
+    gap, support = clearance(shape, others)
+    box = shape.bounds()
+    assert box
+    on_ground = support is None and box[1][1] > 0
+    return box[0][1] if on_ground else gap
 
 
 def lowest_along(shape: Shape, direction: Triple) -> float:
@@ -215,9 +229,7 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
     else:
         x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
     there = shifted(shape, (x_to - x, rise, z_to - z))
-    gap, support = clearance(there, others)
-    if support is None and box[1][1] + rise > 0:
-        gap = box[0][1] + rise
+    gap = gap_below(there, others)
     return shifted(there, DOWN, gap) if isfinite(gap) else None
 
 

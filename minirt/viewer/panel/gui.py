@@ -141,6 +141,14 @@ class Gui:
             self.settle()
         return taken
 
+    def select_all(self) -> None:
+        """Select all of the text that is edited, not only a word: let the button go, and press Ctrl+A."""
+        self.io.add_mouse_button_event(BUTTONS[Button.LEFT], False)
+        for down in (True, False):
+            self.io.add_key_event(MODIFIERS[Modifier.ACCEL], down)
+            self.io.add_key_event(imgui.Key.KEY_A, down)
+        self.unsettled = SETTLING
+
     def settle(self) -> None:
         """Make the frames that follow an event."""
         imgui.set_current_context(self._context)
