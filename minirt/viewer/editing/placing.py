@@ -16,7 +16,7 @@ from minirt.viewer.editing import projection
 from minirt.viewer.editing.motion import frame_of, shifted
 from minirt.viewer.editing.projection import STEP_SHARE, UP, Aim, Projection, dot, field_names, position_of, subtract
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import nice_number, round_point
+from minirt.viewer.editing.values import nice_number, round_changes, round_point
 
 LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes without an axis still come to rest
 POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a standing shape are rounded
@@ -171,6 +171,7 @@ def keep_standing(state: State, old: Element, changed: Element) -> Element:
         near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
         if near and there.replace(**points) == old:
             return settled(changed, state.aim, scene, stride)
+    changed = round_changes(old, changed, stride)  # so that the end does not drift by what is rounded later
     way, growth = growth_below(old, changed)
     if not growth or abs(gap_below(old, state.scene.edit(state.selected).shapes)) > SAME * stride:
         return changed
