@@ -12,7 +12,7 @@ from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Scene
 from minirt.scene.elements import TONES, Camera, linear_combination
 from minirt.shapes.shape import Oriented
-from minirt.viewer.editing.projection import BACKGROUND, dot, extent, field_names, scene_centre, subtract
+from minirt.viewer.editing.projection import dot, extent, field_names, scene_centre, subtract
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import NOISE, neat_direction, round_length, shows_roll
 
@@ -28,6 +28,7 @@ USUAL_SIZE = 16, 9  # of a window, in any unit
 ASPECT = USUAL_SIZE[1] / USUAL_SIZE[0]
 APPROACH = 1 / 10  # of the distance to what is under the pointer: a step of the wheel
 APPROACHING = "approach"  # kind of the changes by the wheel
+FARTHEST_SEEN = 2.0  # times the distance to the scene: the camera neither orbits nor nears what is farther away
 NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
 POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
 
@@ -199,7 +200,7 @@ def look_at(state: State, _amount: float, now: float) -> State:
 def in_reach(state: State, point: Triple | None) -> Triple | None:
     """A point of a surface, unless it is far in the background: on a sky, or on the ground near the horizon."""
     eye = state.scene.camera.position
-    reach = BACKGROUND * max(state.size, dist(eye, scene_centre(state.scene)))
+    reach = FARTHEST_SEEN * max(state.size, dist(eye, scene_centre(state.scene)))
     return point if point and dist(eye, point) <= reach else None
 
 

@@ -26,6 +26,7 @@ DOWN = (0.0, -1.0, 0.0)
 GRID_REACH = 3.0  # cells of the grid between a point of a surface and the next one on the grid
 AHEAD = 0.55  # of the picture's height: where an element goes while there is no pointer
 PICTURE = 640, 360  # pixels of a usual window, where none is known
+BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
 SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
 TOP = 0.7  # cosine of the slope, of 45 degrees, up to which a surface is the top of its shape
 TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a new element on its top, or elsewhere
@@ -39,9 +40,9 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     ray, height = view.ray(x, y), view.eye[1]
     to_ground = -height / ray[1] if height * ray[1] < 0 else inf
     normal: Triple | None = None
-    if shape and point and dist(view.eye, point) <= projection.BACKGROUND * size:
+    if shape and point and dist(view.eye, point) <= BACKGROUND * size:
         normal = surface_normal(shape, point, ray)
-    elif shape or to_ground > projection.BACKGROUND * size:
+    elif shape or to_ground > BACKGROUND * size:
         shape, point = None, linear_combination(1.0, view.eye, size, ray)
     else:
         x, _, z = linear_combination(1.0, view.eye, to_ground, ray)

@@ -23,7 +23,6 @@ UP: Triple = (0.0, 1.0, 0.0)
 FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
 UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
 SAMPLE_SIZE = 4096  # elements, evenly spaced in the file; their median is within some per cent of that of a million
-BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
 STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
 
 
