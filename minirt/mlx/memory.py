@@ -117,9 +117,9 @@ class Memory(Display):
     def motion(self, x: int, y: int) -> None:
         self.do(lambda: self.window.on_motion(x, y))
 
-    def scroll(self, up: int, x: int, y: int) -> None:
-        """Turn the wheel by a number of steps; negative steps go down."""
-        self.do(lambda: self.window.on_scroll(0, up, x, y))
+    def scroll(self, up: int, *place: int) -> None:
+        """Turn the wheel by a number of steps, at a place x, y or where the pointer is; negative steps go down."""
+        self.do(lambda: self.window.on_scroll(0, up, *(place or self.window.pointer)))
 
     def drop(self, *files: str) -> None:
         self.do(lambda: self.window.on_drop(files))

@@ -189,7 +189,7 @@ COMMANDS: dict[str, tuple[str, Callable[..., None]]] = {  # by their first words
         ("click x,y [left|middle|right]", click),
         ("drag x,y x,y [left|middle|right]", drag),
         ("move x,y", lambda user, place: user.motion(*place)),
-        ("wheel up|down [count] [x,y]", lambda user, up, count=1, place=(0, 0): user.scroll(up * count, *place)),
+        ("wheel up|down [count] [x,y]", lambda user, up, count=1, place=(): user.scroll(up * count, *place)),
         ("drop FILE", lambda user, file: user.drop(file)),
         ("resize WxH", lambda user, size: user.resize(*size)),
         ("hide", lambda user: user.minimise(True)),

@@ -1,7 +1,6 @@
 """Table of key and mouse bindings, from which the handler, the help, `--list-keys` and the documentation are made.
 
-The action of a `held` binding goes on while its key is held. That of a `fine` binding takes a tenth of its step with
-Shift, except for typed characters, which many keyboards type with Shift.
+The action of a `held` binding goes on while its key is held, and takes a tenth of its step with Shift.
 
 Chords are spelled `Tab`, `Shift+Tab`, `Ctrl+Z`, `+`, `wheel up`. Letters and named keys are keys; any other character
 is typed text, wherever a keyboard has it, and with Ctrl the key that prints it, with or without Shift: `Ctrl++`. Ctrl
@@ -86,7 +85,6 @@ class Binding:
     keys: tuple[str, ...]
     azerty: str = ""  # replaces the first key on an AZERTY keyboard
     held: bool = False
-    fine: bool = False
 
     def spellings(self, layout: str) -> tuple[str, ...]:
         """Keys of the binding on a keyboard of this layout."""
@@ -98,8 +96,7 @@ def once(group: str, action: str, help: str, *keys: str, **options: Any) -> Bind
     return Binding(action, group, help, keys, **options)
 
 
-# A movement that goes on while its key is held; and a change by one step for each press, or by a tenth with Shift.
-while_held, in_steps = partial(once, held=True, fine=True), partial(once, fine=True)
+while_held = partial(once, held=True)
 
 BINDINGS = (
     once(SELECT, "select next", "select the next element", "Tab"),
@@ -109,10 +106,10 @@ BINDINGS = (
     once(SELECT, "look through", "look through the selected camera", "Shift+C"),
     once(SELECT, "open menu", "list of what can be done with what is under the pointer", "right click"),
     once(SELECT, "select light", "select the next light", "L"),
-    once(LOOK, "orbit", "orbit the camera around the selected element", "right drag"),
+    once(LOOK, "orbit", "orbit the camera around what is under the pointer", "right drag"),
     once(LOOK, "pan", "slide the camera", "middle drag"),
-    in_steps(LOOK, "nearer", "camera: nearer; other elements: increase the active value", "wheel up"),
-    in_steps(LOOK, "farther", "camera: farther; other elements: decrease the active value", "wheel down"),
+    once(LOOK, "nearer", "nearer to what is under the pointer", "wheel up"),
+    once(LOOK, "farther", "farther from what is under the pointer", "wheel down"),
     once(LOOK, "look at", "bring the selected element into view; the camera: the scene", "F"),
     once(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
     once(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
@@ -141,9 +138,9 @@ BINDINGS = (
     once(BUILD, "slide by hand", "slide it along surfaces, turned to them", "Alt+left drag", "Ctrl+Shift+left drag"),
     once(BUILD, "undo", "undo", "Ctrl+Z"),
     once(BUILD, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
-    in_steps(CHANGE, "grow", "increase the active value", "+"),
-    in_steps(CHANGE, "shrink", "decrease the active value", "-"),
-    once(CHANGE, "type value", "type the active value: 3.5 Enter, or = *2 Enter, = +0.5 Enter, = 2*3+1 Enter", "="),
+    once(CHANGE, "grow", "increase the active value", "+", "Shift+wheel up"),
+    once(CHANGE, "shrink", "decrease the active value", "-", "Shift+wheel down"),
+    once(CHANGE, "type value", "type the active value: 3.5 Enter, or = -3 Enter, = *=2 Enter, = +=0.5 Enter", "="),
     once(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
     once(CHANGE, "previous value", "previous value", "Shift+V"),
     once(CHANGE, "add attribute", "add an attribute from a list: type, arrows, Enter; again: the next", "M"),
@@ -199,8 +196,7 @@ def keys_text(layout: str = "auto", translate: Callable[[str], str] = str) -> st
 
 def chords_of(binding: Binding, layout: str) -> list[Chord]:
     plain = [parse_chord(spelling) for spelling in binding.spellings(layout)]
-    keys = [(code, modifiers) for code, modifiers in plain if binding.fine and not isinstance(code, str)]
-    return [*plain, *((code, modifiers | Modifier.SHIFT) for code, modifiers in keys)]
+    return [*plain, *((code, modifiers | Modifier.SHIFT) for code, modifiers in plain if binding.held)]
 
 
 class Keymap:

@@ -12,7 +12,7 @@ from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.painter import Job, Painter, paint
-from tests.viewer.fake import FakeRenderer, scene
+from tests.viewer.fake import TEXT, FakeRenderer, scene
 
 SIZE = (64, 48)
 
@@ -54,14 +54,14 @@ class ManualPainter(Painter):
 class SessionHarness:
     """A session with a manual painter, which has processed its first events."""
 
-    def __init__(self, samples: int = 1, memory: Memory | None = None) -> None:
+    def __init__(self, samples: int = 1, memory: Memory | None = None, text: str = TEXT) -> None:
         self.memory = memory or Memory()
         mlx = Mlx(self.memory)
         self.display = mlx.mlx_init()
         self.session = Session(
             mlx,
             self.display,
-            scene(),
+            scene(text),
             path=Path("scene.rt"),
             size=SIZE,
             renderer=FakeRenderer(),

@@ -204,23 +204,37 @@ def test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(kind: 
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
-def test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(kind: type[Element], path: Path) -> None:  # noqa: F811
+def test_every_number_of_every_kind_is_typed_by_keys_alone(kind: type[Element], path: Path) -> None:  # noqa: F811
     user = user_of(kind, path, attributes=kind.code in WITH_ATTRIBUTES)
     numbers = {value.name: value for value in number_values(user.element)}
     for name in [each for each in user.widgets.places if each in numbers]:  # in the order of Tab
         value = numbers[name]
         user.go_to(value.name)
-        before = user.element
-        user.memory.text("-")
-        user.memory.text("-")
-        user.memory.play()
-        stepped = user.saved()
-        user.memory.text("+")
-        user.memory.play()
-        assert value.get(stepped) != value.get(before) or value.get(user.saved()) != value.get(before), value.name
-        user.type("7")
-        reached = value.current(user.saved())
-        assert reached == 7 or user.rows.error[0] == value.name or isinstance(value.leaf, Direction)
+        for number in (-3, 7):
+            user.type(str(number))
+            reached = value.current(user.saved())
+            assert reached == number or user.rows.error[0] == value.name or isinstance(value.leaf, Direction)
+
+
+def test_a_minus_after_tab_begins_a_negative_number_and_a_double_click_selects_all() -> None:
+    user = User(parse(TEXT, "scene.rt").scene, select=3)
+    user.go_to("centre: y")
+    user.type("-0.9")
+    assert user.saved().centre == (0, -0.9, 0)
+    user.go_to("centre: y")
+    user.type("-=0.1")
+    assert user.saved().centre == (0, -1, 0)
+    user.go_to("centre: x")
+    user.type("-12.75")
+    x, y = user.place("centre: x")
+    for jitter in (0, 2):  # the pointer may move a little
+        user.memory.button_press(1, x, y)
+        user.memory.motion(x + jitter, y)
+        user.memory.button_release(1, x + jitter, y)
+    user.memory.play()
+    user.type("-3")
+    assert user.saved().centre == (-3, -1, 0)
+    assert len(user.state.undo_stack) == 4
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
@@ -455,17 +469,22 @@ def test_attributes_that_cannot_be_had_are_refused_with_the_reason(tmp_path: Pat
 
 def test_a_row_that_drops_a_change_is_found(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     """A panel that loses the last part of every triple fails the tests of every number."""
-    change = Rows.change
+    change, apply_edit = Rows.change, Rows.apply
 
     def dropping(rows: Rows, value: Value, *rest: Any) -> None:
         if value.channel != 2:
             change(rows, value, *rest)
 
+    def dropping_typed(rows: Rows, edit: Any, name: str = "") -> None:
+        if not name.endswith(": z"):
+            apply_edit(rows, edit, name)
+
     monkeypatch.setattr(Rows, "change", dropping)
     with pytest.raises(AssertionError, match="blue"):
         test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(ELEMENTS["sp"], path)
+    monkeypatch.setattr(Rows, "apply", dropping_typed)
     with pytest.raises(AssertionError, match="centre: z"):
-        test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(ELEMENTS["sp"], path)
+        test_every_number_of_every_kind_is_typed_by_keys_alone(ELEMENTS["sp"], path)
 
 
 @pytest.mark.parametrize("size", [(400, 300), (1280, 720)], ids="{0[0]}x{0[1]}".format)

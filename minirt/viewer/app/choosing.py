@@ -52,7 +52,7 @@ class Row(NamedTuple):
 class Choosing:
     """The list that is open. One of states is so as long as the last one that was chosen is the last change."""
 
-    def __init__(self, session: Session, perform: Callable[[Binding, float], None]) -> None:
+    def __init__(self, session: Session, perform: Callable[[Binding], None]) -> None:
         self.session = session
         self._perform = perform
         self._title = ""
@@ -171,7 +171,7 @@ class Choosing:
     def perform_at(self, place: tuple[int, int], action: str) -> None:
         """Perform an action, whose list is at a place of the window if it opens one."""
         self._place = place
-        self._perform(BY_ACTION[action], 1.0)
+        self._perform(BY_ACTION[action])
         if not self.is_open:
             self._place = None
 

@@ -120,7 +120,7 @@ class EventDispatcher:
             if pressed.held:
                 self.hold(pressed, code)
             else:
-                self.perform(pressed, session.step)
+                self.perform(pressed)
 
     def on_button(self, button: int, x: int, y: int) -> None:
         """A mouse button goes down, or the wheel turns."""
@@ -148,7 +148,7 @@ class EventDispatcher:
         elif binding:
             self.choosing.end()
             if binding.action not in REPEATED or key is None:
-                self.perform(binding, 1.0)
+                self.perform(binding)
             elif key not in session.held_keys:
                 self.hold(binding, key, is_typed=True)
 
@@ -201,7 +201,7 @@ class EventDispatcher:
             offer_found(self.session)
         self.session.show(self.session.state)
 
-    def perform(self, binding: Binding, step: float) -> None:
+    def perform(self, binding: Binding) -> None:
         """Perform the action of a key binding: an edit of the scene, or a command."""
         session, action = self.session, binding.action
         session.release_button()
@@ -216,7 +216,7 @@ class EventDispatcher:
             self.choosing.begin(action, replace(session.state, aim=aim))
             return
         if action in EDITS:
-            session.state = apply(session.state, action, step if binding.fine else 1.0, session.now)
+            session.state = apply(session.state, action, 1.0, session.now)
         else:
             session.say("")
             session.attempt(COMMANDS[action])

@@ -15,13 +15,15 @@ from minirt.viewer.display.marks import LENGTH as ARROW_LENGTH
 from minirt.viewer.display.marks import SIZE, arrow_tip, arrows, visible_icons
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, handle_at, handles_of, pull
-from minirt.viewer.editing.motion import look_at
+from minirt.viewer.editing.motion import APPROACHING, approach, in_reach, look_at
 from minirt.viewer.editing.placing import AHEAD, aim, aim_at_top
 from minirt.viewer.editing.projection import Aim, position_of
 from minirt.viewer.editing.state import index_of
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
+SLIDING = "slide by hand"  # the drag that leaves handles alone, as its chords may be those of a handle, too
 CURSORS = {"move by hand": Cursor.MOVE, "pan": Cursor.GRAB}  # while a drag goes on; other drags turn something
+ZOOMS = {"nearer": 1.0, "farther": -1.0}  # actions of the wheel, and their steps towards what is under the pointer
 BUTTON_DRAGS = {each: f"{each.name.lower()} drag" for each in (Button.LEFT, Button.MIDDLE, Button.RIGHT)}
 
 
@@ -32,10 +34,12 @@ class Mouse:
     was pressed, because until then it may become a drag.
     """
 
-    def __init__(self, session: Session, perform: Callable[[Binding, float], None]) -> None:
+    def __init__(self, session: Session, perform: Callable[[Binding], None]) -> None:
         self.session = session
         self._perform = perform
         self.inside = True  # whether the pointer is over the window
+        self._target: Triple | None = None  # the point towards which the wheel zooms
+        self._aimed_at = (-1, -1)  # the pixel where it was found
 
     def on_press(self, button: int, x: int, y: int) -> None:
         """A button goes down, or the wheel turns."""
@@ -46,10 +50,12 @@ class Mouse:
         if drag is None:
             self.click(button)
             return
-        if button == Button.LEFT and self.grab(x, y):
+        if button == Button.LEFT and drag.action != SLIDING and self.grab(x, y):
             return
         try:
             point = self.pick_point(x, y, selecting=button == Button.LEFT)
+            if drag.action == "orbit":
+                point = self.pivot(point)
         except MiniRTError as error:  # the file of a texture may be gone meanwhile
             session.show_error(error)
             session.show(session.state)
@@ -60,7 +66,7 @@ class Mouse:
     def grab(self, x: int, y: int) -> bool:
         """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
         session, state, screen = self.session, self.session.state, self.session.screen
-        if screen.level == HudLevel.NOTHING or session.modifiers & (Modifier.SHIFT | Modifier.ALT):
+        if screen.level == HudLevel.NOTHING:
             return False
         for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
             tip = arrow_tip(way, *screen.size, screen.scale)
@@ -77,8 +83,12 @@ class Mouse:
     def on_motion(self, x: int, y: int) -> None:
         """The pointer moves: drag, if a button is down and the pointer has left the slack of a click."""
         session = self.session
-        session.pointer = x, y
+        (from_x, from_y), session.pointer = session.pointer, (x, y)
         pressed = session.pressed
+        if pressed and pressed.handle:
+            right, down = pressed.reach
+            reach = right + (x - from_x) * session.step, down + (y - from_y) * session.step
+            session.pressed = pressed = pressed._replace(reach=reach)
         if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
@@ -103,8 +113,28 @@ class Mouse:
     def click(self, button: int) -> None:
         """Perform the action that is bound to a button."""
         binding = self.session.keymap.find(button, self.session.modifiers)
-        if binding:
-            self._perform(binding, self.session.step)
+        if binding and binding.action in ZOOMS:
+            self.zoom(ZOOMS[binding.action])
+        elif binding:
+            self._perform(binding)
+
+    def zoom(self, steps: float) -> None:
+        """Move the camera towards what is under the pointer; steps that follow each other go to the same point."""
+        session, (x, y) = self.session, self.session.pointer
+        state = session.state.with_message("")
+        goes_on = state.last_change is not None and state.last_change[0] == APPROACHING
+        if not goes_on or self._aimed_at != (x, y):
+            self._target, self._aimed_at = self.pick_point(x, y, selecting=False), (x, y)
+        ray = session.view.ray(x + PIXEL_CENTRE, y + PIXEL_CENTRE)
+        session.show(approach(state, ray, self._target, steps, session.now))
+
+    def pivot(self, point: Triple | None) -> Triple | None:
+        """The point that the camera orbits: under the pointer or, if that is far away, in the middle of the picture."""
+        session = self.session
+        if near := in_reach(session.state, point):
+            return near
+        _, middle = session.surface_at(session.window.width // 2, session.window.height // 2)
+        return in_reach(session.state, middle)
 
     def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
         """Return the point of the scene under the pointer, None if there is none; select the element there."""

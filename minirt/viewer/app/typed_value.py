@@ -31,12 +31,8 @@ class Typing:
             self.show("")
 
     def on_text(self, character: str) -> None:
-        """Add what was typed, as far as values are made of it; a minus behind a number changes its sign."""
-        text = self.text
-        if character == "-" and not text.startswith("="):
-            text = text.removeprefix("-") if text.startswith("-") else f"-{text}"
-        elif character in CHARACTERS:
-            text += character
+        """Add what was typed, as far as values are made of it; the = that began it goes."""
+        text = f"{self.text.removeprefix('=')}{character}" if character in CHARACTERS else self.text
         self.show(text[:MAX_LENGTH])
 
     def takes(self, key: int) -> bool:
@@ -54,6 +50,6 @@ class Typing:
         """Show what is typed; nothing if it is empty."""
         session = self.session
         self.text = text
-        hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it"
+        hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it    += -= *= /=: relative"
         session.screen.list_box = ListBox(hint) if text else None
         session.refresh()

@@ -58,11 +58,12 @@ class DragStart(NamedTuple):
     y: int
     element: Element  # the selected one, as it was
     camera: Camera  # as it was
-    point: Triple | None  # on the surface under the pointer; None if there is none
+    point: Triple | None  # on the surface under the pointer, or that the camera orbits; None if there is none
     button: int = 0
     action: str = ""  # of DRAGS
     dragging: bool = False  # whether the pointer has moved far enough since
     handle: Handle | None = None  # of the element, that the pointer has grabbed
+    reach: Pixel = (0.0, 0.0)  # how far a handle was pulled, to the right and down; a tenth while Shift is down
     snaps: bool = False  # whether Ctrl is down, so that a handle snaps to a grid
 
     @property
@@ -111,12 +112,13 @@ def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
     return linear_combination(depth, view.direction_through(x + PIXEL_CENTRE, y + PIXEL_CENTRE), -depth, here)
 
 
-def pull(state: State, start: DragStart, x: int, y: int) -> State:
+def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
     """Move, turn or resize the element by its handle; with Ctrl on a grid, or by steps of SNAP_ANGLE."""
     handle, view, element = start.handle, start.projection, start.element
     assert handle
     centre, axis, snap = handle.centre, AXES[handle.axis], state.stride if start.snaps else 0.0
-    ends = [(at + PIXEL_CENTRE, down + PIXEL_CENTRE) for at, down in ((start.x, start.y), (x, y))]
+    from_x, from_y = start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE
+    ends = [(from_x, from_y), (from_x + start.reach[0], from_y + start.reach[1])]
     if handle.kind == TURN:
         column, row = view.pixel(centre) or (0.0, 0.0)
         first, last = (degrees(atan2(down - row, at - column)) for at, down in ends)
@@ -135,7 +137,7 @@ def pull(state: State, start: DragStart, x: int, y: int) -> State:
             length = handle.value.current(element) * abs(after / before)
             length = clamp_length(max(snapped(length, snap), snap))
             changed = element.replace(**{handle.value.field.name: handle.value.replaced(element, length)})
-            return state.edit_element(keep_standing(state, changed), *CHANGE)
+            return state.edit_element(keep_standing(state, element, changed), *CHANGE)
         offset = linear_combination(after - before, axis, 0.0, axis)
     parts = zip(position_of(element) or centre, offset, strict=True)
     x_way, y_way, z_way = (snapped(part + way, snap) - part if way else 0.0 for part, way in parts)
@@ -164,11 +166,11 @@ def look(state: State, start: DragStart, x: int, y: int) -> State:
 
 
 def orbit(state: State, start: DragStart, x: int, y: int) -> State:
-    """Orbit the camera around the selected element, or around the centre of the scene.
+    """Orbit the camera around the point where the drag began, or around the centre of the scene.
 
     The pivot stays where it is in the picture, and everything in front of it follows the pointer.
     """
-    pivot, _ = extent(start.element) or (scene_centre(state.scene), 0.0)
+    pivot = start.point or scene_centre(state.scene)
     right, down = drag_angles(start, x, y)
     return state.edit_camera(motion.orbit_camera(start.camera, pivot, right, -down), *CHANGE)
 

@@ -13,7 +13,6 @@ from math import fmod
 
 from minirt.errors import ElementError
 from minirt.fields import MeshFile, Point
-from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera
 from minirt.viewer.editing import motion, structure
 from minirt.viewer.editing import state as states
@@ -78,12 +77,12 @@ class HeldKey:
 
 
 def move(axis: int, sign: float, state: State, amount: float, now: float) -> State:
-    """Move the selected element: the camera along its own axes, any other element along those of the frame."""
+    """Move the selected element: up, or along the ground as the camera sees it, or along the axis of the frame."""
     element = state.element
     if not field_names(type(element), Point):
         return state.with_message(f"{element.title} has no position to move")
     frame = Frame.VIEW if element is state.scene.camera else state.frame
-    direction = WORLD_AXES.get(frame) or camera_frame(state.scene.camera)[axis]
+    direction = WORLD_AXES.get(frame) or motion.level_frame(state.scene.camera)[axis]
     return motion.move(state, element, direction, sign * amount * state.stride, "move", now)
 
 
@@ -106,7 +105,7 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
     new = active.stepped(state.element, sign * amount, state.scene, state.stride)
     stepped = state.element.replace(**{active.field.name: new})
-    changed = state.edit_element(keep_standing(state, stepped), f"value {active.name}", now)
+    changed = state.edit_element(keep_standing(state, state.element, stepped), f"value {active.name}", now)
     if changed is state:
         value = active.get(state.element)
         if isinstance(value, str | MeshFile):
@@ -115,13 +114,6 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
         limits = f" ({active.leaf.range})" if active.leaf.range else ""
         return state.with_message(f"{active.name} cannot go further{limits}")
     return changed
-
-
-def turn_wheel(sign: float, state: State, amount: float, now: float) -> State:
-    """Move the camera nearer to what it shows, or change the active value of any other element."""
-    if state.element is state.scene.camera:
-        return motion.approach(state, sign * amount, now)
-    return change_value(sign, state, amount, now)
 
 
 def next_value(step: int, state: State, _amount: float, _now: float) -> State:
@@ -156,8 +148,6 @@ EDITS: dict[str, Edit] = {
     "next frame": next_frame,
     "grow": partial(change_value, 1.0),
     "shrink": partial(change_value, -1.0),
-    "nearer": partial(turn_wheel, 1.0),
-    "farther": partial(turn_wheel, -1.0),
     "drop": drop,
     "next value": partial(next_value, 1),
     "previous value": partial(next_value, -1),

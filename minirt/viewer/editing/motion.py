@@ -26,7 +26,9 @@ LENS = 1 / 40  # diameter of a new lens by the distance in focus
 MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border
 USUAL_SIZE = 16, 9  # of a window, in any unit
 ASPECT = USUAL_SIZE[1] / USUAL_SIZE[0]
-APPROACH = 1 / 10  # of the distance to the scene's centre: a step of the wheel
+APPROACH = 1 / 10  # of the distance to what is under the pointer: a step of the wheel
+APPROACHING = "approach"  # kind of the changes by the wheel
+FARTHEST_SEEN = 2.0  # times the distance to the scene: the camera neither orbits nor nears what is farther away
 NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
 POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
 
@@ -115,6 +117,12 @@ def turn_camera(camera: Camera, right: float, up: float) -> Camera:
     return camera.replace(direction=unit(direction))
 
 
+def level_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
+    """Right, up and forward as a camera sees them on level ground: up is the vertical, whatever its pitch and roll."""
+    (a, _, b), _ = upright(*camera.direction)
+    return camera_frame(camera.replace(direction=(b, 0.0, -a), roll=0.0))
+
+
 def orbit_camera(camera: Camera, pivot: Triple, right: float, up: float) -> Camera:
     """Turn the camera as `turn_camera` does, and move it so that `pivot` stays where it is in the picture."""
     turned = turn_camera(camera, right, up)
@@ -189,13 +197,26 @@ def look_at(state: State, _amount: float, now: float) -> State:
     return state.edit_camera(moved, "", now)
 
 
-def approach(state: State, steps: float, now: float) -> State:
-    """Move the camera ahead by a tenth of its distance to the scene's centre; close to it, by as much as there."""
-    camera = state.scene.camera
-    _, _, forward = camera_frame(camera)
-    ahead = dot(subtract(scene_centre(state.scene), camera.position), forward)
-    distance = max(ahead, state.size * NEAREST) * (1 - (1 - APPROACH) ** steps)
-    return state.edit_camera(shifted(camera, forward, distance), "approach", now)
+def in_reach(state: State, point: Triple | None) -> Triple | None:
+    """A point of a surface, unless it is far in the background: on a sky, or on the ground near the horizon."""
+    eye = state.scene.camera.position
+    reach = FARTHEST_SEEN * max(state.size, dist(eye, scene_centre(state.scene)))
+    return point if point and dist(eye, point) <= reach else None
+
+
+def approach(state: State, ray: Triple, point: Triple | None, steps: float, now: float) -> State:
+    """Move the camera along the ray through the pointer: what is under the pointer stays there.
+
+    A step is a tenth of the distance to the surface there, at `point`. Where none is near it is a tenth of the distance
+    to the scene's centre; close to that, as much as there.
+    """
+    camera, seen = state.scene.camera, in_reach(state, point)
+    if seen:
+        distance = dist(camera.position, seen)
+    else:
+        _, _, forward = camera_frame(camera)
+        distance = max(dot(subtract(scene_centre(state.scene), camera.position), forward), state.size * NEAREST)
+    return state.edit_camera(shifted(camera, ray, distance * (1 - (1 - APPROACH) ** steps)), APPROACHING, now)
 
 
 def next_tone(state: State, _amount: float, now: float) -> State:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import copysign, dist, hypot, inf, isfinite
 
 from minirt.element import Element, fields_of
@@ -15,7 +16,7 @@ from minirt.viewer.editing import projection
 from minirt.viewer.editing.motion import frame_of, shifted
 from minirt.viewer.editing.projection import STEP_SHARE, UP, Aim, Projection, dot, field_names, position_of, subtract
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import nice_number, round_point
+from minirt.viewer.editing.values import nice_number, round_changes, round_point
 
 LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes without an axis still come to rest
 POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a standing shape are rounded
@@ -152,18 +153,56 @@ def lift_of(shape: Shape, normal: Triple) -> float:
     return FLAT_LIFT * middle_of(shape)[1] if flat else 0.0
 
 
-def keep_standing(state: State, changed: Element) -> Element:
-    """The changed selected element; one that still is where it was added stands there again, unless it is moved."""
-    old, aim = state.element, state.aim
-    if aim is None or not isinstance(old, Shape) or not isinstance(changed, Shape):
+def keep_standing(state: State, old: Element, changed: Element) -> Element:
+    """The changed selected element, which was `old`: unless it is moved or turned, it stands where it stood.
+
+    One that still is where it was added stands there again. Any other one that stands on something, and whose position
+    is not in its middle, keeps its lower end: a cone grows upwards.
+    """
+    if not isinstance(old, Shape) or not isinstance(changed, Shape) or old.bounds() is None:
         return changed
-    scene, stride = state.scene.edit(state.selected), state.stride
-    there = settled(old, aim, scene, stride)
     points = {name: getattr(old, name) for name in field_names(type(old), Point)}
-    near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
     names = *points, *field_names(type(old), Direction)
-    stays = all(getattr(old, name) == getattr(changed, name) for name in names)
-    return settled(changed, aim, scene, stride) if near and stays and there.replace(**points) == old else changed
+    if any(getattr(old, name) != getattr(changed, name) for name in names):
+        return changed
+    stride = state.stride
+    if state.aim:
+        scene = state.scene.edit(state.selected)
+        there = settled(old, state.aim, scene, stride)
+        near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
+        if near and there.replace(**points) == old:
+            return settled(changed, state.aim, scene, stride)
+    changed = round_changes(old, changed, stride)  # so that the end does not drift by what is rounded later
+    way, growth = growth_below(old, changed)
+    if not growth or abs(gap_below(old, state.scene.edit(state.selected).shapes)) > SAME * stride:
+        return changed
+    return shifted(changed, way, growth)
+
+
+def growth_below(old: Shape, changed: Shape) -> tuple[Triple, float]:
+    """The axis of a shape, upwards, and by how much its lower end has moved down along it.
+
+    0 for one that lies on its side or has its position in its middle.
+    """
+    field, position = direction_of(old), position_of(old)
+    axis: Triple = getattr(old, field.name) if field else UP
+    if field is None or position is None or abs(axis[1]) < LEVEL:
+        return axis, 0.0
+    sign = copysign(1.0, axis[1])
+    before, after = (each.replace(**{field.name: (0.0, sign, 0.0)}) for each in (old, changed))
+    (_, middle, _), radius = middle_of(before)
+    off_middle = abs(middle - position[1]) > SAME * radius
+    growth = lowest_along(before, UP) - lowest_along(after, UP) if off_middle else 0.0
+    return linear_combination(sign, axis, 0.0, axis), growth
+
+
+def gap_below(shape: Shape, others: Sequence[Shape]) -> float:
+    """How far a bounded shape can fall onto others, or onto the ground y = 0."""
+    gap, support = clearance(shape, others)
+    box = shape.bounds()
+    assert box
+    on_ground = support is None and box[1][1] > 0
+    return box[0][1] if on_ground else gap
 
 
 def lowest_along(shape: Shape, direction: Triple) -> float:
@@ -192,9 +231,7 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
     else:
         x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
     there = shifted(shape, (x_to - x, rise, z_to - z))
-    gap, support = clearance(there, others)
-    if support is None and box[1][1] + rise > 0:
-        gap = box[0][1] + rise
+    gap = gap_below(there, others)
     return shifted(there, DOWN, gap) if isfinite(gap) else None
 
 

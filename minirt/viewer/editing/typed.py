@@ -1,14 +1,18 @@
 """Typed values: numbers, sums of them, and changes of the present value.
 
 3.5 or 3,5       that value; a comma where one number is expected is a decimal comma
+-3               a negative number
 2*3+1  (1+2)/4   the result
 1,2,3            three numbers for a colour, sizes, a position or a direction, even if one part of it is active
-=*2  =+0.5       the present value times 2, or plus 0.5
+*=2  +=0.5       the present value times 2, or plus 0.5; also -= and /=
+
+In the picture a digit begins a value, and = any other one: =-3, =+=0.5.
 """
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from math import isfinite
 from operator import add, mul, neg, pos, sub, truediv
 from typing import Any
@@ -22,8 +26,8 @@ from minirt.viewer.editing.values import Value
 
 OPERATIONS: dict[Any, Any] = {ast.Mult: mul, ast.Div: truediv, ast.Add: add, ast.Sub: sub, ast.USub: neg, ast.UAdd: pos}
 CHARACTERS = "0123456789.,+-*/=()"  # of which typed values are made
-PRESENT = "x"  # stands for the present value in a sum
 SIGNS = tuple("*/+-")
+CHANGES: dict[str, Callable[[float, float], float]] = {"+=": add, "-=": sub, "*=": mul, "/=": truediv}
 
 
 def set_typed(state: State, value: Value, text: str, now: float) -> State:
@@ -41,7 +45,8 @@ def with_value(state: State, value: Value, new: Any, now: float) -> State:
     """The state whose selected element has another value, of a part also a whole triple; ValueError out of range."""
     whole = value._replace(channel=None) if isinstance(new, tuple) else value
     changed = state.element.replace(**{value.field.name: whole.replaced(state.element, new)})
-    return state.end_merging().edit_element(keep_standing(state, changed), f"typed {value.name}", now).end_merging()
+    changed = keep_standing(state, state.element, changed)
+    return state.end_merging().edit_element(changed, f"typed {value.name}", now).end_merging()
 
 
 def typed(value: Value, old: Any, current: Any, text: str) -> Any:
@@ -52,9 +57,10 @@ def typed(value: Value, old: Any, current: Any, text: str) -> Any:
     presents = current if isinstance(current, tuple) else (current,)
     if any(isinstance(part, bool) or not isinstance(part, int | float) for part in presents):
         raise FieldError("is not a number: + and - change it")
-    body = text.removeprefix("=")
-    sign = body[0] if body != text and body.startswith(SIGNS) and len(body) > 1 else ""
-    texts = body[len(sign) :].split(",")
+    body = text.removeprefix("=").strip()
+    change = CHANGES.get(body[:2])
+    body = body[2:].strip() if change else body
+    texts = body.split(",")
     if len(texts) == Three.width and isinstance(old, tuple):
         presents = old
     elif len(presents) == 1 and (len(texts) == 2 or any(each in body[1:] for each in SIGNS)):
@@ -63,37 +69,35 @@ def typed(value: Value, old: Any, current: Any, text: str) -> Any:
         numbers = "one number" if len(presents) == 1 else f"one number or {len(presents)}"
         raise FieldError(f"takes {numbers}, got {len(texts)}")
     texts *= len(presents) // len(texts)
-    sums = (f"{PRESENT}{sign}{each}" if sign else each for each in texts)
-    given: list[Any] = [sum_of(each, present) for each, present in zip(sums, presents, strict=True)]
+    given: list[Any] = [sum_of(each, change, present) for each, present in zip(texts, presents, strict=True)]
     if isinstance(value.leaf, Colour | Whole):
         given = [round(part) for part in given]
     return tuple(given) if len(given) > 1 else given[0]
 
 
-def sum_of(text: str, present: float) -> float:
-    """The result of a sum, product or quotient of numbers; FieldError if it is none."""
-    if not any(sign in text[1:] for sign in "*/+-()"):
+def sum_of(text: str, change: Callable[[float, float], float] | None, present: float) -> float:
+    """The result of a sum, product or quotient of numbers, or of a `change` by it; FieldError if it is none."""
+    if not change and not any(sign in text[1:] for sign in "*/+-()"):
         return number(text)
     try:
-        value = result(ast.parse(text, mode="eval").body, present)
+        value = result(ast.parse(text, mode="eval").body)
+        value = change(present, value) if change else value
         if isfinite(value):
             return value
     except ZeroDivisionError:
         raise FieldError("cannot be divided by 0") from None
     except (SyntaxError, OverflowError, RecursionError, MemoryError):
         pass
-    raise FieldError("must be a number, " + found(text.removeprefix(PRESENT)))
+    raise FieldError("must be a number, " + found(text))
 
 
-def result(node: ast.expr, present: float) -> float:
+def result(node: ast.expr) -> float:
     """The result of a node of a parsed sum; SyntaxError for anything that is no arithmetic."""
     match node:
         case ast.BinOp(left, operator, right) if type(operator) in OPERATIONS:
-            return float(OPERATIONS[type(operator)](result(left, present), result(right, present)))
+            return float(OPERATIONS[type(operator)](result(left), result(right)))
         case ast.UnaryOp(operator, operand) if type(operator) in OPERATIONS:
-            return float(OPERATIONS[type(operator)](result(operand, present)))
+            return float(OPERATIONS[type(operator)](result(operand)))
         case ast.Constant(int() | float() as constant) if not isinstance(constant, bool):
             return float(constant)
-        case ast.Name(name) if name == PRESENT:
-            return float(present)
     raise SyntaxError

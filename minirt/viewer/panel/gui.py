@@ -13,7 +13,7 @@ from slimgui import imgui
 
 from minirt.mlx.events import Button, Event, Key, Modifier
 from minirt.viewer.app.session import Session
-from minirt.viewer.bindings import BINDINGS, Binding
+from minirt.viewer.bindings import BY_ACTION, Binding
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import translated
 from minirt.viewer.panel.style import set_colours, set_spaces
@@ -35,7 +35,7 @@ SHORTEST = 1e-3  # seconds between two frames
 class Gui:
     """A context of Dear ImGui for the window of a session."""
 
-    def __init__(self, session: Session, build: Callable[[], None], perform: Callable[[Binding, float], None]) -> None:
+    def __init__(self, session: Session, build: Callable[[], None], perform: Callable[[Binding], None]) -> None:
         """`build` declares the widgets of a frame; `perform` performs an action of the table of keys."""
         self.session, self._build, self._perform = session, build, perform
         self.wanted = ""  # the action of a button that was clicked, until the end of the frame
@@ -175,7 +175,7 @@ class Gui:
             self.session.show(self.session.state)
         if self.wanted:
             action, self.wanted = self.wanted, ""
-            self._perform(next(each for each in BINDINGS if each.action == action), 1.0)
+            self._perform(BY_ACTION[action])
             self.is_left |= self.session.screen.list_box is not None  # a list that opened has the keys
 
     def buttons(self, titles: dict[str, str]) -> None:

@@ -1,7 +1,7 @@
 """Numbers of an element that are dragged, typed or stepped, and how they change the scene.
 
-A number is dragged to slide it (Shift: finer), clicked to type it, or changed by + and - while it has the focus; a
-digit begins to type. One drag is one step of undo.
+A number is dragged to slide it (Shift: finer), or clicked to type it; a digit or a sign types it, too, while it has the
+focus. One drag is one step of undo.
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ from minirt.viewer.panel.gui import Gui
 
 PIXELS = 6  # of a drag to the right or upwards, for one step
 SLIDE = ("value slide", 0.0)  # kind and time of the changes of a drag: the constant time merges them for undo
-SIGNS = {"+": 1.0, "-": -1.0}  # steps of a typed character
 TO_TYPE = 3  # frames until a text has the focus, and what began it
 AGAIN = " again"
 TYPING = imgui.InputTextFlags.ENTER_RETURNS_TRUE | imgui.InputTextFlags.AUTO_SELECT_ALL
@@ -65,7 +64,7 @@ class Numbers:
         texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
         text = next((each for each in texts if imgui.calc_text_size(each)[0] < room), texts[-1])
         entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
-        self.gui.hint("drag it, click to type it, or + and -; Shift: finer")
+        self.gui.hint("drag it, or click to type it: -3, 2*3, +=1; Shift: finer")
         if imgui.is_item_activated():
             self.pressed, self._start, self._slid = value.name, self.element, 0.0
             self.session.state = self.session.state.end_merging()
@@ -73,8 +72,8 @@ class Numbers:
             self.drag(value)
         if entered and not self._slid:
             self.begin_typing(value, "")
-        elif imgui.is_item_focused() and self.gui.typed and not self.gui.types:
-            self.on_character(value, self.gui.typed)
+        elif imgui.is_item_focused() and self.gui.typed and self.gui.typed in CHARACTERS and not self.gui.types:
+            self.begin_typing(value, self.gui.typed)
         if self.pressed == value.name and not imgui.is_item_active():
             self.pressed = ""
             self.gui.show(self.session.state.end_merging())
@@ -85,14 +84,6 @@ class Numbers:
         if self._start and (right or down) and imgui.is_mouse_dragging(imgui.MouseButton.LEFT):
             self._slid += (right - down) / PIXELS * (FINE_STEP if self.gui.io.key_shift else 1.0)
             self.step(value, self._start, self._slid)
-
-    def on_character(self, value: Value, text: str) -> None:
-        """A character was typed while a number has the focus: it steps the number, or begins to type it."""
-        if text in SIGNS:
-            steps = SIGNS[text] * (FINE_STEP if self.gui.io.key_shift and text == "-" else 1.0)
-            self.step(value, self.element, steps)
-        elif text in CHARACTERS:
-            self.begin_typing(value, text)
 
     def begin_typing(self, value: Value, first: str) -> None:
         """Turn a number into a text, all of it selected; `first` replaces it."""
@@ -131,7 +122,7 @@ class Numbers:
 
         def edit(state: State) -> State:
             changed = start.replace(**{value.field.name: field()})
-            return state.edit_element(keep_standing(state, changed), *SLIDE)
+            return state.edit_element(keep_standing(state, start, changed), *SLIDE)
 
         self.apply(edit, value.name)
 

@@ -29,7 +29,7 @@ ANY_POPUP = imgui.PopupFlags.ANY_POPUP_ID | imgui.PopupFlags.ANY_POPUP_LEVEL
 class Panel(Gui):
     """The panel of a session. It is closed at first."""
 
-    def __init__(self, session: Session, perform: Callable[[Binding, float], None]) -> None:
+    def __init__(self, session: Session, perform: Callable[[Binding], None]) -> None:
         """`perform` performs an action of the table of keys, as a press does."""
         super().__init__(session, self.build, perform)
         self.rows = Rows(session, self)

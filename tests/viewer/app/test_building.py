@@ -154,23 +154,28 @@ def test_attributes_are_chosen_from_a_list() -> None:
     ("typed", "expected"),
     [
         ("3.5", 3.5),
-        ("=*2", 4.0),
-        ("=/4", 0.5),
-        ("=+0.5", 2.5),
-        ("=-0.5", 1.5),
+        ("=*=2", 4.0),
+        ("=/=4", 0.5),
+        ("=+=0.5", 2.5),
+        ("=-=0.5", 1.5),
         ("=7", 7.0),
-        ("5--", 5.0),
+        ("=+7", 7.0),
+        ("5--3", 8.0),
         ("2*3+1", 7.0),
         ("=(1+2)/4", 0.75),
         ("2,5", 2.5),
-        ("=*2+1", 5.0),
+        ("=*=2+1", 6.0),
         ("=1-0.5", 0.5),
+        ("1-0.5", 0.5),
         ("2*(", "must be a number"),
         ("1/0", "divided by 0"),
         ("0", "must be > 0"),
-        ("3-", "must be > 0"),
+        ("=-3", "must be > 0"),
+        ("3-", "must be a number"),
+        ("=*2", "must be a number"),
+        ("=*=", "must be a number"),
         ("1.2.3", "must be a number"),
-        ("=/0", "divided by 0"),
+        ("=/=0", "divided by 0"),
         ("1,2,3", "takes one number"),
         ("=", "must be a number"),
     ],
@@ -192,7 +197,7 @@ def test_colours_are_typed_as_grey_as_three_numbers_and_by_channel() -> None:
 
     assert colour("text 80") == (80, 80, 80)
     assert colour("text 1,22,133") == (1, 22, 133)
-    assert colour("text =*0.5") == (128, 0, 0)
+    assert colour("text =*=0.5") == (128, 0, 0)
     assert colour("press V", "press V", "text 9") == (255, 9, 0)
     assert colour("text 256") == (255, 0, 0)
 
@@ -202,9 +207,21 @@ def test_what_is_typed_is_shown_corrected_and_left() -> None:
     assert played(*SPHERE, "text 3.55", "press Backspace", "press Return").state.scene.spheres[0].diameter == 3.5
     for leave in ("press Escape", "press V", "press Tab", "press Backspace", "wheel up"):
         left = played(*SPHERE, "text 3", leave, "press Return")
-        assert left.state.scene.spheres[0].diameter == (2.1 if leave == "wheel up" else 2)
+        assert left.state.scene.spheres[0].diameter == 2
         assert title(left) == ""
     assert played("text 7", "press Return", "press d").state.scene.camera.fov == 7
+
+
+def test_a_minus_after_equals_begins_a_negative_number() -> None:
+    """The second coordinate of a sphere at a height of 3: the same keys once took 3 from it."""
+    y = ["press V"] * 6
+    for typed, height in (("=-3", -3), ("=-=3", 0), ("=+=0.5", 3.5), ("3-1", 2), ("=-0.9", -0.9)):
+        state = played(*SPHERE, *y, f"text {typed}", "press Return", text=TEXT.replace("sp 0,0,0", "sp 0,3,0")).state
+        assert state.active.name == "centre: y"
+        assert state.element.centre == (0, height, 0)
+    assert "diameter: -3_" in title(played(*SPHERE, "text =-3"))
+    assert "+= -= *= /=" in title(played(*SPHERE, "text ="))
+    assert played(*SPHERE, "text -").state.element.diameter < 2  # the key by itself is that of a step
 
 
 def test_a_new_cone_stands_on_its_base() -> None:

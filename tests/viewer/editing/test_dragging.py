@@ -13,7 +13,7 @@ from minirt.rendering.queries.pick import pick
 from minirt.scene import Camera
 from minirt.scene.elements import linear_combination
 from minirt.viewer.editing.projection import dot, projection_of, scene_centre
-from tests.viewer.fake import played, scene
+from tests.viewer.fake import TEXT, played, scene
 from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 64, 48
@@ -108,18 +108,32 @@ def test_a_drag_with_alt_slides_along_surfaces_and_turns_to_them(chord):
     assert free.apex[2] == 4
 
 
+SKY = "sp 0,0,0 9000 9,9,9\n"  # around everything
+
+
 @pytest.mark.parametrize("lines", [(), ("click 33,23",), ("press Tab",), ("press Ctrl+D",)])
-def test_the_camera_orbits_the_selected_element(lines):
-    before = played(*lines)
-    after = played(*lines, "drag 10,10 22,16 right")
-    state = before.state
-    pivot = {"sphere": (0, 0, 0), "light": (5, 5, 5)}.get(state.element.title, scene_centre(state.scene))
-    old, new = state.scene.camera, after.state.scene.camera
+@pytest.mark.parametrize("text", [TEXT, TEXT + SKY])
+@pytest.mark.parametrize("start", [(40, 24), (10, 40), (10, 10)])
+def test_the_camera_orbits_what_is_under_the_pointer_or_in_the_middle(start, text, lines):
+    """On the cylinder, on the plane, and on the sky: then it is the sphere in the middle, whatever is selected."""
+    state = played(*lines, text=text).state
+    _, pivot = pick(scene(), WIDTH, HEIGHT, *(start if start != (10, 10) else (WIDTH // 2, HEIGHT // 2)))
+    x, y = start
+    after = played(*lines, f"drag {x},{y} {x + 12},{y + 6} right", text=text).state
+    old, new = state.scene.camera, after.scene.camera
     assert new != old
     assert dist(new.position, pivot) == pytest.approx(dist(old.position, pivot), rel=1e-5)
     pixels = [projection_of(camera, WIDTH, HEIGHT).pixel(pivot) for camera in (old, new)]
     assert pixels[0] == pytest.approx(pixels[1], abs=1e-3)
-    assert after.state.element.title == state.element.title
+    assert after.element.title == state.element.title
+
+
+def test_the_camera_orbits_the_centre_of_the_scene_where_nothing_is_seen():
+    text = TEXT.replace("C 0,0,10 0,0,-1", "C 0,0,10 0,0.9,-1")
+    before, after = (played(*lines, text=text).state.scene for lines in ((), ("drag 10,2 22,8 right",)))
+    pivot = scene_centre(before)
+    assert dist(after.camera.position, pivot) == pytest.approx(dist(before.camera.position, pivot), rel=1e-5)
+    assert after.camera.position != before.camera.position
 
 
 def test_orbiting_stops_straight_above():

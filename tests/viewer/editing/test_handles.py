@@ -13,6 +13,7 @@ from minirt.viewer.display.marks import AXIS_COLOURS, arrow_tip, arrows, bgra
 from minirt.viewer.editing.dragging import MOVE, SIZE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.projection import projection_of, subtract
 from tests.viewer.fake import played
+from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 640, 480
 TEXT = """A 0.2 255,255,255
@@ -118,6 +119,40 @@ def test_a_box_handle_changes_one_size_in_proportion(axis: int, old: float) -> N
     assert strides == pytest.approx(round(strides), abs=1e-6)
     through = pulled(SIZE, axis, (-way[0], -way[1])).state.element.sizes[axis]
     assert through > 0
+
+
+@pytest.mark.parametrize(("kind", "axis"), [(MOVE, 0), (MOVE, 1), (SLIDE, 1), (SIZE, 1), (TURN, 1)])
+def test_shift_makes_a_tenth_of_what_a_handle_does_from_then_on(kind: str, axis: int) -> None:
+    """As far as perspective and the curve of a ring are straight; where Shift goes down nothing jumps."""
+    start = handle(kind, axis).points[0]
+    corners = [spelled((start[0] + 12 * step, start[1] - 6 * step)) for step in range(3)]
+    press, *moves = (f"move {corner}" for corner in corners)
+
+    def change(*lines: str) -> float:
+        harness = SessionHarness(text=TEXT)
+        harness.session.screen.handles = True
+        harness.play(*OPEN, press)
+        x, y = map(int, corners[0].split(","))
+        harness.memory.button_press(1, x, y)
+        harness.play(*lines)
+        element = harness.session.state.element
+        assert harness.session.state.selected == 2
+        return dist(element.centre, CENTRE) + abs(element.sizes[1] - 1.0) + abs(element.roll)
+
+    whole, tenth = change(moves[0]), change("down Shift", moves[0])
+    assert tenth == pytest.approx(whole / 10, rel=0.15)
+    assert change(moves[0], "down Shift") == whole
+    assert change(moves[0], "down Shift", moves[1]) == pytest.approx(whole * 1.1, rel=0.03)
+    assert change("down Shift", moves[0], "up Shift", moves[1]) == pytest.approx(whole * 1.1, rel=0.15)
+
+
+def test_a_drag_that_slides_along_surfaces_leaves_handles_alone() -> None:
+    x, y = handle(MOVE, 0).points[0]
+    for chord in ("Alt", "Ctrl+Shift"):
+        keys = chord.split("+")
+        drag = f"drag {spelled((x, y))} {spelled((x + 30, y))}"
+        session = played(*OPEN, *(f"down {key}" for key in keys), drag, *(f"up {key}" for key in keys), text=TEXT)
+        assert session.state.scene.boxes[0].centre[1] == 0.5  # on the ground
 
 
 def coloured(session: Session) -> bool:

@@ -1,0 +1,168 @@
+"""Looking around: the wheel zooms towards what is under the pointer, keys go along the ground, and no file changes."""
+
+from __future__ import annotations
+
+from math import dist, hypot
+from pathlib import Path
+
+import pytest
+
+from minirt.fields import Triple
+from minirt.rendering.queries.pick import pick
+from minirt.scene import Scene
+from minirt.scene.elements import linear_combination
+from minirt.viewer.app.session import Session
+from minirt.viewer.editing.motion import APPROACH
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.files import contents_differ
+from tests.viewer.fake import TEXT, FakeRenderer, played, scene
+
+WIDTH, HEIGHT = 64, 48
+SKY = "sp 0,0,0 9000 9,9,9\n"  # around everything
+SELECTIONS = ((), ("press Tab",), ("click 33,23",), ("click 10,40",), ("press C",))
+BACK = 1 / (1 - APPROACH)
+TILTED = TEXT.replace("C 0,0,10 0,0,-1 90", "C 0,4,10 0.2,-0.3,-1 90")
+
+
+def seen(at: tuple[int, int], text: str = TEXT) -> Triple:
+    """The point of the scene at a pixel."""
+    _, point = pick(scene(text), WIDTH, HEIGHT, *at)
+    assert point
+    return point
+
+
+def camera_of(session: Session) -> Triple:
+    position: Triple = session.state.scene.camera.position
+    return position
+
+
+@pytest.mark.parametrize("selection", SELECTIONS)
+@pytest.mark.parametrize("at", [(33, 23), (40, 24), (10, 40), (60, 45)])
+@pytest.mark.parametrize(
+    ("wheel", "left"), [("up 1", 1 - APPROACH), ("up 5", (1 - APPROACH) ** 5), ("down 2", BACK**2)]
+)
+def test_the_wheel_zooms_towards_what_is_under_the_pointer(
+    wheel: str, left: float, at: tuple[int, int], selection: tuple[str, ...]
+) -> None:
+    """Whatever is selected: the point stays at its pixel, its distance is so much of what it was, all else stays."""
+    point, before = seen(at), played(*selection)
+    after = played(*selection, f"wheel {wheel} {at[0]},{at[1]}")
+    assert dist(camera_of(after), point) == pytest.approx(left * dist(camera_of(before), point), rel=1e-5)
+    pixel = projection_of(after.state.scene.camera, WIDTH, HEIGHT).pixel(point)
+    assert pixel == pytest.approx((at[0] + 0.5, at[1] + 0.5), abs=1e-3)
+    assert others(after.state.scene) == others(scene())
+    assert after.state.selected == before.state.selected
+    assert len(after.state.undo_stack) == len(before.state.undo_stack) + 1
+
+
+def others(scene: Scene) -> list[object]:
+    """All entries of a scene but the camera."""
+    return [each for each in scene.items if each is not scene.camera]
+
+
+@pytest.mark.parametrize("text", [TEXT, TEXT + SKY])
+def test_over_the_sky_it_zooms_by_the_distance_to_the_scene(text: str) -> None:
+    session = played("wheel up 1 5,3", text=text)
+    way = [b - a for a, b in zip(scene().camera.position, camera_of(session), strict=True)]
+    ray = projection_of(scene().camera, WIDTH, HEIGHT).ray(5.5, 3.5)
+    assert way == pytest.approx(linear_combination(1.0, ray, 0.0, ray), abs=1e-5)  # a tenth of the way to the middle
+    assert session.state.scene.camera.direction == scene().camera.direction
+
+
+def test_it_never_goes_through_a_surface_and_leads_back() -> None:
+    near = played("wheel up 60 33,23")
+    assert 0 < dist(camera_of(near), seen((33, 23))) < 0.02
+    assert hypot(*camera_of(near)) > 1
+    there_and_back = played("wheel up 4 40,24", "wheel down 4 40,24")
+    assert camera_of(there_and_back) == pytest.approx(scene().camera.position, abs=1e-4)
+
+
+def test_steps_that_follow_each_other_look_once_for_what_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, ...]] = []
+
+    def counted(scene: Scene, *pixel: int) -> object:
+        asked.append(pixel[2:])
+        return pick(scene, *pixel)
+
+    monkeypatch.setattr(FakeRenderer, "pick", staticmethod(counted))
+    played("wheel up 3 33,23", "wheel down 2 33,23", "wheel up 1 34,23", "press d", "wheel up 2 34,23")
+    assert asked == [(33, 23), (34, 23), (34, 23)]
+
+
+def test_the_wheel_with_shift_changes_the_active_value_by_whole_steps() -> None:
+    for wheel, diameter in (("up", 2.1), ("down", 2 / 1.05)):
+        session = played("click 33,23", "down Shift", f"wheel {wheel} 1 5,5", "up Shift")
+        assert session.state.scene.spheres[0].diameter == pytest.approx(diameter, abs=1e-4)
+        assert camera_of(session) == scene().camera.position
+
+
+LOOKING = (
+    "drag 5,3 20,12",
+    "wheel up 3 33,23",
+    "wheel down 7 5,3",
+    "press Tab",
+    "wheel up 2 10,40",
+    "drag 40,24 22,16 right",
+    "drag 33,23 45,15 middle",
+    "press C",
+    "hold w 0.4",
+    "press e",
+    "press Left",
+    "press F",
+)
+
+
+@pytest.mark.parametrize("end", ["quit", "home", "undo"])
+def test_looking_around_leaves_every_byte_of_the_file(end: str, tmp_path: Path) -> None:
+    """Nothing is unsaved, and a view that is saved changes the camera's position and direction alone."""
+    path = tmp_path / "scene.rt"
+    path.write_text(TEXT)
+    session = played(*LOOKING, path=path)
+    assert not contents_differ(session.state.scene, session.saved)
+    assert session.state.scene.camera.edited == ()
+    ends = {"quit": ["press Escape"], "home": ["press Home"], "undo": ["press Ctrl+Z"] * len(LOOKING)}
+    saving = [] if end == "quit" else ["press Ctrl+S"]
+    played(*LOOKING, *ends[end], *saving, path=path)
+    assert path.read_text() == TEXT
+    assert list(tmp_path.iterdir()) == [path]
+    played(*LOOKING, "press Ctrl+S", path=path)
+    changed = [
+        (old.split(), new.split())
+        for old, new in zip(TEXT.splitlines(), path.read_text().splitlines(), strict=True)
+        if old != new
+    ]
+    ((old, new),) = changed
+    assert (old[0], old[3:]) == (new[0], new[3:]) == ("C", ["90", "#", "looks", "along", "-z"])
+
+
+@pytest.mark.parametrize("selection", [(), ("press Tab", "press Tab")])
+@pytest.mark.parametrize("roll", ["", " roll:30"])
+def test_keys_move_along_the_vertical_and_the_ground(roll: str, selection: tuple[str, ...]) -> None:
+    """The camera and a sphere, as seen by a camera that looks down to the right."""
+    text = TILTED.replace(" 90 ", f" 90{roll} ")
+    start = played(*selection, text=text).state
+    step, level = start.stride, (0.2**2 + 1) ** 0.5
+    ways = {"e": (0, 1, 0), "q": (0, -1, 0), "w": (0.2 / level, 0, -1 / level), "d": (1 / level, 0, 0.2 / level)}
+    ways |= {"s": linear_combination(-1, ways["w"], 0, ways["w"]), "a": linear_combination(-1, ways["d"], 0, ways["d"])}
+    for key, way in ways.items():
+        (before, after) = (
+            place(each) for each in (start.element, played(*selection, f"press {key}", text=text).state.element)
+        )
+        assert after == pytest.approx(linear_combination(1.0, before, step, way), abs=1e-5)
+        assert [a == b for a, b in zip(before, after, strict=True)] == [part == 0 for part in way]
+
+
+def place(element: object) -> Triple:
+    found: Triple = getattr(element, "position", None) or element.centre  # type: ignore[attr-defined]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("direction", "forward"), [("0,-1,0", (0, 0, -1)), ("0,1,0", (0, 0, -1)), ("0.3,-1,0", (1, 0, 0))]
+)
+def test_forward_is_along_the_ground_where_the_camera_looks_straight_up_or_down(
+    direction: str, forward: Triple
+) -> None:
+    text = TEXT.replace("C 0,0,10 0,0,-1", f"C 0,0,10 {direction}")
+    start, after = (played(*keys, text=text).state for keys in ((), ("press w",)))
+    assert after.element.position == pytest.approx(linear_combination(1, start.element.position, start.stride, forward))

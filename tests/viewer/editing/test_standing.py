@@ -1,0 +1,73 @@
+"""A shape that stands on something stays on it while its size changes, if its position is not in its middle."""
+
+from __future__ import annotations
+
+import pytest
+
+from minirt.fields import Triple
+from minirt.viewer.editing.dragging import SIZE, handles_of
+from minirt.viewer.editing.projection import position_of, projection_of
+from minirt.viewer.editing.state import State
+from tests.viewer.fake import played, scene
+
+HEAD = "A 0.2 255,255,255\nC 0,2,-9 0,-0.1,1 60\n"
+CONE = "co 0,3,0 0,-1,0 2 3 9,9,9"  # on its base, on the ground y = 0
+HEIGHT = ("press Tab", "press V")  # select the shape, and its height
+LINES = {
+    CONE: (0, 4, 0),
+    "co 0,0,0 0,1,0 2 3 9,9,9": (0, 0, 0),  # on its apex
+    "pa 0,3,0 0,-1,0 2 3 9,9,9": (0, 4, 0),
+    "pa 0,0,0 0,1,0 2 3 9,9,9": (0, 0, 0),
+    "co 0,2,0 0,-1,0 2 3 9,9,9\npl 0,-1,0 0,1,0 9,9,9": (0, 3, 0),
+    "co 0,5,0 0,-1,0 2 3 9,9,9\nsp 0,1,0 2 9,9,9": (0, 6, 0),
+    "co 0,5,0 0,-1,0 2 3 9,9,9\npl 0,0,0 0,1,0 9,9,9": (0, 5, 0),  # on nothing
+    "co 0,3,0 1,0,0 2 3 9,9,9": (0, 3, 0),  # on its side
+    "cy 0,1.5,0 0,1,0 2 3 9,9,9": (0, 1.5, 0),  # its position is its middle
+}
+
+
+def edited(line: str, *keys: str) -> State:
+    """The state after keys, with the height of the shape in a line as the active value."""
+    return played(*HEIGHT, *keys, text=f"{HEAD}{line}\n").state
+
+
+@pytest.mark.parametrize(("line", "there"), LINES.items())
+@pytest.mark.parametrize("typed", ["4", "=+=1", "=*=4/3"])
+def test_it_grows_away_from_what_it_stands_on(line: str, there: Triple, typed: str) -> None:
+    state = edited(line, f"text {typed}", "press Return")
+    assert state.element.height == 4
+    assert position_of(state.element) == there
+    assert len(state.undo_stack) == 1
+    assert edited(line, f"text {typed}", "press Return", "press Ctrl+Z").scene.items == scene(f"{HEAD}{line}\n").items
+    assert edited(line, "press Shift+V", "text 5", "press Return").element.diameter == 5
+
+
+@pytest.mark.parametrize("lines", [("press +",) * 3, ("down F3", "text +", "wait 0.4", "up F3"), ("press -",) * 5])
+def test_steps_leave_the_base_where_it_is(lines: tuple[str, ...]) -> None:
+    cone = edited(CONE, *lines).element
+    assert cone.height != 3
+    assert cone.apex == pytest.approx((0, cone.height, 0), abs=1e-5)
+
+
+def test_a_wider_one_stays_where_it_is() -> None:
+    assert edited(CONE, "press Shift+V", "press +").element.apex == (0, 3, 0)
+
+
+@pytest.mark.parametrize("added", [False, True])
+def test_a_handle_leaves_the_base_where_it_is_all_along_the_drag(added: bool) -> None:
+    """A new cone stands where the pointer was; one of a file on its base."""
+    start = ["press N", "press c", "press o", "press n", "press e", "press Return"] if added else list(HEIGHT)
+    text = HEAD if added else f"{HEAD}{CONE}\n"
+    opened = ["resize 640x480", "move 320,280", *start]
+    state = played(*opened, text=text).state
+    before = state.element
+    (handle,) = [
+        each
+        for each in handles_of(before, projection_of(state.scene.camera, 640, 480), 1.0)
+        if (each.kind, each.axis) == (SIZE, 1)
+    ]
+    x, y = map(int, handle.points[0])
+    after = played(*opened, f"drag {x},{y} {x},{y - 60}", text=text).state.element
+    assert after.height > 1.2 * before.height
+    assert before.apex[1] - before.height == pytest.approx(0, abs=1e-3)
+    assert after.apex[1] - after.height == pytest.approx(0, abs=1e-3)
