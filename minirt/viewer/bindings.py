@@ -35,6 +35,7 @@ SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT | Modifier.ALT
 
 MOUSE: dict[str, Button | str] = {
     **{f"{each.name.lower()} click": each for each in (Button.LEFT, Button.RIGHT)},
+    "double click": "double click",
     **{f"{each} drag": f"{each} drag" for each in ("left", "middle", "right")},
     "wheel up": Button.WHEEL_UP,
     "wheel down": Button.WHEEL_DOWN,
@@ -97,6 +98,7 @@ BINDINGS = (
     once(SELECT, "select next", "select the next element", "Tab"),
     once(SELECT, "select previous", "select the previous element", "Shift+Tab"),
     once(SELECT, "select at pointer", "select the element under the pointer", "left click"),
+    once(SELECT, "select too", "add it to the selected ones, which move together, or remove it", "Shift+left click"),
     once(
         SELECT, "select camera", "select the camera; again: look through the next one", "C", "Backspace", "right click"
     ),
@@ -107,6 +109,7 @@ BINDINGS = (
     in_steps(LOOK, "farther", "camera: farther; other elements: decrease the active value", "wheel down"),
     once(LOOK, "look at", "bring the selected element into view; the camera: the scene", "F"),
     once(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
+    once(LOOK, "look through", "look through the further camera under the pointer", "double click"),
     once(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
     once(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),
     while_held(MOVE, "left", "move left", "A", azerty="Q"),
@@ -139,6 +142,7 @@ BINDINGS = (
     once(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
     once(CHANGE, "previous value", "previous value", "Shift+V"),
     once(CHANGE, "add attribute", "add an attribute from a list: type, arrows, Enter; again: the next", "M"),
+    once(CHANGE, "rename", "name the selected element: type, Enter; the file has it as a comment", "F2"),
     once(CHANGE, "remove attribute", "remove the attribute of the active value", "Shift+M"),
     once(FILE, "save", "save the scene", "Ctrl+S"),
     once(FILE, "save copy", "save a copy: name-1.rt", "Ctrl+Shift+S"),

@@ -19,7 +19,7 @@ from minirt.viewer.app.choosing import LISTS
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.events import PANEL
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.typed_value import TYPE
+from minirt.viewer.app.typed_value import BEGUN
 from minirt.viewer.bindings import (
     BINDINGS,
     LAYOUTS,
@@ -48,7 +48,7 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, "select at pointer", TYPE, PANEL}
+    actions = {*EDITS, *COMMANDS, *DRAGS, *LISTS, *BEGUN, "select at pointer", "select too", "look through", PANEL}
     assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)

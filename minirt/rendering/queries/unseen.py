@@ -87,7 +87,7 @@ def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
     """Return which shape the eye is in, if there are others outside of it or the picture is even; else ''."""
     eye, bounded, (starts, ends) = np.array(scene.camera.position), is_bounded(arrays), arrays.boxes.swapaxes(0, 1)
     for index in np.flatnonzero(~bounded | ((starts <= eye) & (eye <= ends)).all(axis=1)).tolist():
-        shape, name = arrays.shapes[index], shape_name(scene.shapes, index)
+        shape, name = arrays.shapes[index], shape_name(scene, index)
         if flat := shape.flat():
             distance = abs(np.dot(np.subtract(eye, flat[0]), flat[1]))
             if is_even and distance <= IN_PLANE * (1 + np.abs(eye).max()):
@@ -105,7 +105,7 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray) -> str:
     """Return why a picture has one colour or no bounded shape, in which the shapes with the indices `seen` are."""
     bounded = is_bounded(arrays)
     if bounded[seen].any() or (len(seen) and not bounded.any()):
-        return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene.shapes, seen.tolist())}"
+        return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene, seen.tolist())}"
     if len(seen):
         kinds = [type(scene.shapes[index]) for index in seen.tolist()]
         names = " and ".join(kind.title if kinds.count(kind) == 1 else kind.plural for kind in dict.fromkeys(kinds))

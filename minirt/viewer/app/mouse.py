@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import dist
+from math import dist, inf
 
 from minirt.errors import MiniRTError
 from minirt.fields import Triple
 from minirt.mlx import Button, Cursor, Modifier
+from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
@@ -18,9 +19,12 @@ from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, handl
 from minirt.viewer.editing.motion import look_at
 from minirt.viewer.editing.placing import AHEAD, aim, aim_at_top
 from minirt.viewer.editing.projection import Aim, position_of
+from minirt.viewer.editing.selection import look_through
 from minirt.viewer.editing.state import index_of
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
+DOUBLE_CLICK = 0.4  # seconds between its presses
+SHIFT_DRAG = "turn by hand"  # the drag with Shift, without which the press selects several
 CURSORS = {"move by hand": Cursor.MOVE, "pan": Cursor.GRAB}  # while a drag goes on; other drags turn something
 BUTTON_DRAGS = {each: f"{each.name.lower()} drag" for each in (Button.LEFT, Button.MIDDLE, Button.RIGHT)}
 
@@ -28,7 +32,8 @@ BUTTON_DRAGS = {each: f"{each.name.lower()} drag" for each in (Button.LEFT, Butt
 class Mouse:
     """Turn button and motion events into clicks and drags.
 
-    The left button selects when it goes down. A click of another button counts when the button is released where it
+    The left button selects when it goes down: one of several selected elements becomes the primary one, as a drag moves
+    them all. A click of another button, with Shift, or on one of several counts when the button is released where it
     was pressed, because until then it may become a drag.
     """
 
@@ -36,6 +41,7 @@ class Mouse:
         self.session = session
         self._perform = perform
         self.inside = True  # whether the pointer is over the window
+        self._pressed_before: tuple[float, int | None] = -inf, None  # time, and the element, of the last press
 
     def on_press(self, button: int, x: int, y: int) -> None:
         """A button goes down, or the wheel turns."""
@@ -49,25 +55,45 @@ class Mouse:
         if button == Button.LEFT and self.grab(x, y):
             return
         try:
-            point = self.pick_point(x, y, selecting=button == Button.LEFT)
+            owner, point = self.owner_at(x, y)
         except MiniRTError as error:  # the file of a texture may be gone meanwhile
             session.show_error(error)
             session.show(session.state)
             return
+        if button == Button.LEFT and self.looks_through(owner):
+            return
+        if button == Button.LEFT and drag.action != SHIFT_DRAG:
+            state = session.state.with_message("there is nothing" if owner is None else "")
+            session.show(state if owner is None else state.make_primary(owner))
         state = session.state
-        session.pressed = DragStart(session.view, x, y, state.element, state.scene.camera, point, button, drag.action)
+        element = state.element if owner is None or button != Button.LEFT else state.scene.elements[owner]
+        start = DragStart(session.view, x, y, element, state.scene.camera, point, button, drag.action)
+        session.pressed = start._replace(owner=owner)
+
+    def looks_through(self, owner: int | None) -> bool:
+        """Look through a further camera where its icon is pressed twice; return whether it is."""
+        session, before = self.session, self._pressed_before
+        self._pressed_before = session.now, owner
+        scene = session.state.scene
+        is_double = owner == before[1] and session.now - before[0] <= DOUBLE_CLICK
+        camera = scene.elements[owner] if is_double and owner is not None else None
+        if owner is None or not isinstance(camera, Camera) or camera is scene.camera:
+            return False
+        session.show(look_through(session.state, owner, session.now))
+        return True
 
     def grab(self, x: int, y: int) -> bool:
         """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
         session, state, screen = self.session, self.session.state, self.session.screen
         if screen.level == HudLevel.NOTHING or session.modifiers & (Modifier.SHIFT | Modifier.ALT):
             return False
-        for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
+        for owner, way in arrows(state.scene, state.chosen, session.view, screen.icons).items():
             tip = arrow_tip(way, session.window.width, session.window.height, screen.scale)
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
                 session.show(look_at(state.select(owner), 1.0, session.now))
                 return True
-        handles = handles_of(state.element, session.view, screen.scale) if screen.handles else []
+        several = bool(state.others)
+        handles = handles_of(state.element, session.view, screen.scale, several) if screen.handles else []
         handle = handle_at(handles, x + PIXEL_CENTRE, y + PIXEL_CENTRE, screen.scale)
         if handle:
             start = DragStart(session.view, x, y, state.element, state.scene.camera, handle.centre, Button.LEFT)
@@ -86,6 +112,8 @@ class Mouse:
                 cursor = Cursor.TURN if looks_around else CURSORS.get(pressed.action, Cursor.TURN)
                 session.mlx.mlx_set_cursor(session.window, cursor)
                 session.state = session.state.end_merging()
+                if pressed.owner is not None and pressed.action == SHIFT_DRAG:
+                    session.state = session.state.make_primary(pressed.owner)
             session.say("")
             pressed = pressed._replace(snaps=Modifier.ACCEL in session.modifiers)
             drag = pull if pressed.handle else DRAGS[pressed.action]
@@ -95,10 +123,13 @@ class Mouse:
         """A button goes up: a drag ends, or a click is complete."""
         pressed = self.session.pressed
         if pressed and pressed.button == button:
-            clicked = not pressed.dragging and button != Button.LEFT
             self.session.release_button()
-            if clicked:
+            if not pressed.dragging and button != Button.LEFT:
                 self.click(button)
+            elif not pressed.dragging and pressed.owner is not None:
+                state = self.session.state.with_message("")
+                is_with_shift = pressed.action == SHIFT_DRAG
+                self.session.show(state.add_or_remove(pressed.owner) if is_with_shift else state.select(pressed.owner))
 
     def click(self, button: int) -> None:
         """Perform the action that is bound to a button."""
@@ -106,23 +137,18 @@ class Mouse:
         if binding:
             self._perform(binding, self.session.step)
 
-    def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
-        """Return the point of the scene under the pointer, None if there is none; select the element there."""
+    def owner_at(self, x: int, y: int) -> tuple[int | None, Triple | None]:
+        """Return the index of the element under the pointer, and the point of the scene there; None without one."""
         session, state, screen = self.session, self.session.state, self.session.screen
-        icons = visible_icons(state.scene, state.selected, session.view, screen.scale, screen.icons)
+        icons = visible_icons(state.scene, state.chosen, session.view, screen.scale, screen.icons)
         reach = SIZE * screen.scale / 2 if screen.level > HudLevel.NOTHING else -1.0
         under = [each for each in icons if max(abs(each.x - x), abs(each.y - y)) <= reach]
         if under:
-            icon = under[-1]  # which is drawn on top
-            if selecting:
-                session.show(state.with_message("").select(icon.owner))
-            element = state.scene.elements[icon.owner]
-            return None if element is state.scene.camera else position_of(element)
+            owner = under[-1].owner  # of the icon that is drawn on top
+            element = state.scene.elements[owner]
+            return owner, None if element is state.scene.camera else position_of(element)
         shape, point = session.surface_at(x, y)
-        if selecting:
-            state = state.with_message("" if shape else "there is nothing")
-            session.show(state.select(index_of(state.scene, shape)) if shape else state)
-        return point
+        return index_of(state.scene, shape) if shape else None, point
 
     def aim(self) -> Aim | None:
         """Return the place for a new element: under the pointer, or while it is elsewhere on top of the selected shape.

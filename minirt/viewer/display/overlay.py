@@ -137,6 +137,8 @@ def hints(state: State, every: bool) -> str:
     """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
     active, title = state.active, state.element.title
     groups = [f"{title}: + - {active.name} {value_text(state, active)}"]
+    if state.others:
+        groups.insert(0, f"{len(state.chosen)} elements selected")
     if state.element is state.scene.camera:
         groups.append("wheel: nearer")
     if every or state.frame is not Frame.VIEW:

@@ -54,6 +54,7 @@ class Screen:
         self.covered = 0  # columns at the right that the panel covers: text keeps clear of them
         self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
+        self.pointed: int | None = None  # index of the element whose row in the panel's list the pointer is on
         self.image = mlx.mlx_new_image(window.display, 1, 1)
         self._drawn: tuple[object, ...] = ()  # the contents of the window
 
@@ -94,7 +95,17 @@ class Screen:
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
-        shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
+        shown = (
+            self.panel,
+            self.has_tab,
+            self.level,
+            self.help,
+            self.search,
+            self.icons,
+            self.tips,
+            handles,
+            self.pointed,
+        )
         contents = described, picture, message, *shown, self.covered, width, height, scale
         if contents == self._drawn:
             return False
@@ -107,7 +118,7 @@ class Screen:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 job = picture.job
                 marks = {"icons": self.icons, "handles": handles}
-                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, **marks)
+                draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, pointed=self.pointed, **marks)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
         if self.has_tab and not self.help:
             overlay.draw_tab(self.frame, size)

@@ -15,6 +15,7 @@ from minirt.movie import FILMS, FPS, QUALITY, numbered, save_movie
 from minirt.rendering.image import Image
 from minirt.rendering.settings import render
 from minirt.scene import Lamp, Scene
+from minirt.scene.names import own_name
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.session import Session
@@ -138,7 +139,9 @@ def step_title(before: Snapshot, after: Snapshot) -> str:
     """Description of the edit between two versions of a scene."""
     old, new = before.scene.elements, after.scene.elements
     if len(old) != len(new):
-        return f"+ {new[after.selected].title}" if len(new) > len(old) else f"- {old[before.selected].title}"
+        is_more = len(new) > len(old)
+        return f"+ {structure.names_of_chosen(after)}" if is_more else f"- {structure.names_of_chosen(before)}"
     one, other = old[after.selected], new[after.selected]
     changed = (each for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None))
-    return f"{one.title}: {', '.join(each.title for each in changed)}"
+    titles = ["name"] if own_name(one) != own_name(other) else [each.title for each in changed]
+    return f"{structure.names_of_chosen(before._replace(selected=after.selected))}: {', '.join(titles)}"

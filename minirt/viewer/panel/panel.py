@@ -48,6 +48,7 @@ class Panel(Gui):
         paint = (lambda painter, _: self.paint(painter)) if is_open else None
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
         self.session.screen.covered, self.session.slides = 0, False
+        self.session.screen.pointed = None
         if is_open:
             self.settle()
         self.session.refresh()

@@ -1,0 +1,119 @@
+"""Names of elements: what their own lines say in a comment, or the comment over a block of lines, or kind and number.
+
+    # arms
+    cy 2,0,0 0,1,0 1 2 9,9,9           arms 1
+    cy -2,0,0 0,1,0 1 2 9,9,9          arms 2
+    sp 0,3,0 1 9,9,9  # head           head
+
+    sp 0,9,0 1 9,9,9                   sphere 2
+
+A block begins below a comment, and ends at a blank line or at another comment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain, islice, takewhile
+
+from minirt.element import Element
+from minirt.scene.elements import FURTHER, Lamp
+from minirt.scene.lines import line_from
+from minirt.scene.pages import Item
+from minirt.scene.registry import SPELLINGS
+from minirt.scene.scene import MISSING, Scene
+from minirt.scene.writer import line_of
+
+LONGEST = 40  # characters of a name: a longer comment is a sentence
+LONGEST_BLOCK = 200  # lines on either side of an element in which the comment over its block is looked for
+COUNTED_AS = {further: first for first, further in FURTHER.items()}  # kinds that are numbered as one
+
+
+def element_name(scene: Scene, index: int, translate: Callable[[str], str] = str) -> str:
+    """Return the name of `scene.elements[index]` for users; `translate` is given that of its kind."""
+    element = scene.elements[index]
+    if own := own_name(element):
+        return own
+    heading, (above, below) = heading_over(scene, index), around(scene, index)
+    if not heading or not takes_heading(element):
+        return numbered_kind(scene, index, translate)
+    block = (*reversed(list(takewhile(is_element, above))), element, *takewhile(is_element, below))
+    named = [each for each in block if isinstance(each, Element) and takes_heading(each) and not own_name(each)]
+    if len(named) == 1:
+        return heading
+    return f"{heading} {next(number for number, each in enumerate(named, 1) if each is element)}"
+
+
+def numbered_kind(scene: Scene, index: int, translate: Callable[[str], str] = str) -> str:
+    """Return the kind of an element and its number among those of this kind; what a scene has once has no number."""
+    element = scene.elements[index]
+    kind = COUNTED_AS.get(type(element), type(element))
+    title = translate(kind.title)
+    if not takes_heading(element) and len(scene.of(kind)) == 1:
+        return title
+    page, place = page_of(scene, index)
+    before = sum(len(each.of(kind)) for each in scene.pages[:page])
+    elements = scene.pages[page].of(Element)[: place + 1]
+    return f"{title} {before + sum(issubclass(type(each), kind) for each in elements)}"
+
+
+def own_name(element: Element) -> str:
+    """Return the name that the comment on the line of an element gives it; '' without one."""
+    line = line_from(1, element.source)
+    return name_in(line.text[line.end :])
+
+
+def renamed(element: Element, name: str) -> Element:
+    """Return an element with another name of its own, or none: the comment on its line; all else of the line stays."""
+    source = line_of(element)
+    line = line_from(1, source)
+    name = " ".join("".join(each if each.isprintable() else " " for each in name).split())
+    text, comment = line.text[: line.end], line.text[line.end :]
+    if not name or not comment:
+        text = text.rstrip(" \t")
+    if name:
+        text += f"# {name}" if comment else f" # {name}"
+    before, _, after = source.partition(line.text)
+    return element.replace(source=before + text + after)
+
+
+def heading_over(scene: Scene, index: int) -> str:
+    """Return the name that the comment over the block of an element gives it; '' without one."""
+    above, _ = around(scene, index)
+    return name_in(next((each for each in above if isinstance(each, str)), ""))
+
+
+def takes_heading(element: Element) -> bool:
+    """Whether a comment over a block names an element of it; settings of a scene, such as its camera, it does not."""
+    return isinstance(element, Lamp) or not type(element).once
+
+
+def is_element(item: Item) -> bool:
+    return not isinstance(item, str)
+
+
+def around(scene: Scene, index: int) -> tuple[Sequence[Item], Sequence[Item]]:
+    """Return the items above an element, from it upwards, and those below it, as far as a block may reach."""
+    page, place = page_of(scene, index)
+    items = scene.pages[page].items
+    at = next(islice((number for number, item in enumerate(items) if is_element(item)), place, None))
+    above = chain(reversed(items[:at]), *(reversed(each.items) for each in reversed(scene.pages[:page])))
+    below = chain(items[at + 1 :], *(each.items for each in scene.pages[page + 1 :]))
+    return tuple(islice(above, LONGEST_BLOCK)), tuple(islice(below, LONGEST_BLOCK))
+
+
+def page_of(scene: Scene, index: int) -> tuple[int, int]:
+    """Return the number of the page that holds an element, and the element's index among those of the page."""
+    page = 0
+    while index >= (length := len(scene.pages[page].of(Element))):
+        index, page = index - length, page + 1
+    return page, index
+
+
+def name_in(comment: str) -> str:
+    """Return the name in a comment; '' in a sentence, in a line that was taken out, and in anything else."""
+    text = comment.strip()
+    name = text.strip("#-=* \t")
+    first, _, rest = name.partition(" ")
+    is_line = first in SPELLINGS and rest.lstrip("-.")[:1].isdigit()
+    is_name = text.startswith("#") and len(name) <= LONGEST and not is_line and not text.startswith(MISSING)
+    return name if is_name else ""
