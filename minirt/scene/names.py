@@ -33,11 +33,10 @@ def element_name(scene: Scene, index: int, translate: Callable[[str], str] = str
     element = scene.elements[index]
     if own := own_name(element):
         return own
-    heading, (above, below) = heading_over(scene, index), around(scene, index)
-    if not heading or not takes_heading(element):
+    heading, block = named_block(scene, index)
+    if not heading:
         return numbered_kind(scene, index, translate)
-    block = (*reversed(list(takewhile(is_element, above))), element, *takewhile(is_element, below))
-    named = [each for each in block if isinstance(each, Element) and takes_heading(each) and not own_name(each)]
+    named = [each for each in block if not own_name(each)]
     if len(named) == 1:
         return heading
     return f"{heading} {next(number for number, each in enumerate(named, 1) if each is element)}"
@@ -48,7 +47,7 @@ def numbered_kind(scene: Scene, index: int, translate: Callable[[str], str] = st
     element = scene.elements[index]
     kind = COUNTED_AS.get(type(element), type(element))
     title = translate(kind.title)
-    if not takes_heading(element) and len(scene.of(kind)) == 1:
+    if is_setting(element) and len(scene.of(kind)) == 1:
         return title
     page, place = page_of(scene, index)
     before = sum(len(each.of(kind)) for each in scene.pages[:page])
@@ -76,15 +75,21 @@ def renamed(element: Element, name: str) -> Element:
     return element.replace(source=before + text + after)
 
 
-def heading_over(scene: Scene, index: int) -> str:
-    """Return the name that the comment over the block of an element gives it; '' without one."""
-    above, _ = around(scene, index)
-    return name_in(next((each for each in above if isinstance(each, str)), ""))
+def named_block(scene: Scene, index: int) -> tuple[str, list[Element]]:
+    """Return the name that the comment over the block of an element gives to it, and the elements of the block.
+
+    There is no name where the block holds settings of the scene: such a comment is about the file.
+    """
+    above, below = around(scene, index)
+    heading = name_in(next((each for each in above if isinstance(each, str)), ""))
+    items = (*reversed(list(takewhile(is_element, above))), scene.elements[index], *takewhile(is_element, below))
+    block = [each for each in items if isinstance(each, Element)]
+    return (heading, block) if not any(map(is_setting, block)) else ("", block)
 
 
-def takes_heading(element: Element) -> bool:
-    """Whether a comment over a block names an element of it; settings of a scene, such as its camera, it does not."""
-    return isinstance(element, Lamp) or not type(element).once
+def is_setting(element: Element) -> bool:
+    """Whether a scene has an element once, such as its camera."""
+    return type(element).once and not isinstance(element, Lamp)
 
 
 def is_element(item: Item) -> bool:

@@ -109,6 +109,8 @@ AT_SPHERE, AT_CYLINDER = "32,24", "40,24"  # pixels of a window of 64x48
 Check = Callable[[Session, Session], bool]  # compares the sessions without and with the key
 MOUSE = {
     "left click": (f"click {AT_SPHERE}",),
+    "double click": (f"click {AT_SPHERE}", f"click {AT_SPHERE}"),
+    "Shift+left click": ("down Shift", f"click {AT_CYLINDER}", "up Shift"),
     "right click": (f"click {AT_SPHERE} right",),
     "left drag": (f"drag {AT_SPHERE} 45,30",),
     "Shift+left drag": ("down Shift", f"drag {AT_CYLINDER} 48,36", "up Shift"),
@@ -204,6 +206,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
         ("press Ctrl+D", *SPHERE),
         lambda _, after: isinstance(after.state.element, Camera) and after.state.scene.shown == 0,
     ),
+    "select too": (SPHERE, lambda _, after: (after.state.element.title, len(after.state.others)) == ("cylinder", 1)),
     "select light": (SPHERE, lambda _, after: after.state.element.title == "light"),
     "left": (SPHERE, moved((-1, 0, 0))),
     "right": (SPHERE, moved((1, 0, 0))),
@@ -231,6 +234,10 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
         SPHERE,
         lambda _, after: after.screen.panel is not None and "diameter: =_" in after.screen.panel.title,
     ),
+    "rename": (
+        SPHERE,
+        lambda _, after: after.screen.panel is not None and after.screen.panel.title.startswith("name of sphere 1: _"),
+    ),
     "nearer": ((), approached(1)),
     "farther": ((), approached(-1)),
     "previous value": ((*SPHERE, "press V", "press V"), lambda _, after: after.state.active.name == "colour"),
@@ -240,6 +247,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next tone": ((), lambda _, after: camera(after).tone == "srgb"),
     "focus": ((f"move {AT_SPHERE}",), focused),
     "look at": (("press Tab",), centred),
+    "look through": (("press Ctrl+D", "hold W 1", "hold Z 1"), lambda _, after: after.state.scene.shown == 1),
     "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
     "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
     "redo": (

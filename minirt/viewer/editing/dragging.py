@@ -21,7 +21,7 @@ from minirt.viewer.editing import motion
 from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES
 from minirt.viewer.editing.placing import aim, dropped, keep_standing, lowest_along, middle_of, settled
 from minirt.viewer.editing.projection import UP, Pixel, Projection, dot, extent, position_of, scene_centre, subtract
-from minirt.viewer.editing.rigid import shifted
+from minirt.viewer.editing.rigid import can_turn, shifted
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value, values
 
@@ -217,7 +217,7 @@ def handles_of(element: Element, view: Projection, scale: float, several: bool =
     angles = [2 * pi * corner / CORNERS for corner in range(CORNERS + 1)]
     for axis, way in enumerate(AXES):
         add(MOVE, axis, way)
-        if several or motion.can_turn(element):
+        if several or can_turn(element):
             u, v = AXES[axis - 2], AXES[axis - 1]
             add(TURN, axis, *(linear_combination(RING * cos(angle), u, RING * sin(angle), v) for angle in angles))
     add(SLIDE, 1, (SQUARE, 0.0, SQUARE))

@@ -7,13 +7,12 @@ from math import atan, atan2, copysign, cos, hypot, pi, radians, sin, tan
 from typing import TypeVar
 
 from minirt.element import Element
-from minirt.fields import Direction, Point, Triple, clamp, clamp_length, spelled, unit, upright
+from minirt.fields import Triple, clamp, clamp_length, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Scene
 from minirt.scene.elements import TONES, Camera, linear_combination
-from minirt.shapes.shape import Oriented
-from minirt.viewer.editing.projection import dot, extent, field_names, position_of, scene_centre, subtract
-from minirt.viewer.editing.rigid import clamp_point, mean_point, rotate, rotate_about, shifted, translate
+from minirt.viewer.editing.projection import dot, extent, position_of, scene_centre, subtract
+from minirt.viewer.editing.rigid import can_turn, clamp_point, mean_point, rotate, rotate_about, shifted, translate
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import round_length
 
@@ -124,14 +123,6 @@ def turntable(scene: Scene, count: int) -> Iterator[Scene]:
 def handedness(camera: Camera) -> float:
     """Return -1 for a mirrored picture, in which right and clockwise are the opposite in the scene, otherwise 1."""
     return -1.0 if camera.left_handed else 1.0
-
-
-def can_turn(element: Element) -> bool:
-    """Whether some rotation of an element can be seen."""
-    kind = type(element)
-    if isinstance(element, Oriented):
-        return element.shows_axis
-    return len(field_names(kind, Point)) > 1 or bool(field_names(kind, Direction))
 
 
 def turn_axis(camera: Camera, axis: int) -> Triple:

@@ -64,11 +64,19 @@ def rotate(element: Element, axis: Triple, angle: float) -> Element:
 
 def rotate_about(element: Element, pivot: Triple, axis: Triple, angle: float) -> Element:
     """Rotate an element as `rotate` does, and its place about a pivot."""
-    turned = rotate(element, axis, angle)
+    turned = rotate(element, axis, angle) if can_turn(element) else element
     if centre := mean_point(element):
         offset = subtract(centre, pivot)
         turned = shifted(turned, subtract(rodrigues(offset, axis, angle), offset))
     return turned
+
+
+def can_turn(element: Element) -> bool:
+    """Whether some rotation of an element can be seen."""
+    kind = type(element)
+    if isinstance(element, Oriented):
+        return element.shows_axis
+    return len(field_names(kind, Point)) > 1 or bool(field_names(kind, Direction))
 
 
 def mean_point(element: Element) -> Triple | None:

@@ -114,7 +114,7 @@ class State:
         chosen = (self.chosen - {eye}) ^ {index}
         if index == eye or not chosen:
             return self.select(index)
-        primary = next(each for each in (index, self.selected, *chosen) if each in chosen)
+        primary = next(each for each in (index, self.selected, max(chosen)) if each in chosen)
         return replace(self.select(primary), others=chosen - {primary})
 
     def end_merging(self) -> State:

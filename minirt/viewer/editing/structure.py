@@ -19,7 +19,7 @@ from minirt.materials import Compound
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera, Lamp, Light, Scene
 from minirt.scene.elements import linear_combination
-from minirt.scene.names import element_name, heading_over, own_name, renamed
+from minirt.scene.names import element_name, named_block, own_name, renamed
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
@@ -99,7 +99,7 @@ def with_element(before: State, kind: type[Element]) -> State:
     """The state with a new element, which is selected. The first shape of a scene without any lamp brings one."""
     element, last = default_element(kind, before), len(before.scene.elements) - 1
     lamps = [first_lamp(before)] if isinstance(element, Shape) and not before.scene.of(Lamp) else []
-    apart = [""] if heading_over(before.scene, last) else []  # a blank line, so that it is not named like those above
+    apart = [""] if named_block(before.scene, last)[0] else []  # a blank line, so that it is not named like those above
     scene = before.scene.edit(last, before.scene.elements[last], *apart, element, *lamps)
     after = replace(before, value_index=0, added_kind=kind).change(scene, ELEMENT, 0.0, last + 1)
     return after.with_message(f"a new {element.title}{', and a light, since there was none' if lamps else ''}")

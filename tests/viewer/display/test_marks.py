@@ -14,7 +14,7 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Light
 from minirt.shapes import Shape, Torus
 from minirt.shapes import torus as torus_formulas
-from minirt.viewer.display import marks
+from minirt.viewer.display import marks, outline
 from minirt.viewer.display.marks import (
     AXIS_COLOURS,
     BLACK,
