@@ -452,6 +452,35 @@ def test_a_row_that_drops_a_change_is_found(path: Path, monkeypatch: pytest.Monk
         test_every_number_of_every_kind_is_stepped_and_typed_by_keys_alone(ELEMENTS["sp"], path)
 
 
+def random_input(user: User, chance: random.Random, size: tuple[int, int], keys: list[int]) -> None:
+    """Do something, mostly in the panel."""
+    x, y = chance.randrange(size[0] // 2, size[0]), chance.randrange(size[1])
+    match chance.randrange(8):
+        case 0:
+            user.memory.click(x, y)
+        case 1:
+            user.memory.button_press(1, x, y)
+            user.memory.motion(chance.randrange(size[0]), chance.randrange(size[1]))
+            user.memory.button_release(1, x, y)
+        case 2:
+            user.memory.text(chance.choice("0123456789+-*/.,()="))
+        case 3:
+            user.memory.tap(chance.choice(keys))
+        case 4:
+            user.memory.scroll(chance.choice((-3, 3)), x, y)
+        case 5:
+            user.memory.resize(*(max(1, side + chance.randrange(-20, 20)) for side in size))
+        case 6:  # several elements
+            user.memory.press(chance.choice((Key.SHIFT_L, Key.CONTROL_L)))
+            user.memory.click(chance.choice((x, size[0] // 4)), y)
+            user.memory.release(Key.SHIFT_L)
+            user.memory.release(Key.CONTROL_L)
+        case 7:  # a name
+            user.memory.tap(Key.F2)
+            user.memory.text(chance.choice("a#é "))
+            user.memory.tap(Key.RETURN)
+
+
 @pytest.mark.parametrize("size", [(400, 300), (1280, 720)], ids="{0[0]}x{0[1]}".format)
 def test_random_input_leaves_a_scene_that_is_saved_and_undone_to_the_first_byte(size: tuple[int, int], path: Path):  # noqa: F811
     """`MINIRT_PANEL_INPUTS` is the number of inputs."""
@@ -464,22 +493,7 @@ def test_random_input_leaves_a_scene_that_is_saved_and_undone_to_the_first_byte(
     for number in range(int(os.environ.get("MINIRT_PANEL_INPUTS", "300"))):
         if number % 300 == 0:  # fewer edits than are kept for undo
             user = User(parse(text, path).scene, size)
-        x, y = chance.randrange(size[0] // 2, size[0]), chance.randrange(size[1])
-        match chance.randrange(6):
-            case 0:
-                user.memory.click(x, y)
-            case 1:
-                user.memory.button_press(1, x, y)
-                user.memory.motion(chance.randrange(size[0]), chance.randrange(size[1]))
-                user.memory.button_release(1, x, y)
-            case 2:
-                user.memory.text(chance.choice("0123456789+-*/.,()="))
-            case 3:
-                user.memory.tap(chance.choice(keys))
-            case 4:
-                user.memory.scroll(chance.choice((-3, 3)), x, y)
-            case 5:
-                user.memory.resize(*(max(1, side + chance.randrange(-20, 20)) for side in size))
+        random_input(user, chance, size, keys)
         try:
             user.memory.play()
             user.saved()
