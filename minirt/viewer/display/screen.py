@@ -95,18 +95,8 @@ class Screen:
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
-        shown = (
-            self.panel,
-            self.has_tab,
-            self.level,
-            self.help,
-            self.search,
-            self.icons,
-            self.tips,
-            handles,
-            self.pointed,
-        )
-        contents = described, picture, message, *shown, self.covered, width, height, scale
+        shown = self.panel, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, handles
+        contents = described, picture, message, *shown, self.pointed, self.covered, width, height, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
