@@ -50,15 +50,17 @@ def numbered_kind(scene: Scene, index: int, translate: Callable[[str], str] = st
     if is_setting(element) and len(scene.of(kind)) == 1:
         return title
     page, place = page_of(scene, index)
-    before = sum(len(each.of(kind)) for each in scene.pages[:page])
-    elements = scene.pages[page].of(Element)[: place + 1]
-    return f"{title} {before + sum(issubclass(type(each), kind) for each in elements)}"
+    elements, alike = (scene.pages[page].of(sort) for sort in (Element, kind))
+    number = sum(len(each.of(kind)) for each in scene.pages[:page]) + place + 1
+    if len(alike) < len(elements):
+        number -= sum(not issubclass(type(each), kind) for each in elements[: place + 1])
+    return f"{title} {number}"
 
 
 def own_name(element: Element) -> str:
     """Return the name that the comment on the line of an element gives it; '' without one."""
-    line = line_from(1, element.source)
-    return name_in(line.text[line.end :])
+    _, sign, comment = element.source.partition("#")
+    return name_in(sign + comment)
 
 
 def renamed(element: Element, name: str) -> Element:
@@ -82,9 +84,11 @@ def named_block(scene: Scene, index: int) -> tuple[str, list[Element]]:
     """
     above, below = around(scene, index)
     heading = name_in(next((each for each in above if isinstance(each, str)), ""))
+    if not heading:
+        return "", []
     items = (*reversed(list(takewhile(is_element, above))), scene.elements[index], *takewhile(is_element, below))
     block = [each for each in items if isinstance(each, Element)]
-    return (heading, block) if not any(map(is_setting, block)) else ("", block)
+    return (heading, block) if not any(map(is_setting, block)) else ("", [])
 
 
 def is_setting(element: Element) -> bool:
@@ -99,10 +103,13 @@ def is_element(item: Item) -> bool:
 def around(scene: Scene, index: int) -> tuple[Sequence[Item], Sequence[Item]]:
     """Return the items above an element, from it upwards, and those below it, as far as a block may reach."""
     page, place = page_of(scene, index)
-    items = scene.pages[page].items
-    at = next(islice((number for number, item in enumerate(items) if is_element(item)), place, None))
-    above = chain(reversed(items[:at]), *(reversed(each.items) for each in reversed(scene.pages[:page])))
-    below = chain(items[at + 1 :], *(each.items for each in scene.pages[page + 1 :]))
+    items, at = scene.pages[page].items, place
+    if len(scene.pages[page].of(Element)) < len(items):
+        at = next(islice((number for number, item in enumerate(items) if is_element(item)), place, None))
+    before = (each.items[: -LONGEST_BLOCK - 1 : -1] for each in reversed(scene.pages[:page]))
+    after = (each.items[:LONGEST_BLOCK] for each in scene.pages[page + 1 :])
+    above = chain(items[max(0, at - LONGEST_BLOCK) : at][::-1], chain.from_iterable(before))
+    below = chain(items[at + 1 : at + 1 + LONGEST_BLOCK], chain.from_iterable(after))
     return tuple(islice(above, LONGEST_BLOCK)), tuple(islice(below, LONGEST_BLOCK))
 
 
