@@ -85,10 +85,13 @@ class Elements:
         imgui.push_id(index)
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
         imgui.begin_group()
+        imgui.begin_disabled(isinstance(element, Camera))  # no picture is without one
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
+        imgui.end_disabled()
         imgui.set_item_tooltip(translated("shown while you edit; the file keeps it"))
         if changed:
             several = state.chosen if index in state.chosen else {index}
+            several = {each for each in several if not isinstance(state.scene.elements[each], Camera)}
             hidden = state.hidden - several if index in state.hidden else state.hidden | several
             self.rows.gui.show(replace(state, hidden=hidden))
         imgui.same_line()
