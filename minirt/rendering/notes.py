@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 import numpy as np
 
@@ -11,7 +12,8 @@ from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.lights import never_occludes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.scene import Scene
+from minirt.scene import Lamp, Scene
+from minirt.scene.names import element_name
 from minirt.shapes import ALL_KINDS, Shape
 
 MOST_NAMED = 3  # shapes in a notice
@@ -19,7 +21,7 @@ NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for thes
 
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
-    """Describe the decisions. Lights, and the shapes of each kind, are numbered in the order of the file."""
+    """Describe the decisions."""
     shapes = f"{len(shape_arrays.listed)} shape{'s' * (len(shape_arrays.listed) != 1)}"
     sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
@@ -28,15 +30,16 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
     else:
         cells = arrays.light_buffer_cells
         yield f"light buffer: 6 x {cells} x {cells} cells per light ({shapes})"
-    for number, light in enumerate(scene.lights, 1):
+    for number, light in enumerate(scene.lights):
+        name = light_name(scene, number)
         if not light.brightness:
-            yield f"light {number} has brightness 0"
+            yield f"{name} has brightness 0"
         elif not any(light.colour):
-            yield f"light {number} is black"
+            yield f"{name} is black"
         else:
             harmless = never_occludes(shape_arrays, np.array(scene.camera.position), light)
             for index in shape_arrays.owner[shape_arrays.plane_indices[harmless]].tolist():
-                yield f"{shape_name(scene.shapes, index)} hides nothing from light {number}"
+                yield f"{shape_name(scene, index)} hides nothing from {name}"
 
 
 def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -> Iterator[str]:
@@ -59,13 +62,17 @@ def plurals(elements: set[type[Shape]]) -> str:
     return ", ".join(kind.element.plural for kind in ALL_KINDS if kind.element in elements)
 
 
-def names_of(shapes: Sequence[Shape], indices: Sequence[int]) -> str:
+def names_of(scene: Scene, indices: Sequence[int]) -> str:
     """Name the first of some shapes."""
-    names = ", ".join(shape_name(shapes, index) for index in indices[:MOST_NAMED])
+    names = ", ".join(shape_name(scene, index) for index in indices[:MOST_NAMED])
     return names + ", ..." * (len(indices) > MOST_NAMED)
 
 
-def shape_name(shapes: Sequence[Shape], index: int) -> str:
-    """Name a shape by its kind and its number among those of this kind: plane 2."""
-    kind = type(shapes[index])
-    return f"{kind.title} {sum(type(shape) is kind for shape in shapes[: index + 1])}"
+def shape_name(scene: Scene, index: int) -> str:
+    """Name `scene.shapes[index]`."""
+    return element_name(scene, next(islice(scene.indices_of(Shape), index, None)))
+
+
+def light_name(scene: Scene, index: int) -> str:
+    """Name `scene.lights[index]`."""
+    return element_name(scene, next(islice(scene.indices_of(Lamp), index, None)))

@@ -246,12 +246,12 @@ class Scene(Immutable):
             return self.items.index(element)
         raise ValueError(f"the scene has no {element!r}")
 
-    def edit(self, index: int, *new: Element) -> Scene:
-        """Return the scene with `elements[index]` replaced by any number of elements."""
+    def edit(self, index: int, *new: Item) -> Scene:
+        """Return the scene with `elements[index]` replaced by any number of items."""
         return self._edited(range(sum(len(page.of(Element)) for page in self.pages))[index], Element, *new)
 
-    def _edited(self, index: int, sort: type[Any], *new: Element) -> Scene:
-        """Return the scene with entry `index` of a sort, as of all items, replaced by any number of elements."""
+    def _edited(self, index: int, sort: type[Any], *new: Item) -> Scene:
+        """Return the scene with entry `index` of a sort, as of all items, replaced by any number of items."""
         number = 0
         while index >= (length := len(self.pages[number].of(sort))):
             index, number = index - length, number + 1

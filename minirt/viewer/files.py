@@ -73,9 +73,16 @@ def contents_differ(scene: Scene, saved: Scene) -> bool:
         sides = [(scene.items, saved.items)]
     return any(
         len(one) != len(other)
-        or any(a is not b and a != b and not looks(a, b) for a, b in zip(one, other, strict=True))
+        or any(a is not b and not is_same(a, b) and not looks(a, b) for a, b in zip(one, other, strict=True))
         for one, other in sides
     )
+
+
+def is_same(one: Item, other: Item) -> bool:
+    """Whether two entries of a scene are equal, and their lines have the same comment."""
+    if isinstance(one, str) or isinstance(other, str):
+        return one == other
+    return one == other and one.source == other.source
 
 
 def looks(one: Item, other: Item) -> bool:
@@ -83,7 +90,7 @@ def looks(one: Item, other: Item) -> bool:
 
     Fields that nobody gave a value, such as a tone that an option chose, are not compared.
     """
-    if not isinstance(one, Camera) or not isinstance(other, Camera):
+    if not isinstance(one, Camera) or not isinstance(other, Camera) or one.source != other.source:
         return False
     mine, theirs = dict(one.edited), dict(other.edited)
     return all(mine.get(each, getattr(one, each)) == theirs.get(each, getattr(other, each)) for each in mine | theirs)

@@ -1,6 +1,6 @@
 """Language of the window: its texts by a catalogue of gettext's form, `locale/LANGUAGE.po`.
 
-The English texts are the catalogue's keys, with {} for what changes: "deleted the {}". So texts are translated as a
+The English texts are the catalogue's keys, with {} for what changes: "deleted {}". So texts are translated as a
 whole where they are drawn, also errors of parts that know no language; what has no translation stays English.
 """
 

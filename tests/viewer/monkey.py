@@ -80,7 +80,11 @@ def lines(chance: random.Random) -> Iterator[str]:
             yield f"press {chance.choice(keys)}"
         elif kind < 0.62:  # an element or an attribute from a list
             yield from (f"press {chance.choice('NM')}", *["press Down"] * chance.randint(0, 24), "press Return")
-        elif kind < 0.7:
+        elif kind < 0.64:
+            yield from ("press F2", f"text {chance.choice(['head', 'x # y', 'l'])}", "press Return")
+        elif kind < 0.67:  # several elements
+            yield from ("down Shift", *(f"click {place()}" for _ in range(3)), "up Shift")
+        elif kind < 0.72:
             yield f"click {place()}{' right' if button == ' right' else ''}"
         elif kind < 0.8:
             yield f"drag {place()} {place()}{button}"

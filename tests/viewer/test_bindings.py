@@ -20,7 +20,7 @@ from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.events import PANEL
 from minirt.viewer.app.mouse import ZOOMS
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.typed_value import TYPE
+from minirt.viewer.app.typed_value import BEGUN
 from minirt.viewer.bindings import (
     BINDINGS,
     LAYOUTS,
@@ -49,7 +49,8 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    actions = {*EDITS, *COMMANDS, *DRAGS, *ZOOMS, *LISTS, OPEN_MENU, "select at pointer", TYPE, PANEL}
+    gestures = {"select at pointer", "select too", PANEL, OPEN_MENU}
+    actions = {*EDITS, *COMMANDS, *DRAGS, *ZOOMS, *LISTS, *BEGUN, *gestures}
     assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)
@@ -122,6 +123,8 @@ AT_SPHERE, AT_CYLINDER = "32,24", "40,24"  # pixels of a window of 64x48
 Check = Callable[[Session, Session], bool]  # compares the sessions without and with the key
 MOUSE = {
     "left click": (f"click {AT_SPHERE}",),
+    "double click": (f"click {AT_SPHERE}", f"click {AT_SPHERE}"),
+    "Shift+left click": ("down Shift", f"click {AT_CYLINDER}", "up Shift"),
     "right click": (f"click {AT_SPHERE} right",),
     "left drag": (f"drag {AT_SPHERE} 45,30",),
     "Shift+left drag": ("down Shift", f"drag {AT_CYLINDER} 48,36", "up Shift"),
@@ -220,7 +223,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
         ("press Ctrl+D", *SPHERE),
         lambda _, after: isinstance(after.state.element, Camera) and after.state.scene.shown == 0,
     ),
-    "look through": (("press Ctrl+D",), lambda _, after: after.state.scene.shown == 1),
+    "select too": (SPHERE, lambda _, after: (after.state.element.title, len(after.state.others)) == ("cylinder", 1)),
     "open menu": ((), lambda _, after: bool(after.screen.list_box and after.screen.list_box.keys)),
     "select light": (SPHERE, lambda _, after: after.state.element.title == "light"),
     "left": (SPHERE, moved((-1, 0, 0))),
@@ -249,6 +252,12 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
         SPHERE,
         lambda _, after: after.screen.list_box is not None and "diameter: =_" in after.screen.list_box.title,
     ),
+    "rename": (
+        SPHERE,
+        lambda _, after: (
+            after.screen.list_box is not None and after.screen.list_box.title.startswith("name of sphere 1: _")
+        ),
+    ),
     "nearer": ((), approached(1)),
     "farther": ((), approached(-1)),
     "previous value": ((*SPHERE, "press V", "press V"), lambda _, after: after.state.active.name == "colour"),
@@ -258,6 +267,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next tone": ((), lambda _, after: camera(after).tone == "srgb"),
     "focus": ((f"move {AT_SPHERE}",), focused),
     "look at": (("press Tab",), centred),
+    "look through": (("press Ctrl+D", "hold W 1", "hold Z 1"), lambda _, after: after.state.scene.shown == 1),
     "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
     "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
     "redo": (

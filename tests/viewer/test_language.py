@@ -110,7 +110,7 @@ def test_a_text_that_lacks_a_translation_is_found() -> None:
 @pytest.mark.parametrize(
     ("text", "meaning"),
     [
-        ("deleted the sphere", "supprimé : sphère"),
+        ("deleted sphere 1", "supprimé : sphère 1"),
         ("diameter must be > 0, got '-3'", "diamètre doit être > 0, et non '-3'"),
         ("a b.rt:5:10: sphere axis must not be 0,0,0: it points nowhere\nand 2 more", AXIS),
         ("sphere: + - diameter 3.8    H: help", "sphère: + - diamètre 3.8    H : aide"),
@@ -130,9 +130,9 @@ def test_texts_are_translated_whole_with_what_they_insert(french: None, text: st
 def test_other_languages_stay_english(monkeypatch: pytest.MonkeyPatch, value: str) -> None:
     monkeypatch.setenv("LANGUAGE", "")
     monkeypatch.setenv("LC_ALL", value)
-    assert language.translated("deleted the sphere") == "deleted the sphere"
+    assert language.translated("deleted sphere 1") == "deleted sphere 1"
     monkeypatch.setenv("LC_ALL", "fr_FR.UTF-8")
-    assert language.translated("deleted the sphere") == "supprimé : sphère"
+    assert language.translated("deleted sphere 1") == "supprimé : sphère 1"
 
 
 def test_the_window_draws_its_texts_in_french_and_searches_them(french: None, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -38,8 +38,9 @@ from tests.viewer.fake import TEXT, FakeRenderer
 from tests.waiting import HANG_LIMIT
 
 pytest.importorskip("slimgui", reason="the panel needs slimgui: make installs it")
+from minirt.viewer.panel.elements import found
 from minirt.viewer.panel.groups import FOLDED
-from minirt.viewer.panel.pages import ONCE
+from minirt.viewer.panel.pages import ONCE, step_title
 from minirt.viewer.panel.rows import Rows
 from tests.viewer.widgets import WIDGETS
 
@@ -487,6 +488,35 @@ def test_a_row_that_drops_a_change_is_found(path: Path, monkeypatch: pytest.Monk
         test_every_number_of_every_kind_is_typed_by_keys_alone(ELEMENTS["sp"], path)
 
 
+def random_input(user: User, chance: random.Random, size: tuple[int, int], keys: list[int]) -> None:
+    """Do something, mostly in the panel."""
+    x, y = chance.randrange(size[0] // 2, size[0]), chance.randrange(size[1])
+    match chance.randrange(8):
+        case 0:
+            user.memory.click(x, y)
+        case 1:
+            user.memory.button_press(1, x, y)
+            user.memory.motion(chance.randrange(size[0]), chance.randrange(size[1]))
+            user.memory.button_release(1, x, y)
+        case 2:
+            user.memory.text(chance.choice("0123456789+-*/.,()="))
+        case 3:
+            user.memory.tap(chance.choice(keys))
+        case 4:
+            user.memory.scroll(chance.choice((-3, 3)), x, y)
+        case 5:
+            user.memory.resize(*(max(1, side + chance.randrange(-20, 20)) for side in size))
+        case 6:  # several elements
+            user.memory.press(chance.choice((Key.SHIFT_L, Key.CONTROL_L)))
+            user.memory.click(chance.choice((x, size[0] // 4)), y)
+            user.memory.release(Key.SHIFT_L)
+            user.memory.release(Key.CONTROL_L)
+        case 7:  # a name
+            user.memory.tap(Key.F2)
+            user.memory.text(chance.choice("a#é "))
+            user.memory.tap(Key.RETURN)
+
+
 @pytest.mark.parametrize("size", [(400, 300), (1280, 720)], ids="{0[0]}x{0[1]}".format)
 def test_random_input_leaves_a_scene_that_is_saved_and_undone_to_the_first_byte(size: tuple[int, int], path: Path):  # noqa: F811
     """`MINIRT_PANEL_INPUTS` is the number of inputs."""
@@ -499,22 +529,7 @@ def test_random_input_leaves_a_scene_that_is_saved_and_undone_to_the_first_byte(
     for number in range(int(os.environ.get("MINIRT_PANEL_INPUTS", "300"))):
         if number % 300 == 0:  # fewer edits than are kept for undo
             user = User(parse(text, path).scene, size)
-        x, y = chance.randrange(size[0] // 2, size[0]), chance.randrange(size[1])
-        match chance.randrange(6):
-            case 0:
-                user.memory.click(x, y)
-            case 1:
-                user.memory.button_press(1, x, y)
-                user.memory.motion(chance.randrange(size[0]), chance.randrange(size[1]))
-                user.memory.button_release(1, x, y)
-            case 2:
-                user.memory.text(chance.choice("0123456789+-*/.,()="))
-            case 3:
-                user.memory.tap(chance.choice(keys))
-            case 4:
-                user.memory.scroll(chance.choice((-3, 3)), x, y)
-            case 5:
-                user.memory.resize(*(max(1, side + chance.randrange(-20, 20)) for side in size))
+        random_input(user, chance, size, keys)
         try:
             user.memory.play()
             user.saved()
@@ -579,3 +594,89 @@ def test_slimgui_is_imported_when_the_panel_opens_and_without_it_f1_names_the_ex
     """
     ended = run([sys.executable, "-c", program], text=True)
     assert ended.returncode == 0, ended.stderr
+
+
+MANY = TEXT + "# arms\nco 0,3,0 0,1,0 1 2 9,9,9\nco 0,5,0 0,1,0 1 2 9,9,9\n\nc 0,3,9 0,-0.2,-0.98 60\n"
+
+
+def test_rows_select_several_which_are_hidden_and_deleted_together() -> None:
+    user = User(parse(MANY, "scene.rt").scene, select=3)
+    for name in ("element 6", "element 7"):
+        user.memory.press(Key.SHIFT_L)
+        user.click(name)
+        user.memory.release(Key.SHIFT_L)
+    assert (user.state.selected, user.state.others) == (7, {3, 6})
+    user.click("shown 6")
+    assert user.state.hidden == {3, 6, 7}
+    user.click("shown 7")
+    assert user.state.hidden == set()
+    user.click("shown 1")
+    assert user.state.hidden == set()  # a camera is needed
+    user.memory.press(Key.CONTROL_L)
+    user.click("element 3")
+    user.memory.release(Key.CONTROL_L)
+    assert user.state.chosen == {6, 7}
+    user.press(Key.DELETE)
+    assert not user.state.scene.cones
+    user.press(Key.CONTROL_L, Key.Z)
+    assert dump(user.state.scene) == MANY
+    assert user.state.chosen == {6, 7}
+    user.click("element 4")
+    assert user.state.chosen == {4}
+
+
+def test_a_click_on_the_name_of_the_selected_row_renames_and_the_history_tells_it() -> None:
+    user = User(parse(MANY, "scene.rt").scene, (640, 700), select=3)
+    user.click("element 3")
+    assert user.panel.types
+    for character in "Ball d":
+        user.memory.text(character)
+    user.press(Key.RETURN)
+    assert dump(user.state.scene) == MANY.replace("sp 0,0,0 2 255,0,0", "sp 0,0,0 2 255,0,0 # Ball d")
+    user.memory.wait(1)
+    user.click("element 3")
+    user.memory.text("x")
+    user.press(Key.ESCAPE)
+    assert len(user.state.undo_stack) == 1
+    assert not user.panel.types
+    assert step_title(user.state.undo_stack[0], user.state.snapshot) == "sphere 1: name"
+    user.press(Key.CONTROL_L, Key.Z)
+    assert dump(user.state.scene) == MANY
+
+
+def test_the_picture_marks_the_element_whose_row_the_pointer_is_on() -> None:
+    user = User(parse(MANY, "scene.rt").scene)
+    user.memory.motion(*user.place("element 6"))
+    user.memory.play()
+    assert user.session.screen.pointed == 6
+    user.memory.motion(*user.place("shown 4"))
+    user.memory.play()
+    assert user.session.screen.pointed == 4
+    user.memory.motion(10, 10)
+    user.memory.play()
+    assert user.session.screen.pointed is None
+
+
+def test_a_double_click_on_a_row_looks_through_a_further_camera_and_brings_others_into_view() -> None:
+    user = User(parse(MANY, "scene.rt").scene)
+    user.click("element 8")
+    user.click("element 8")
+    assert user.state.scene.shown == 1
+    user.press(Key.ESCAPE)
+    user.press(Key.CONTROL_L, Key.Z)
+    assert user.state.scene.shown == 0
+    for name in ("element 6", "element 7"):  # one that is selected already is not renamed by the first click
+        user.memory.wait(1)
+        before = user.state.scene.camera
+        user.session.state = user.state.select(6)
+        place = user.place(name)
+        for _ in range(2):
+            user.memory.click(*place)
+            user.memory.play()
+        assert user.state.scene.camera != before
+        assert not user.panel.types
+
+
+@pytest.mark.parametrize(("word", "rows"), [("arms", [6, 7]), ("cone 2", [7]), ("camera 1", [1]), ("sp", [3])])
+def test_the_search_finds_names_and_numbers(word: str, rows: list[int]) -> None:
+    assert found(word, parse(MANY, "scene.rt").scene) == rows

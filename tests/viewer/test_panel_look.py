@@ -256,4 +256,4 @@ def test_the_steps_of_the_history_are_told_in_french(monkeypatch: pytest.MonkeyP
     session = played("press Tab", "press Tab", "text 7", "press Return", "press Ctrl+D", "press Delete")
     steps = [*session.state.undo_stack, session.state.snapshot]
     titles = [step_title(*pair) for pair in itertools.pairwise(steps)]
-    assert titles == ["sphère: diamètre", "+ sphère", "- sphère"]
+    assert titles == ["sphère 1: diamètre", "+ sphère 2", "- sphère 2"]

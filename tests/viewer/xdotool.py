@@ -42,6 +42,8 @@ def command(window: int, words: list[str], codes: dict[str, str] | None = None) 
     match words:
         case ["press" | "down" | "up" as how, key]:
             arguments = [{"press": "key", "down": "keydown", "up": "keyup"}[how], "--delay", "0", name(key, codes)]
+        case ["text", characters]:
+            arguments = ["type", "--delay", "0", characters]
         case ["move", place]:
             arguments = [*at, *place.split(",")]
         case ["click", place, *button]:

@@ -7,7 +7,7 @@ from itertools import chain, islice, product
 
 import numpy as np
 
-from minirt.rendering.notes import names_of, shape_name
+from minirt.rendering.notes import light_name, names_of, shape_name
 from minirt.rendering.packing.features import features
 from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.materials import encloses
@@ -58,18 +58,16 @@ def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
     low, high = rectangles(scene.camera, size, boxes[bounded])
     tiny = (((high - low) * size < 1) & (low > 0) & (high < 1)).all(axis=1)
     if tiny.any():
-        yield f"smaller than a pixel: {names_of(shapes, bounded[tiny].tolist())}"
+        yield f"smaller than a pixel: {names_of(scene, bounded[tiny].tolist())}"
     for sentence, is_lost in LOST.items():
         if found := [index for index, shape in enumerate(shapes) if is_lost(shape)]:
-            yield sentence.format(names_of(shapes, found))
+            yield sentence.format(names_of(scene, found))
 
 
 def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str]:
     """Yield sentences about what is inside an opaque shape that the eye is not in: lamps without a size, and shapes and
     lamps inside a convex one, that is, the corners of their bounding boxes, grown."""
-    eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights, 1) if lamp.position]
-    told = [f"{shape_name(shapes, index)} is never seen" for index in range(len(shapes))]
-    told += [f"light {number} lights nothing" for number, _ in lamps]
+    eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights) if lamp.position]
     extents = [np.add(lamp.position or 0.0, np.multiply(lamp.size or 0.0, [[-0.5], [0.5]])) for _, lamp in lamps]
     starts, ends = np.concatenate([boxes, np.reshape(extents, (-1, 2, 3))]).swapaxes(0, 1)
     grown = CERTAIN * (ends - starts)
@@ -81,7 +79,11 @@ def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str
             for index in np.flatnonzero(within).tolist():
                 corners = product(*zip(starts[index] - grown[index], ends[index] + grown[index], strict=True))
                 if index != outer and all(encloses(shape, np.array(at)) for at in corners):
-                    yield f"{told[index]}: it is inside {shape_name(shapes, outer)}, which is opaque"
+                    if index < len(shapes):
+                        what = f"{shape_name(scene, index)} is never seen"
+                    else:
+                        what = f"{light_name(scene, lamps[index - len(shapes)][0])} lights nothing"
+                    yield f"{what}: it is inside {shape_name(scene, outer)}, which is opaque"
 
 
 def idle_lights(scene: Scene) -> Iterator[str]:
@@ -94,8 +96,8 @@ def idle_lights(scene: Scene) -> Iterator[str]:
         return
     others = [each for each in scene.elements if not isinstance(each, Lamp)]
     _, without = render_interpreted(Scene(others, scene.file), *COARSE)
-    for number, light in enumerate(scene.lights, 1):
+    for number, light in enumerate(scene.lights):
         if light in lights and not light.size:
             _, alone = render_interpreted(Scene([*others, light], scene.file), *COARSE)
             if np.array_equal(alone, without):
-                yield f"light {number}"
+                yield light_name(scene, number)

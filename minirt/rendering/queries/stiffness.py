@@ -76,11 +76,11 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
         pixels = size / (distance * 2 * np.linalg.norm(right) / width)
         thinness = np.where((way @ forward > 0) & (pixels > 0), 1 / pixels, 0.0)
     figures = {"size": size, "distance": distance, "relative rounding of a hit, double": double, "single": single}
-    for index, element in worst(tables, np.maximum(double, single), VISIBLE):
+    for index, element in worst(scene, tables, np.maximum(double, single), VISIBLE):
         small = size[index] <= distance[index]
         why = "small for its coordinates or its distance" if small else "the eye is close to it for its size"
         yield Stiff(element, why, {name: float(each[index]) for name, each in figures.items()})
-    for index, element in worst(tables, thinness, 1.0):
+    for index, element in worst(scene, tables, thinness, 1.0):
         yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
 
 
@@ -96,7 +96,7 @@ def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> I
                 yield each
 
 
-def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
+def worst(scene: Scene, tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
     """Yield index and name of the shapes with the largest amounts above a limit; the last name counts the rest."""
     order = np.argsort(-amounts, kind="stable")
     order = order[amounts[order] > limit]
@@ -104,7 +104,7 @@ def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tu
     order = order[np.sort(first)]  # the worst primitive of each shape
     more = len(order) - LISTED
     for place, index in enumerate(order[:LISTED].tolist(), 1):
-        name = shape_name(tables.shapes, tables.owner[index])
+        name = shape_name(scene, tables.owner[index])
         yield index, name + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
@@ -162,7 +162,7 @@ def coincident(scene: Scene, tables: ShapeArrays, across: int = ACROSS, down: in
         shared = " and ".join(precision for precision, gaps in ties.items() if gaps <= 1)
         if count >= LEAST:
             yield Stiff(
-                " and ".join(shape_name(tables.shapes, owner) for owner in tables.owner[[one, other]]),
+                " and ".join(shape_name(scene, owner) for owner in tables.owner[[one, other]]),
                 f"taken for one surface in {shared} precision: the first is shown" if shared else "nearly coincide",
                 {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[selected]))}
                 | {f"in roundings, {precision}": gaps for precision, gaps in ties.items()},

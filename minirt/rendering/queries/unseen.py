@@ -88,7 +88,7 @@ def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
     """Return which shape the eye is in, if there are others outside of it or the picture is even; else ''."""
     eye, bounded, (starts, ends) = np.array(scene.camera.position), is_bounded(arrays), arrays.boxes.swapaxes(0, 1)
     for index in np.flatnonzero(~bounded | ((starts <= eye) & (eye <= ends)).all(axis=1)).tolist():
-        shape, name = arrays.shapes[index], shape_name(scene.shapes, index)
+        shape, name = arrays.shapes[index], shape_name(scene, index)
         if flat := shape.flat():
             distance = abs(np.dot(np.subtract(eye, flat[0]), flat[1]))
             if is_even and distance <= IN_PLANE * (1 + np.abs(eye).max()):
@@ -107,14 +107,14 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray, size: tuple[
     are."""
     bounded = is_bounded(arrays)
     if bounded[seen].any() or (len(seen) and not bounded.any()):
-        return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene.shapes, seen.tolist())}"
+        return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene, seen.tolist())}"
     if len(seen):
         kinds = [type(scene.shapes[index]) for index in seen.tolist()]
         names = " and ".join(kind.title if kinds.count(kind) == 1 else kind.plural for kind in dict.fromkeys(kinds))
         others = f"none of the {bounded.sum()} shapes" if bounded.sum() > 1 else "no shape"
         low, high = np.clip(rectangles(scene.camera, size, arrays.boxes[bounded]), 0.0, 1.0)
         behind = np.flatnonzero(bounded)[(low < high).all(axis=1)].tolist()
-        hidden = f", behind which is {names_of(scene.shapes, behind)}" if behind else ""
+        hidden = f", behind which is {names_of(scene, behind)}" if behind else ""
         return f"{others} but the {names} is in view{hidden}"
     eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)

@@ -15,7 +15,7 @@ from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, ope
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.typed_value import TYPE, Typing
+from minirt.viewer.app.typed_value import BEGUN, Typing
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
 from minirt.viewer.recovery import remember_panel
@@ -205,8 +205,13 @@ class EventDispatcher:
         """Perform the action of a key binding: an edit of the scene, or a command."""
         session, action = self.session, binding.action
         session.release_button()
-        if action in (TYPE, PANEL):
-            self.typing.begin("=") if action == TYPE else self.toggle_panel()
+        if action == PANEL:
+            self.toggle_panel()
+            return
+        if action in BEGUN:
+            if self.panel:
+                self.panel.is_left = True  # the keys are those of the picture
+            self.typing.begin(BEGUN[action](session.state.element))
             return
         if action == OPEN_MENU:
             self.choosing.begin_menu(session.pointer, self.mouse.select_for_menu())

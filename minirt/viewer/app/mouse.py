@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import dist
+from math import dist, inf
 
 from minirt.errors import MiniRTError
 from minirt.fields import Triple
 from minirt.mlx import Button, Cursor, Modifier
+from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
@@ -18,10 +19,13 @@ from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, handl
 from minirt.viewer.editing.motion import APPROACHING, approach, in_reach, look_at
 from minirt.viewer.editing.placing import AHEAD, aim, aim_at_top
 from minirt.viewer.editing.projection import Aim, position_of
+from minirt.viewer.editing.selection import look_through
 from minirt.viewer.editing.state import index_of
 
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
 SLIDING = "slide by hand"  # the drag that leaves handles alone, as its chords may be those of a handle, too
+DOUBLE_CLICK = 0.4  # seconds between its presses
+SHIFT_DRAG = "turn by hand"  # the drag with Shift, without which the press selects several
 CURSORS = {"move by hand": Cursor.MOVE, "pan": Cursor.GRAB}  # while a drag goes on; other drags turn something
 ZOOMS = {"nearer": 1.0, "farther": -1.0}  # actions of the wheel, and their steps towards what is under the pointer
 BUTTON_DRAGS = {each: f"{each.name.lower()} drag" for each in (Button.LEFT, Button.MIDDLE, Button.RIGHT)}
@@ -30,7 +34,8 @@ BUTTON_DRAGS = {each: f"{each.name.lower()} drag" for each in (Button.LEFT, Butt
 class Mouse:
     """Turn button and motion events into clicks and drags.
 
-    The left button selects when it goes down. A click of another button counts when the button is released where it
+    The left button selects when it goes down: one of several selected elements becomes the primary one, as a drag moves
+    them all. A click of another button, with Shift, or on one of several counts when the button is released where it
     was pressed, because until then it may become a drag.
     """
 
@@ -40,6 +45,7 @@ class Mouse:
         self.inside = True  # whether the pointer is over the window
         self._target: Triple | None = None  # the point towards which the wheel zooms
         self._aimed_at = (-1, -1)  # the pixel where it was found
+        self._pressed_before: tuple[float, int | None] = -inf, None  # time, and the element, of the last press
 
     def on_press(self, button: int, x: int, y: int) -> None:
         """A button goes down, or the wheel turns."""
@@ -53,27 +59,47 @@ class Mouse:
         if button == Button.LEFT and drag.action != SLIDING and self.grab(x, y):
             return
         try:
-            point = self.pick_point(x, y, selecting=button == Button.LEFT)
+            owner, point = self.owner_at(x, y)
             if drag.action == "orbit":
                 point = self.pivot(point)
         except MiniRTError as error:  # the file of a texture may be gone meanwhile
             session.show_error(error)
             session.show(session.state)
             return
+        if button == Button.LEFT and self.looks_through(owner):
+            return
+        if button == Button.LEFT and drag.action != SHIFT_DRAG:
+            state = session.state.with_message("there is nothing" if owner is None else "")
+            session.show(state if owner is None else state.make_primary(owner))
         state = session.state
-        session.pressed = DragStart(session.view, x, y, state.element, state.scene.camera, point, button, drag.action)
+        element = state.element if owner is None or button != Button.LEFT else state.scene.elements[owner]
+        start = DragStart(session.view, x, y, element, state.scene.camera, point, button, drag.action)
+        session.pressed = start._replace(owner=owner)
+
+    def looks_through(self, owner: int | None) -> bool:
+        """Look through a further camera where its icon is pressed twice; return whether it is."""
+        session, before = self.session, self._pressed_before
+        self._pressed_before = session.now, owner
+        scene = session.state.scene
+        is_double = owner == before[1] and session.now - before[0] <= DOUBLE_CLICK
+        camera = scene.elements[owner] if is_double and owner is not None else None
+        if owner is None or not isinstance(camera, Camera) or camera is scene.camera:
+            return False
+        session.show(look_through(session.state, owner, session.now))
+        return True
 
     def grab(self, x: int, y: int) -> bool:
         """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
         session, state, screen = self.session, self.session.state, self.session.screen
         if screen.level == HudLevel.NOTHING:
             return False
-        for owner, way in arrows(state.scene, state.selected, session.view, screen.icons).items():
+        for owner, way in arrows(state.scene, state.chosen, session.view, screen.icons).items():
             tip = arrow_tip(way, *screen.size, screen.scale)
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
                 session.show(look_at(state.select(owner), 1.0, session.now))
                 return True
-        handles = handles_of(state.element, session.view, screen.scale, screen.handle_kind) if screen.handles else []
+        shown = bool(state.others), screen.handle_kind
+        handles = handles_of(state.element, session.view, screen.scale, *shown) if screen.handles else []
         handle = handle_at(handles, x + PIXEL_CENTRE, y + PIXEL_CENTRE, screen.scale)
         if handle:
             start = DragStart(session.view, x, y, state.element, state.scene.camera, handle.centre, Button.LEFT)
@@ -96,6 +122,8 @@ class Mouse:
                 cursor = Cursor.TURN if looks_around else CURSORS.get(pressed.action, Cursor.TURN)
                 session.mlx.mlx_set_cursor(session.window, cursor)
                 session.state = session.state.end_merging()
+                if pressed.owner is not None and pressed.action == SHIFT_DRAG:
+                    session.state = session.state.make_primary(pressed.owner)
             session.say("")
             pressed = pressed._replace(snaps=Modifier.ACCEL in session.modifiers)
             drag = pull if pressed.handle else DRAGS[pressed.action]
@@ -105,10 +133,13 @@ class Mouse:
         """A button goes up: a drag ends, or a click is complete."""
         pressed = self.session.pressed
         if pressed and pressed.button == button:
-            clicked = not pressed.dragging and button != Button.LEFT
             self.session.release_button()
-            if clicked:
+            if not pressed.dragging and button != Button.LEFT:
                 self.click(button)
+            elif not pressed.dragging and pressed.owner is not None:
+                state = self.session.state.with_message("")
+                is_with_shift = pressed.action == SHIFT_DRAG
+                self.session.show(state.add_or_remove(pressed.owner) if is_with_shift else state.select(pressed.owner))
 
     def click(self, button: int) -> None:
         """Perform the action that is bound to a button."""
@@ -124,7 +155,7 @@ class Mouse:
         state = session.state.with_message("")
         goes_on = state.last_change is not None and state.last_change[0] == APPROACHING
         if not goes_on or self._aimed_at != (x, y):
-            self._target, self._aimed_at = self.pick_point(x, y, selecting=False), (x, y)
+            (_, self._target), self._aimed_at = self.owner_at(x, y), (x, y)
         ray = session.view.ray(x + PIXEL_CENTRE, y + PIXEL_CENTRE)
         session.show(approach(state, ray, self._target, steps, session.now))
 
@@ -136,35 +167,26 @@ class Mouse:
         _, middle = session.surface_at(session.window.width // 2, session.window.height // 2)
         return in_reach(session.state, middle)
 
-    def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
-        """Return the point of the scene under the pointer, None if there is none; select the element there."""
-        session = self.session
-        owner, point = self.element_at(x, y)
-        if selecting:
-            state = session.state.with_message("there is nothing" if owner is None else "")
-            session.show(state if owner is None else state.select(owner))
-        return point
-
     def select_for_menu(self) -> Triple | None:
         """Select the element under the pointer, or the camera where there is none; return the point there."""
         session = self.session
-        owner, point = self.element_at(*session.pointer)
+        owner, point = self.owner_at(*session.pointer)
         state = session.state.with_message("")
         if owner is None:
             owner = index_of(state.scene, state.scene.camera)
-        session.show(state if owner == state.selected else state.select(owner))
+        session.show(state.make_primary(owner))
         return point
 
-    def element_at(self, x: int, y: int) -> tuple[int | None, Triple | None]:
-        """Return the index of the element at a pixel, by its icon or as a shape, and the point there; None for none."""
+    def owner_at(self, x: int, y: int) -> tuple[int | None, Triple | None]:
+        """Return the index of the element under the pointer, and the point of the scene there; None without one."""
         session, state, screen = self.session, self.session.state, self.session.screen
-        icons = visible_icons(state.scene, state.selected, session.view, screen.scale, screen.icons)
+        icons = visible_icons(state.scene, state.chosen, session.view, screen.scale, screen.icons)
         reach = SIZE * screen.scale / 2 if screen.level > HudLevel.NOTHING else -1.0
         under = [each for each in icons if max(abs(each.x - x), abs(each.y - y)) <= reach]
         if under:
-            icon = under[-1]  # which is drawn on top
-            element = state.scene.elements[icon.owner]
-            return icon.owner, None if element is state.scene.camera else position_of(element)
+            owner = under[-1].owner  # of the icon that is drawn on top
+            element = state.scene.elements[owner]
+            return owner, None if element is state.scene.camera else position_of(element)
         shape, point = session.surface_at(x, y)
         return index_of(state.scene, shape) if shape else None, point
 

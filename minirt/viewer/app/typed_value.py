@@ -1,15 +1,24 @@
-"""Typing the active value: a digit or = begins it, Enter sets it, Escape leaves it as it was."""
+"""Typing the active value, which a digit or = begins, or a name, which F2 begins: Enter sets it, Escape leaves it."""
 
 from __future__ import annotations
 
-from minirt.mlx import Key
+from collections.abc import Callable
+
+from minirt.element import Element
+from minirt.mlx import Key, Modifier
+from minirt.scene.names import LONGEST, element_name, own_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox
+from minirt.viewer.editing.structure import rename
 from minirt.viewer.editing.typed import CHARACTERS, set_typed
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
-TYPE = "type value"  # the action that begins with =
-MAX_LENGTH = 40  # characters
+NAME = "# "  # begins a name that is typed, as it does in the file
+BEGUN: dict[str, Callable[[Element], str]] = {  # what actions begin with; the first character replaces an old name
+    "type value": lambda _: "=",
+    "rename": lambda element: NAME + own_name(element),
+}
+MAX_LENGTH = LONGEST  # characters
 
 
 class Typing:
@@ -18,11 +27,13 @@ class Typing:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.text = ""
+        self._begun = ""  # as it was at the beginning
 
     def begin(self, character: str) -> None:
-        """Begin with a digit or =."""
+        """Begin with a digit, =, or NAME and a name."""
         self.session.release_button()
         self.session.say("")
+        self._begun = character
         self.show(character)
 
     def end(self) -> None:
@@ -31,19 +42,29 @@ class Typing:
             self.show("")
 
     def on_text(self, character: str) -> None:
-        """Add what was typed, as far as values are made of it; the = that began it goes."""
-        text = f"{self.text.removeprefix('=')}{character}" if character in CHARACTERS else self.text
+        """Add what was typed, as far as values are made of it; the = that began one goes."""
+        text = self.text
+        if text.startswith(NAME):
+            text = (NAME if text == self._begun else text) + character
+        elif character in CHARACTERS:
+            text = text.removeprefix("=") + character
         self.show(text[:MAX_LENGTH])
 
     def takes(self, key: int) -> bool:
-        """Take a key press; False if the key is not one of those that end or correct what is typed."""
-        if not self.text or key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
-            return False
-        text = self.text
+        """Take a key press; False if the key is not one of those that end, correct or type it."""
+        session, text, is_name = self.session, self.text, self.text.startswith(NAME)
+        if not text or key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
+            return is_name and Modifier.ACCEL not in session.modifiers
+        if key == Key.BACKSPACE and is_name:
+            self.show(NAME if text == self._begun else NAME + text[len(NAME) : -1])
+            return True
         self.show(text[:-1] if key == Key.BACKSPACE else "")
         if key in ENTER:
-            self.session.say("")
-            self.session.show(set_typed(self.session.state, self.session.state.active, text, self.session.now))
+            session.say("")
+            if is_name:
+                session.show(rename(session.state, text.removeprefix(NAME)))
+            else:
+                session.show(set_typed(session.state, session.state.active, text, session.now))
         return True
 
     def show(self, text: str) -> None:
@@ -51,5 +72,8 @@ class Typing:
         session = self.session
         self.text = text
         hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it    += -= *= /=: relative"
+        if text.startswith(NAME):
+            name = element_name(session.state.scene, session.state.selected)
+            hint = f"name of {name}: {text.removeprefix(NAME)}_    Enter: set it    Esc: leave it"
         session.screen.list_box = ListBox(hint) if text else None
         session.refresh()

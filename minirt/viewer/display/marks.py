@@ -1,22 +1,21 @@
-"""Marks over the picture: outline of the selected shape, axis of its movement, icons, an arrow to what is outside."""
+"""Marks over the picture: outlines of selected shapes, axis of its movement, icons, an arrow to what is outside."""
 
 from __future__ import annotations
 
-from functools import lru_cache
-from math import ceil, hypot
+from collections.abc import Iterable
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour, Triple
 from minirt.mlx.text import draw_text, measure
-from minirt.rendering.queries.pick import covers, enclosing_rectangle
-from minirt.scene import Camera, Lamp, Scene
+from minirt.scene import Lamp, Scene
 from minirt.scene.elements import linear_combination
 from minirt.scene.registry import ELEMENTS
-from minirt.shapes import Mesh, Shape
+from minirt.shapes import Shape
+from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.dragging import MOVE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.dragging import SIZE as RESIZE
@@ -25,18 +24,16 @@ from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, pos
 from minirt.viewer.editing.state import Frame, State, can_edit
 
 GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
+ORANGE = 0xFFE8862E  # of selected elements beside the primary one, which is golden
 AXIS_COLOURS = {Frame.X: 0xFFFF5050, Frame.Y: 0xFF60E060, Frame.Z: 0xFF6090FF}
 AXIS_LENGTH = 0.6  # of the distance to the eye: what is drawn of an axis on both sides of an element
 MOVING_RAYS, STILL_RAYS = 20_000, 60_000  # rays for an outline, while something moves and when nothing does
-MARGIN = 4  # pixels around the projected bounds of a shape
 SIZE = 20  # pixels of a side, times the screen's scale
 HANDLE_SCALES = {MOVE: 0.6, RESIZE: 0.7, SLIDE: 0.4}  # of the size of icons
 STEPS = 12  # points that are drawn between two corners of a ring, times the scale
 MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
 KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
 LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
-
-PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
 
 
 def draw_marks(
@@ -49,42 +46,52 @@ def draw_marks(
     icons: bool,
     handles: bool = False,
     kind: str = "",
+    pointed: int | None = None,
 ) -> None:
     """Draw all marks over a picture of `scene`, which may be another version of the state's scene.
 
     The marks fit the picture: an element that it does not show yet has none. `icons`: show those of all lights;
-    `handles`: show those of the selected element, or of a kind alone.
+    `handles`: show those of the primary element, or of a `kind` alone; `pointed`: the index of an element that the
+    pointer is on in a list.
     """
     height, width = pixels.shape[:2]
     view = projection_of(scene.camera, width, height)
     selected = next(iter(state.indices_in(scene, frozenset([state.selected]))), None)
+    others = state.indices_in(scene, state.others)
+    colours = dict.fromkeys(others, ORANGE)
+    if pointed is not None and pointed < len(state.scene.elements):
+        colours |= dict.fromkeys(state.indices_in(scene, frozenset([pointed])), WHITE)
+    if selected is not None:
+        colours[selected] = GOLD
+    rays = MOVING_RAYS if moving else STILL_RAYS
+    for index, colour in colours.items():
+        element = scene.elements[index]
+        if isinstance(element, Shape):
+            draw_outline(pixels, *outline_pixels(element, scene.camera, width, height, rays), colour)
     if selected is not None:
         element = scene.elements[selected]
-        if isinstance(element, Shape):
-            rays = MOVING_RAYS if moving else STILL_RAYS
-            draw_outline(pixels, *outline_pixels(element, scene.camera, width, height, rays))
         around, axis = extent(element), WORLD_AXES.get(state.frame)
         if around and axis:
             reach = AXIS_LENGTH * view.depth(around[0])
             start, end = (view.pixel(linear_combination(1.0, around[0], way, axis)) for way in (-reach, reach))
             if start and end:
                 draw_line(pixels, start, end, AXIS_COLOURS[state.frame])
-        for handle in handles_of(element, view, scale, kind) if handles else []:
+        for handle in handles_of(element, view, scale, bool(others), kind) if handles else []:
             draw_handle(pixels, handle, view.pixel(handle.centre), scale)
-    for direction in arrows(scene, selected, view, icons).values():
+    for direction in arrows(scene, colours, view, icons).values():
         draw_arrow(pixels, direction, scale)
-    for icon in visible_icons(scene, selected, view, scale, icons):
-        draw_icon(pixels, icon, scale, selected=icon.owner == selected)
+    for icon in visible_icons(scene, colours, view, scale, icons):
+        draw_icon(pixels, icon, scale, colours.get(icon.owner, BLACK))
 
 
-def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) -> None:
-    """Draw a golden line, two pixels wide, with a black line on either side for contrast with any colour."""
+def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices, colour: int) -> None:
+    """Draw a line, two pixels wide, with a black line on either side for contrast with any colour."""
     height, width = pixels.shape[:2]
     for rows, columns in (outside, inside):
         for down, right in ((-1, 0), (1, 0), (0, -1), (0, 1)):
             around = np.clip(rows + down, 0, height - 1), np.clip(columns + right, 0, width - 1)
             pixels[around] = bgra(BLACK)
-    pixels[inside] = pixels[outside] = bgra(GOLD)
+    pixels[inside] = pixels[outside] = bgra(colour)
 
 
 def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
@@ -112,13 +119,13 @@ def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: flo
     if handle.kind == MOVE and centre:
         draw_line(pixels, centre, (x, y), colour)
     icon = Icon(0, round(x), round(y), "" if handle.kind == SLIDE else "XYZ"[handle.axis], colour)
-    draw_icon(pixels, icon, HANDLE_SCALES[handle.kind] * scale, selected=handle.kind == RESIZE)
+    draw_icon(pixels, icon, HANDLE_SCALES[handle.kind] * scale, GOLD if handle.kind == RESIZE else BLACK)
 
 
-def draw_icon(pixels: Pixels, icon: Icon, scale: float, selected: bool) -> None:
-    """Draw a square in the element's colour with its identifier; the frame is golden if it is selected."""
+def draw_icon(pixels: Pixels, icon: Icon, scale: float, frame_colour: int) -> None:
+    """Draw a square in the element's colour with its identifier, and a frame."""
     half, frame = round(SIZE * scale / 2), max(1, round(2 * scale))
-    for reach, colour in ((half + frame, GOLD if selected else BLACK), (half, icon.colour)):
+    for reach, colour in ((half + frame, frame_colour), (half, icon.colour)):
         top, bottom, left, right = (max(0, at + way) for at in (icon.y, icon.x) for way in (-reach, reach))
         pixels[top:bottom, left:right] = bgra(colour)
     bright = sum(icon.colour >> shift & 0xFF for shift in (0, 8, 16)) > 3 * 110
@@ -142,14 +149,13 @@ class Icon(NamedTuple):
     colour: int  # 0xFFRRGGBB
 
 
-def visible_icons(scene: Scene, selected: int | None, view: Projection, scale: float, every: bool) -> list[Icon]:
-    """Return the icons within the picture: of all lights and cameras, or else of the selected element alone."""
-    owners = []
+def visible_icons(scene: Scene, marked: Iterable[int], view: Projection, scale: float, every: bool) -> list[Icon]:
+    """Return the icons within the picture: of all lights and cameras, or else of the marked elements alone."""
     if every:
         owners = sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
-    elif selected is not None:
-        element = scene.elements[selected]
-        owners = [] if isinstance(element, Shape) or element is scene.camera else [selected]
+    else:
+        elements = {index: scene.elements[index] for index in sorted(marked)}
+        owners = [at for at, each in elements.items() if not isinstance(each, Shape) and each is not scene.camera]
     size = round(SIZE * scale)
     corner = view.width - size
     placed: list[Icon] = []
@@ -186,9 +192,9 @@ def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tup
     return (across / length, -up / length) if length else (0.0, 1.0)
 
 
-def arrows(scene: Scene, selected: int | None, view: Projection, every: bool) -> dict[int, tuple[float, float]]:
-    """Directions towards elements outside of the picture, by index: the selected one, and with `every` all lights."""
-    owners = {*([] if selected is None else [selected]), *(scene.indices_of(Lamp) if every else ())}
+def arrows(scene: Scene, marked: Iterable[int], view: Projection, every: bool) -> dict[int, tuple[float, float]]:
+    """Directions towards elements outside of the picture, by index: the marked ones, and with `every` all lights."""
+    owners = {*marked, *(scene.indices_of(Lamp) if every else ())}
     found = {owner: extent(scene.elements[owner]) for owner in owners}
     ways = {owner: arrow_direction(view, *around) for owner, around in found.items() if around}
     return {owner: way for owner, way in ways.items() if way and not getattr(scene.elements[owner], "infinite", False)}
@@ -214,37 +220,3 @@ def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> 
     beside = np.abs((x + 0.5 - tip[0]) * direction[1] - (y + 0.5 - tip[1]) * direction[0])
     pixels[(along >= -2 * scale) & (along <= size + 2 * scale) & (beside <= along / 2 + 3 * scale)] = bgra(BLACK)
     pixels[(along >= 0) & (along <= size) & (beside <= along / 2)] = bgra(GOLD)
-
-
-# The outline of a shape, whether it is hidden or not.
-
-
-@lru_cache(maxsize=1)  # an outline takes a millisecond or two
-def outline_pixels(
-    shape: Shape, camera: Camera, width: int, height: int, rays: int
-) -> tuple[PixelIndices, PixelIndices]:
-    """Return the pixels just outside and just inside the silhouette that the shape would have alone in the scene.
-
-    Coverage is evaluated on a coarse grid of about `rays` points, of which few may miss parts of thin shapes, and then
-    on all pixels of the cells in which it changes.
-    """
-    left, top, right, bottom = enclosing_rectangle(shape, camera, width, height, MARGIN)
-    if isinstance(shape, Mesh):  # all pixels of a mesh cost as much as a few
-        y, x = np.ix_(np.arange(top - 1, bottom + 1), np.arange(left - 1, right + 1))
-        y, x = y[None], x[None]
-    else:
-        step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
-        x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
-        grid = covers(shape, camera, width, height, x, y)
-        corners = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
-        mixed = np.logical_or.reduce(corners) & ~np.logical_and.reduce(corners)
-        rows, columns = (step * each[:, None, None] for each in np.nonzero(mixed))
-        reach = np.arange(-1, step + 2)  # an edge on the border of two cells belongs to both
-        y, x = top + rows + reach[:, None], left + columns + reach
-    y, x = np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)
-    mask = covers(shape, camera, width, height, x, y)
-    around = mask[:, :-2, 1:-1], mask[:, 2:, 1:-1], mask[:, 1:-1, :-2], mask[:, 1:-1, 2:]
-    middle = mask[:, 1:-1, 1:-1]
-    outside, inside = np.logical_or.reduce(around) & ~middle, middle & ~np.logical_and.reduce(around)
-    y, x = (each[:, 1:-1, 1:-1] for each in np.broadcast_arrays(y, x))
-    return (y[outside], x[outside]), (y[inside], x[inside])

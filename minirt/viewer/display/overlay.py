@@ -137,6 +137,8 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int, left: 
 def hints(state: State, every: bool) -> str:
     """Present meanings of keys, the most useful first: `+ - diameter`. `every`: also what is as usual."""
     groups = [f"+ - {state.active.name}", "V: next value"]
+    if state.others:
+        groups.insert(0, f"{len(state.chosen)} elements selected")
     if every or state.frame is not Frame.VIEW:
         groups.append(f"X: move {'in the ' if state.frame is Frame.VIEW else 'along the '}{state.frame.value}")
     return GAP.join([*groups, "H: help"])

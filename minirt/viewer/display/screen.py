@@ -60,6 +60,7 @@ class Screen:
         self.covered = 0  # columns at the right that the panel covers: the picture is as wide as the others
         self.has_tab = False  # whether the tab of the panel is shown, since the pointer is near
         self.icons = False  # whether the icons of all lights are shown
+        self.pointed: int | None = None  # index of the element whose row in the panel's list the pointer is on
         self.image = mlx.mlx_new_image(window.display, 1, 1)
         self._drawn: tuple[object, ...] = ()  # the contents of the window
 
@@ -122,7 +123,7 @@ class Screen:
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
-        shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips
+        shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
         row = handles, self.handles, self.handle_kind, self.tool
         contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout
         if contents == self._drawn:
@@ -140,8 +141,17 @@ class Screen:
                 job = picture.job
                 if not job.scene.runs:
                     clear[ground_lines(job.scene.camera, *self.size)] = GRID_COLOUR
-                marks = {"icons": self.icons, "handles": handles}
-                draw_marks(clear, state, job.scene, scale, moving=job.urgent, kind=self.handle_kind, **marks)
+                draw_marks(
+                    clear,
+                    state,
+                    job.scene,
+                    scale,
+                    moving=job.urgent,
+                    icons=self.icons,
+                    handles=handles,
+                    kind=self.handle_kind,
+                    pointed=self.pointed,
+                )
             if self.handles:
                 draw_tools(clear, scale, size, self.tool, self.handle_kind, self.keymap.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)

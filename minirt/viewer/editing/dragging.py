@@ -18,9 +18,10 @@ from minirt.rendering.queries.pick import pick
 from minirt.scene.elements import Camera, linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
-from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES, rotate, shifted
+from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES
 from minirt.viewer.editing.placing import aim, dropped, keep_standing, lowest_along, middle_of, settled
 from minirt.viewer.editing.projection import UP, Pixel, Projection, dot, extent, position_of, scene_centre, subtract
+from minirt.viewer.editing.rigid import can_turn, shifted
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value, values
 
@@ -65,6 +66,7 @@ class DragStart(NamedTuple):
     handle: Handle | None = None  # of the element, that the pointer has grabbed
     reach: Pixel = (0.0, 0.0)  # how far a handle was pulled, to the right and down; a tenth while Shift is down
     snaps: bool = False  # whether Ctrl is down, so that a handle snaps to a grid
+    owner: int | None = None  # index of the element under the pointer
 
     @property
     def moves_camera(self) -> bool:
@@ -93,16 +95,16 @@ def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -
     shape, view = start.element, start.projection
     if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
         return move(state, start, x, y)
-    others = state.scene.edit(state.selected)
+    others = state.rest
     behind = pick(others, view.width, view.height, x, y)
     there = aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, *behind)
     if turns and there.normal is None:
         return move(state, start, x, y)
     if turns:
-        return replace(state.edit_element(settled(shape, there, others, state.stride), *CHANGE), aim=there)
+        return replace(motion.put(state, shape, settled(shape, there, others, state.stride), *CHANGE), aim=there)
     at = shifted(shape, subtract(there.point, middle_of(shape)[0]))
     standing = shifted(at, UP, there.point[1] - lowest_along(at, UP))
-    return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)
+    return motion.put(state, shape, dropped(standing, others, state.stride) or standing, *CHANGE)
 
 
 def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
@@ -124,7 +126,7 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
         first, last = (degrees(atan2(down - row, at - column)) for at, down in ends)
         facing = copysign(motion.handedness(start.camera), dot(axis, subtract(view.eye, centre)))
         angle = snapped((first - last) * facing, SNAP_ANGLE * start.snaps)
-        return state.edit_element(rotate(element, axis, angle), *CHANGE)
+        return motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
     if handle.kind == SLIDE:  # in the level plane
         depths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in (view.ray(*at) for at in ends)]
         ways = [linear_combination(depth, view.ray(*at), 0.0, centre) for depth, at in zip(depths, ends, strict=True)]
@@ -198,9 +200,12 @@ DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
 }
 
 
-def handles_of(element: Element, view: Projection, scale: float, kind: str = "") -> list[Handle]:
-    """The handles of an element in the picture, or those of a kind, MOVE with SLIDE; none of a camera, or where the
-    picture does not show its middle."""
+def handles_of(element: Element, view: Projection, scale: float, several: bool = False, kind: str = "") -> list[Handle]:
+    """The handles of an element in the picture; none of a camera, or where the picture does not show its middle.
+
+    `several`: other elements turn about it, even if it looks the same from all sides. `kind`: those of a kind alone,
+    MOVE with SLIDE.
+    """
     around = None if isinstance(element, Camera) else extent(element)
     if not around or not view.pixel(around[0]) or min(view.width, view.height) < LEAST:
         return []
@@ -215,7 +220,7 @@ def handles_of(element: Element, view: Projection, scale: float, kind: str = "")
     angles = [2 * pi * corner / CORNERS for corner in range(CORNERS + 1)]
     for axis, way in enumerate(AXES):
         add(MOVE, axis, way)
-        if motion.can_turn(element):
+        if several or can_turn(element):
             u, v = AXES[axis - 2], AXES[axis - 1]
             add(TURN, axis, *(linear_combination(RING * cos(angle), u, RING * sin(angle), v) for angle in angles))
     add(SLIDE, 1, (SQUARE, 0.0, SQUARE))

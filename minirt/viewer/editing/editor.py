@@ -14,7 +14,7 @@ from math import fmod
 from minirt.errors import ElementError
 from minirt.fields import MeshFile, Point
 from minirt.scene import Camera
-from minirt.viewer.editing import motion, structure
+from minirt.viewer.editing import motion, selection, structure
 from minirt.viewer.editing import state as states
 from minirt.viewer.editing.motion import FORWARD, RIGHT, UPWARD, WORLD_AXES
 from minirt.viewer.editing.placing import drop, keep_standing
@@ -77,9 +77,9 @@ class HeldKey:
 
 
 def move(axis: int, sign: float, state: State, amount: float, now: float) -> State:
-    """Move the selected element: up, or along the ground as the camera sees it, or along the axis of the frame."""
+    """Move the selected elements: up, or along the ground as the camera sees it, or along the axis of the frame."""
     element = state.element
-    if not field_names(type(element), Point):
+    if not field_names(type(element), Point) and not state.others:
         return state.with_message(f"{element.title} has no position to move")
     frame = Frame.VIEW if element is state.scene.camera else state.frame
     direction = WORLD_AXES.get(frame) or motion.level_frame(state.scene.camera)[axis]
@@ -87,9 +87,9 @@ def move(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 
 
 def turn(axis: int, sign: float, state: State, amount: float, now: float) -> State:
-    """Turn the selected element: to the right about UPWARD, upwards about RIGHT, clockwise about FORWARD."""
+    """Turn the selected elements: to the right about UPWARD, upwards about RIGHT, clockwise about FORWARD."""
     element, angle = state.element, sign * amount * TURN_STEP
-    if isinstance(element, Camera):
+    if isinstance(element, Camera) and not state.others:
         if axis == FORWARD:
             roll = fmod(element.roll + angle * motion.handedness(element), 360.0)
             return state.edit_element(element.replace(roll=roll), "roll", now)
@@ -103,6 +103,7 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 
 def change_value(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
+    # Of several selected elements only the primary one changes, as in Blender: others may lack the value.
     new = active.stepped(state.element, sign * amount, state.scene, state.stride)
     stepped = state.element.replace(**{active.field.name: new})
     changed = state.edit_element(keep_standing(state, state.element, stepped), f"value {active.name}", now)
@@ -128,11 +129,11 @@ def next_frame(state: State, _amount: float, _now: float) -> State:
 
 
 EDITS: dict[str, Edit] = {
-    "select next": partial(states.select_neighbour, 1),
-    "select previous": partial(states.select_neighbour, -1),
-    "select camera": states.select_camera,
-    "look through": states.look_through,
-    "select light": states.select_next_light,
+    "select next": partial(selection.select_neighbour, 1),
+    "select previous": partial(selection.select_neighbour, -1),
+    "select camera": selection.select_camera,
+    "select light": selection.select_next_light,
+    "look through": selection.look_through_selected,
     "left": partial(move, RIGHT, -1.0),
     "right": partial(move, RIGHT, 1.0),
     "forward": partial(move, FORWARD, 1.0),

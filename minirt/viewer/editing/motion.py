@@ -1,20 +1,20 @@
-"""Translate and rotate elements and the camera, frame the selected element, focus, and change the tone."""
+"""Move and turn the selected elements and the camera, frame the selected element, focus, and change the tone."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from math import atan, atan2, copysign, cos, degrees, dist, fsum, hypot, pi, radians, sin, tan
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from math import atan, atan2, copysign, cos, dist, hypot, pi, radians, sin, tan
+from typing import TypeVar
 
 from minirt.element import Element
-from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, clamp_length, spelled, unit, upright
+from minirt.fields import Triple, clamp, clamp_length, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Scene
 from minirt.scene.elements import TONES, Camera, linear_combination
-from minirt.shapes.shape import Oriented
-from minirt.viewer.editing.projection import dot, extent, field_names, scene_centre, subtract
+from minirt.viewer.editing.projection import dot, extent, position_of, scene_centre, subtract
+from minirt.viewer.editing.rigid import can_turn, clamp_point, mean_point, rotate, rotate_about, shifted, translate
 from minirt.viewer.editing.state import Frame, State
-from minirt.viewer.editing.values import NOISE, neat_direction, round_length, shows_roll
+from minirt.viewer.editing.values import round_length
 
 Moved = TypeVar("Moved", bound=Element)
 
@@ -33,74 +33,61 @@ NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
 POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
 
 
-def translate(element: Moved, axis: Triple, distance: float) -> tuple[Moved, bool]:
-    """Move all points of an element along `axis`, clamped to the format's range. Returns whether it was clamped."""
-    points = {name: getattr(element, name) for name in field_names(type(element), Point)}
-    offset = [distance * part for part in axis]
-    limits = ((-FARTHEST - min(each), FARTHEST - max(each)) for each in zip(*points.values(), strict=True))
-    x, y, z = (clamp(part, *limit) for part, limit in zip(offset, limits, strict=True))
-    moved = {name: clamp_point(linear_combination(1.0, point, 1.0, (x, y, z))) for name, point in points.items()}
-    return element.replace(**moved), [x, y, z] != offset
+def edit_all(state: State, element: Element, edit: Callable[[Element], Element], kind: str, now: float) -> State:
+    """Edit all selected elements as they were when the primary one was `element`: now, or at the start of a drag."""
+    scene = state.scene if element is state.element or not state.others else state.undo_stack[-1].scene
+    changed = {index: edit(scene.elements[index]) for index in state.others}
+    return state.edit_elements({state.selected: edit(element), **changed}, kind, now)
 
 
-def clamp_point(point: Triple) -> Triple:
-    """Clamp the coordinates of a point to the range of the format."""
-    x, y, z = (clamp(coordinate, -FARTHEST, FARTHEST) for coordinate in point)
-    return x, y, z
-
-
-def shifted(element: Moved, axis: Triple, distance: float = 1.0) -> Moved:
-    """Move an element as `translate` does."""
-    return translate(element, axis, distance)[0]
-
-
-def rotate(element: Element, axis: Triple, angle: float) -> Element:
-    """Rotate the directions of an element about a unit vector, right-handed, and its points about their mean.
-
-    angle: degrees. The roll of the element keeps its frame whole.
-    """
-    changes: dict[str, Any] = {}
-    for name in field_names(type(element), Direction):
-        old = getattr(element, name)
-        new = unit(rodrigues(old, axis, angle))  # a direction along the axis keeps all its digits
-        changes[name] = old if dist(new, old) < NOISE else neat_direction(new, keep_heading=False)
-    if isinstance(element, Oriented) and shows_roll(element):
-        # Compared with the frame without a roll about the new axis, however far that is from the one before.
-        u, v, _ = frame_of(element.replace(**changes, roll=0.0))
-        rotated = rodrigues(frame_of(element)[0], axis, angle)
-        changes["roll"] = degrees(atan2(dot(rotated, v), dot(rotated, u)))
-    points = {name: getattr(element, name) for name in field_names(type(element), Point)}
-    if len(points) > 1:
-        x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
-        for name, point in points.items():
-            offset = rodrigues(subtract(point, (x, y, z)), axis, angle)
-            changes[name] = clamp_point(linear_combination(1.0, (x, y, z), 1.0, offset))
-    return element.replace(**changes)
+def put(state: State, element: Element, placed: Element, kind: str, now: float) -> State:
+    """Put the primary element, which was `element`, to where it is as `placed`, and move the others as far."""
+    start, end = position_of(element), position_of(placed)
+    way = subtract(end, start) if start and end else (0.0, 0.0, 0.0)
+    return edit_all(state, element, lambda each: placed if each is element else shifted(each, way), kind, now)
 
 
 def move(state: State, element: Element, axis: Triple, distance: float, kind: str, now: float) -> State:
-    """Move the selected element along an axis from where it was as `element`."""
-    moved, clamped = translate(element, axis, distance)
-    state = state.edit_element(moved, kind, now)
+    """Move the selected elements along an axis from where they were when the primary one was `element`."""
+    state = edit_all(state, element, lambda each: shifted(each, axis, distance), kind, now)
+    _, clamped = translate(element, axis, distance)
     return state.with_message("the end of the range: no further") if clamped else state
 
 
 def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kind: str, now: float) -> State:
-    """Turn the selected element from what it was as `element`, about axes of the view or the one of the frame.
+    """Turn the selected elements from what they were when the primary one was `element`, about axes of the view or the
+    one of the frame. Several turn about the place of the primary one.
 
     turns: the number of an axis in `camera_frame`, and the angle in degrees by which the front goes right about UPWARD,
     up about RIGHT, or clockwise about FORWARD.
     """
-    if not can_turn(element):
+    if not can_turn(element) and not state.others:
         return state.with_message(f"{element.title} looks the same from all sides: nothing to turn")
     camera, world = state.scene.camera, WORLD_AXES.get(state.frame)
+    rotations: list[tuple[Triple, float]] = []
     for axis, angle in turns:
-        if world:
-            element = rotate(element, world, angle)
-        else:  # seen from the camera, only up is opposite to the right-handed rotation
-            seen = handedness(camera) * (-angle if axis == RIGHT else angle)
-            element = rotate(element, turn_axis(camera, axis), seen)
-    return state.edit_element(element, kind, now)
+        # Seen from the camera, only up is opposite to the right-handed rotation.
+        seen = handedness(camera) * (-angle if axis == RIGHT else angle)
+        rotations.append((world, angle) if world else (turn_axis(camera, axis), seen))
+    return rotate_all(state, element, rotations, kind, now)
+
+
+def rotate_all(
+    state: State, element: Element, rotations: Sequence[tuple[Triple, float]], kind: str, now: float
+) -> State:
+    """Rotate the selected elements, one rotation after the other, from what they were when the primary one was
+    `element`. Several rotate about the place of the primary one.
+
+    rotations: unit vectors and angles in degrees, right-handed.
+    """
+    pivot = mean_point(element) if state.others else None
+
+    def rotated(each: Element) -> Element:
+        for axis, angle in rotations:
+            each = rotate_about(each, pivot, axis, angle) if pivot else rotate(each, axis, angle)
+        return each
+
+    return edit_all(state, element, rotated, kind, now)
 
 
 def turn_camera(camera: Camera, right: float, up: float) -> Camera:
@@ -146,14 +133,6 @@ def handedness(camera: Camera) -> float:
     return -1.0 if camera.left_handed else 1.0
 
 
-def can_turn(element: Element) -> bool:
-    """Whether some rotation of an element can be seen."""
-    kind = type(element)
-    if isinstance(element, Oriented):
-        return element.shows_axis
-    return len(field_names(kind, Point)) > 1 or bool(field_names(kind, Direction))
-
-
 def turn_axis(camera: Camera, axis: int) -> Triple:
     """The axis of a turn as seen by the camera: right, up or forward, by its number in `camera_frame`.
 
@@ -162,20 +141,6 @@ def turn_axis(camera: Camera, axis: int) -> Triple:
     """
     direction = camera_frame(camera)[axis]
     return (0.0, copysign(1.0, direction[1]), 0.0) if axis == UPWARD and abs(direction[1]) > LEVEL else direction
-
-
-def frame_of(element: Element) -> list[Triple]:
-    """The vectors of the own frame of a shape that has one; the last is its axis or normal."""
-    return [(each.x, each.y, each.z) for each in element.frame()] if isinstance(element, Oriented) else []
-
-
-def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
-    """Rotate a vector about the unit vector `axis` by Rodrigues' formula (1840)."""
-    c, s = cos(radians(degrees)), sin(radians(degrees))
-    (x, y, z), (a, b, d) = vector, axis
-    cross = b * z - d * y, d * x - a * z, a * y - b * x
-    along = (x * a + y * b + z * d) * (1 - c)
-    return linear_combination(1.0, linear_combination(c, vector, s, cross), along, axis)
 
 
 def look_at(state: State, _amount: float, now: float) -> State:

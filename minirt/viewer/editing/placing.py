@@ -13,8 +13,9 @@ from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 from minirt.shapes.shape import Oriented
 from minirt.viewer.editing import projection
-from minirt.viewer.editing.motion import frame_of, shifted
+from minirt.viewer.editing.motion import put
 from minirt.viewer.editing.projection import STEP_SHARE, UP, Aim, Projection, dot, field_names, position_of, subtract
+from minirt.viewer.editing.rigid import frame_of, shifted
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import nice_number, round_changes, round_point
 
@@ -236,11 +237,11 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
 
 
 def drop(state: State, _amount: float, now: float) -> State:
-    """Drop the selected shape onto what lies beneath, on a grid or in the middle."""
+    """Drop the selected shape onto what lies beneath, on a grid or in the middle; others that are selected follow."""
     shape = state.element
     if not isinstance(shape, Shape) or shape.bounds() is None:
         return state.with_message(f"{shape.title} cannot stand on anything")
-    there = dropped(shape, state.scene.edit(state.selected), state.stride)
+    there = dropped(shape, state.rest, state.stride)
     if there is None:
         return state.with_message(f"there is nothing beneath the {shape.title}")
-    return state.edit_element(there, "", now).with_message(f"on what lies beneath, on a grid of {state.stride:g}")
+    return put(state, shape, there, "", now).with_message(f"on what lies beneath, on a grid of {state.stride:g}")

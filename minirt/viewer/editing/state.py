@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
 from minirt.fields import Whole
-from minirt.scene import Camera, Lamp, Scene
+from minirt.scene import Camera, Scene
 from minirt.viewer.editing.projection import STEP_SHARE, Aim, scene_size
 from minirt.viewer.editing.values import Value, nice_number, round_changes, values
 
@@ -35,6 +35,7 @@ class Snapshot(NamedTuple):
 
     scene: Scene
     selected: int
+    others: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -42,13 +43,14 @@ class State:
     """Immutable state of the editor; every action returns a new one."""
 
     scene: Scene
-    selected: int  # index into scene.elements
+    selected: int  # index into scene.elements: of the primary element, whose values are shown and changed
     file_cameras: tuple[Camera, ...]  # the cameras as they are in the file
     size: float  # of the scene, in scene units; movements are proportional to it
     value_index: int = 0  # of the active value in `values` of the selected element
     frame: Frame = Frame.VIEW
     message: str = ""
     added_kind: type[Element] | None = None  # of the last added element
+    others: frozenset[int] = frozenset()  # indices of the other selected elements, which move with the primary one
     hidden: frozenset[int] = frozenset()  # indices of elements that the window does not show; no file has them
     aim: Aim | None = field(default=None, repr=False)  # where the next element goes; None: straight ahead
     undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
@@ -58,6 +60,19 @@ class State:
     @property
     def element(self) -> Element:
         return self.scene.elements[self.selected]
+
+    @property
+    def chosen(self) -> frozenset[int]:
+        """Indices of all selected elements."""
+        return self.others | {self.selected}
+
+    @property
+    def rest(self) -> Scene:
+        """The scene without the selected elements."""
+        scene = self.scene
+        for index in sorted(self.chosen, reverse=True):
+            scene = scene.edit(index)
+        return scene
 
     @property
     def active(self) -> Value:
@@ -72,7 +87,7 @@ class State:
 
     @property
     def snapshot(self) -> Snapshot:
-        return Snapshot(self.scene.drop_caches(), self.selected)
+        return Snapshot(self.scene.drop_caches(), self.selected, self.others)
 
     def indices_in(self, scene: Scene, indices: frozenset[int]) -> frozenset[int]:
         """Indices of elements in an older or newer version of the scene, without those that it lacks."""
@@ -86,8 +101,21 @@ class State:
         return replace(self, message=message)
 
     def select(self, index: int) -> State:
-        """Select another element. The next change is not merged with earlier ones."""
-        return replace(self, selected=index, value_index=0, last_change=None, aim=None)
+        """Select another element alone. The next change is not merged with earlier ones."""
+        return replace(self, selected=index, others=frozenset(), value_index=0, last_change=None, aim=None)
+
+    def make_primary(self, index: int) -> State:
+        """Make a selected element the primary one; select any other element alone."""
+        return replace(self.select(index), others=self.chosen - {index} if index in self.chosen else frozenset())
+
+    def add_or_remove(self, index: int) -> State:
+        """Add an element to the selection, as the primary one, or remove it; the camera in view is selected alone."""
+        eye = index_of(self.scene, self.scene.camera)
+        chosen = (self.chosen - {eye}) ^ {index}
+        if index == eye or not chosen:
+            return self.select(index)
+        primary = next(each for each in (index, self.selected, max(chosen)) if each in chosen)
+        return replace(self.select(primary), others=chosen - {primary})
 
     def end_merging(self) -> State:
         """End merging: the next change is undone by itself."""
@@ -105,15 +133,21 @@ class State:
         selected = self.selected if selected is None else selected
         scene = with_edited_cameras(self.scene, scene, kind)
         changes: dict[str, Any] = {"undo_stack": past, "redo_stack": (), "last_change": (kind, now)}
-        hidden = self.indices_in(scene, self.hidden)
-        return replace(self, scene=scene, selected=selected, hidden=hidden, **changes)
+        hidden, others = self.indices_in(scene, self.hidden), self.indices_in(scene, self.others)
+        return replace(self, scene=scene, selected=selected, others=others - {selected}, hidden=hidden, **changes)
 
     def edit_element(self, element: Element, kind: str, now: float, index: int | None = None) -> State:
         """Replace the selected element, or another one, by `element`, whose changed numbers are rounded."""
-        index = self.selected if index is None else index
-        old = self.scene.elements[index]
-        element = round_changes(old, element, self.stride)
-        return self if element == old else self.change(self.scene.edit(index, element), kind, now)
+        return self.edit_elements({self.selected if index is None else index: element}, kind, now)
+
+    def edit_elements(self, changed: dict[int, Element], kind: str, now: float) -> State:
+        """Replace elements, by their indices, by others whose changed numbers are rounded."""
+        scene = self.scene
+        for index, element in changed.items():
+            old = self.scene.elements[index]
+            new = round_changes(old, element, self.stride)
+            scene = scene if new == old else scene.edit(index, new)
+        return self if scene is self.scene else self.change(scene, kind, now)
 
     def edit_camera(self, camera: Camera, kind: str, now: float) -> State:
         """Replace the scene's camera by `camera`, whose changed numbers are rounded."""
@@ -151,43 +185,6 @@ def can_edit(kind: type[Element]) -> bool:
     return any(not isinstance(each, Whole) for each in fields_of(kind))
 
 
-def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Select the next (step 1) or previous (-1) editable element in the order of the file, cyclically."""
-    count = len(state.scene.elements)
-    indices = ((state.selected + step * number) % count for number in range(1, count + 1))
-    return state.select(next(index for index in indices if can_edit(type(state.scene.elements[index]))))
-
-
-def select_camera(state: State, _amount: float = 1.0, now: float = 0.0) -> State:
-    """Select the camera in view, or where it is selected look through the next one, cyclically."""
-    count = len(state.scene.cameras)
-    if state.element is not state.scene.camera or count == 1:
-        return state.select(index_of(state.scene, state.scene.camera))
-    return seen_by(state, (state.scene.shown + 1) % count, now)
-
-
-def look_through(state: State, _amount: float = 1.0, now: float = 0.0) -> State:
-    """Look through the selected camera."""
-    if not isinstance(state.element, Camera):
-        return state.with_message(f"{state.element.title} is no camera")
-    return seen_by(state, next(n for n, each in enumerate(state.scene.cameras) if each is state.element), now)
-
-
-def seen_by(state: State, index: int, now: float) -> State:
-    """Look through a camera of the scene, and select it."""
-    scene = state.scene.seen_by(index + 1)
-    state = state.select(state.selected).change(scene, "", now, index_of(scene, scene.camera))
-    return state.with_message(f"camera {scene.shown + 1} of {len(scene.cameras)}")
-
-
-def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Select the next light after the selected element, cyclically."""
-    lights = list(state.scene.indices_of(Lamp))
-    if not lights:
-        return state.with_message("there is no light")
-    return state.select(next((index for index in lights if index > state.selected), lights[0]))
-
-
 def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """Take the last snapshot from the stack of undo or redo, and give the current one to the other stack.
 
@@ -196,11 +193,11 @@ def travel(taken: str, given: str, state: State, _amount: float = 1.0, _now: flo
     stack, other = getattr(state, f"{taken}_stack"), getattr(state, f"{given}_stack")
     if not stack:
         return state.with_message(f"nothing to {taken}")
-    scene, selected = stack[-1]
+    scene, selected, others = stack[-1]
     stacks = {f"{taken}_stack": stack[:-1], f"{given}_stack": (*other, state.snapshot)}
     hidden = state.indices_in(scene, state.hidden)
     state = state if selected == state.selected else state.select(selected)
-    return replace(state, scene=scene, hidden=hidden, last_change=None, **stacks)
+    return replace(state, scene=scene, others=others, hidden=hidden, last_change=None, **stacks)
 
 
 undo, redo = partial(travel, "undo", "redo"), partial(travel, "redo", "undo")

@@ -19,13 +19,14 @@ from minirt.materials import Compound
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Camera, Lamp, Light, Scene
 from minirt.scene.elements import linear_combination
+from minirt.scene.names import element_name, named_block, own_name, renamed
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
-from minirt.viewer.editing.motion import clamp_point
 from minirt.viewer.editing.placing import aim_ahead, settled
 from minirt.viewer.editing.projection import UP, field_names
-from minirt.viewer.editing.state import State, can_edit, index_of
+from minirt.viewer.editing.rigid import clamp_point
+from minirt.viewer.editing.state import Snapshot, State, can_edit, index_of
 from minirt.viewer.editing.values import RecordType, leading_decimal, nice_number, round_length, round_point, values
 from minirt.viewer.files import usable_files
 
@@ -36,26 +37,47 @@ LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """Insert a copy after the selected element, at the same position, and select it; what stands, stands on there."""
-    element = state.element
-    # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
-    repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
-    if not repeatable:
-        return state.with_message(f"a scene has one {element.title}")
-    copy = element.as_kind(repeatable[0])
-    scene = state.scene.edit(state.selected, element, copy)
-    state = replace(state.change(scene, "", now, state.selected + 1), value_index=0)
-    return state.with_message(f"a copy of the {element.title}, at the same position")
+    """Insert a copy after each selected element, at the same position, and select the copies; what stands, stands on
+    there."""
+    scene, copies = state.scene, dict[int, Element]()
+    for index in sorted(state.chosen, reverse=True):
+        element = state.scene.elements[index]
+        # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
+        repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
+        if not repeatable:
+            return state.with_message(f"a scene has one {element.title}")
+        copies[index] = element.as_kind(repeatable[0])
+        scene = scene.edit(index, element, copies[index])
+    what = names_of_chosen(state)
+    others = frozenset(index_of(scene, copies[index]) for index in state.others)
+    state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
+    return replace(state, others=others, value_index=0).with_message(f"a copy of {what}, at the same position")
 
 
 def delete(state: State, _amount: float, now: float) -> State:
-    """Delete the selected element, and select the camera."""
-    element = state.element
-    if element.required:
-        return state.with_message(f"a scene needs its {element.title}")
-    scene = state.scene.edit(state.selected)
+    """Delete the selected elements, and select the camera."""
+    elements = [state.scene.elements[index] for index in state.chosen]
+    for element in elements:
+        if element.required:
+            return state.with_message(f"a scene needs its {element.title}")
+    what = names_of_chosen(state)
+    scene = state.rest
     state = state.change(scene, "", now, index_of(scene, scene.camera))
-    return state.select(state.selected).with_message(f"deleted the {element.title}")
+    return state.select(state.selected).with_message(f"deleted {what}")
+
+
+def rename(state: State, name: str) -> State:
+    """Give the selected element a name, which its line has in a comment; without one it is called as if it had none."""
+    element = renamed(state.element, name)
+    if own_name(element) == own_name(state.element):
+        return state
+    state = state.change(state.scene.edit(state.selected, element), "", 0.0)
+    return state.with_message(f"name: {element_name(state.scene, state.selected)}")
+
+
+def names_of_chosen(state: State | Snapshot) -> str:
+    """The name of the selected element, or the number of selected elements."""
+    return f"{len(state.others) + 1} elements" if state.others else element_name(state.scene, state.selected)
 
 
 def choices(state: State, group: str) -> Iterator[State]:
@@ -77,7 +99,8 @@ def with_element(before: State, kind: type[Element]) -> State:
     """The state with a new element, which is selected. The first shape of a scene without any lamp brings one."""
     element, last = default_element(kind, before), len(before.scene.elements) - 1
     lamps = [first_lamp(before)] if isinstance(element, Shape) and not before.scene.of(Lamp) else []
-    scene = before.scene.edit(last, before.scene.elements[last], element, *lamps)
+    apart = [""] if named_block(before.scene, last)[0] else []  # a blank line, so that it is not named like those above
+    scene = before.scene.edit(last, before.scene.elements[last], *apart, element, *lamps)
     after = replace(before, value_index=0, added_kind=kind).change(scene, ELEMENT, 0.0, last + 1)
     return after.with_message(f"a new {element.title}{', and a light, since there was none' if lamps else ''}")
 

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 from slimgui import imgui
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour
-from minirt.scene import Scene
+from minirt.mlx import Modifier
+from minirt.scene import Camera, Scene
+from minirt.scene.names import COUNTED_AS, element_name, numbered_kind, own_name
 from minirt.viewer.app.session import Session
+from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import apply
+from minirt.viewer.editing.selection import look_through
 from minirt.viewer.language import searchable, translated
 from minirt.viewer.panel.groups import Groups
+from minirt.viewer.panel.numbers import TO_TYPE, TYPING
 from minirt.viewer.panel.rows import Rows
 from minirt.viewer.panel.style import Rgba
 
@@ -33,9 +38,12 @@ class Elements:
         self.groups = groups
         self._wanted = ""  # what is searched for
         self._followed = -1  # the selected element that the list was scrolled to
-        self._named: tuple[Scene | None, str] = None, ""  # scene and search of the next two
-        self._names: list[str] = []
+        self._searched: tuple[Scene | None, str] = None, ""  # scene and search of the next one
         self._found: Sequence[int] = ()  # indices
+        self._pointed: int | None = None  # index of the element whose row the pointer is on
+        self._naming: int | None = None  # index of the element whose name is typed
+        self._name, self._naming_since = "", 0.0  # what is typed, and the time in seconds
+        self._takes_focus = False  # whether the text of the name has still to get the focus
 
     def show(self) -> None:
         """Show the list, and below it the rows of the selected element."""
@@ -55,10 +63,11 @@ class Elements:
     def list(self, height: float) -> None:
         """Show the rows of the elements that are found, as far as they are in sight."""
         state = self.session.state
-        if self._named != (state.scene, self._wanted):
-            self._named, self._names = (state.scene, self._wanted), names(state.scene)
-            self._found = found(searchable(self._wanted), state.scene, self._names)
+        if self._searched != (state.scene, self._wanted):
+            self._searched = state.scene, self._wanted
+            self._found = found(searchable(self._wanted), state.scene)
         indices = self._found
+        self._pointed = None
         if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
             if state.selected != self._followed and state.selected in indices:
                 self._followed = state.selected
@@ -67,46 +76,112 @@ class Elements:
             for place in seen(len(indices)):
                 self.row(indices[place])
         imgui.end_child()
+        if self.session.screen.pointed != self._pointed:
+            self.session.screen.pointed = self._pointed
+            self.rows.gui.show(self.session.state)
 
     def row(self, index: int) -> None:
-        """Show an element: a box that hides it, its colour, kind and name. A click selects, two bring it into view."""
-        session, state = self.session, self.session.state
+        """Show an element: a box that hides it, its colour and its name. The picture marks it under the pointer."""
+        state = self.session.state
         element = state.scene.elements[index]
         imgui.push_id(index)
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab passes the list, the arrows go through it
+        imgui.begin_group()
+        imgui.begin_disabled(isinstance(element, Camera))  # no picture is without one
         changed, _ = imgui.checkbox("###shown", index not in state.hidden)
+        imgui.end_disabled()
         self.rows.gui.hint("shown while you edit; the file keeps it")
         if changed:
-            self.rows.gui.show(replace(state, hidden=state.hidden ^ {index}))
+            several = state.chosen if index in state.chosen else {index}
+            several = {each for each in several if not isinstance(state.scene.elements[each], Camera)}
+            hidden = state.hidden - several if index in state.hidden else state.hidden | several
+            self.rows.gui.show(replace(state, hidden=hidden))
         imgui.same_line()
         side = imgui.get_frame_height() * 0.7
         imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
-        picked = imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side))
+        if imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side)):
+            self.pick(index)
         imgui.pop_item_flag()
         imgui.same_line()
-        title = f"{translated(element.title)} {self._names[index]}###element"
-        picked |= imgui.selectable(title, index == state.selected, imgui.SelectableFlags.ALLOW_DOUBLE_CLICK)[0]
-        if picked and index != state.selected:
-            self._followed = index
-            self.rows.gui.show(state.with_message("").select(index))
-        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
-            self.rows.gui.show(apply(session.state, "look at", 1.0, session.now))
+        if index == self._naming:
+            self.type_name(index)
+        else:
+            self.name(index)
+        imgui.end_group()
+        if imgui.is_item_hovered():
+            self._pointed = index
         imgui.pop_item_flag()
         imgui.pop_id()
 
+    def name(self, index: int) -> None:
+        """Show a name, and what it names. A click selects, with Shift or Ctrl beside others; one more begins to rename;
+        a double click brings into view, or looks through a camera."""
+        session, state = self.session, self.session.state
+        name, kind = element_name(state.scene, index, translated), numbered_kind(state.scene, index, translated)
+        flags, right = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK, imgui.get_cursor_pos_x()
+        right += imgui.get_content_region_avail()[0]
+        picked = imgui.selectable(f"{name}###element", index in state.chosen, flags)[0]
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
+            self.visit(index)
+        elif picked and state.chosen == {index} and not session.modifiers:
+            self._naming, self._name, self._takes_focus = index, own_name(state.element), True
+            self._naming_since = session.now
+            self.rows.gui.unsettled = TO_TYPE
+        elif picked:
+            self.pick(index)
+        if kind != name:
+            imgui.same_line(right - imgui.calc_text_size(kind)[0])
+            imgui.text_disabled(kind)
 
-def names(scene: Scene) -> list[str]:
-    """Names of all elements: the comments on the lines before them."""
-    pairs = pairwise(("", *scene.items))
-    lines = [before if isinstance(before, str) else "" for before, item in pairs if isinstance(item, Element)]
-    return [line.lstrip("# ").strip() if line.lstrip().startswith("#") else "" for line in lines]
+    def pick(self, index: int) -> None:
+        """Select an element, with Shift or Ctrl beside others."""
+        state, self._followed = self.session.state.with_message(""), index
+        adds = bool(self.session.modifiers & (Modifier.SHIFT | Modifier.ACCEL))
+        self.rows.gui.show(state.add_or_remove(index) if adds else state.select(index))
+
+    def visit(self, index: int) -> None:
+        """Look through a camera; bring any other element, and the camera in view, to where they are seen well."""
+        session, state = self.session, self.session.state.select(index)
+        is_further = isinstance(state.element, Camera) and state.element is not state.scene.camera
+        after = look_through(state, index, session.now) if is_further else apply(state, "look at", 1.0, session.now)
+        self.rows.gui.show(after)
+
+    def type_name(self, index: int) -> None:
+        """Show the name that is typed; Enter, and the focus of another widget, take it. Where the click that began it
+        was the first of two they mean what they mean in any row."""
+        if self._takes_focus:
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(-1.0)
+        entered, self._name = imgui.input_text("###name", self._name, TYPING)
+        is_double = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT)
+        if is_double and self.session.now - self._naming_since < self.rows.gui.io.mouse_double_click_time:
+            self._naming = None
+            self.visit(index)
+            return
+        if self._takes_focus and imgui.is_item_active():
+            self._takes_focus = False
+        left = imgui.is_item_deactivated_after_edit() and not imgui.is_key_down(imgui.Key.KEY_ESCAPE)
+        if entered or left:
+            self.rows.gui.show(structure.rename(self.session.state.select(index), self._name))
+        if entered or (not self._takes_focus and not imgui.is_item_active()):
+            self._naming = None
 
 
-def found(word: str, scene: Scene, names: Sequence[str]) -> Sequence[int]:
-    """Indices of the elements whose kind, code or name has what is searched for."""
-    titles = zip(scene.elements, names, strict=True) if word else ()
-    titled = enumerate(searchable(f"{translated(each.title)} {each.code} {name}") for each, name in titles)
-    return [index for index, title in titled if word in title] if word else range(len(scene.elements))
+def found(word: str, scene: Scene) -> Sequence[int]:
+    """Indices of the elements whose kind, number, code, or comment on or above its line, has what is searched for."""
+    if not word:
+        return range(len(scene.elements))
+    indices, numbers, comment = list[int](), Counter[str](), ""
+    for item in scene.items:
+        if isinstance(item, str):
+            comment = item
+            continue
+        kind = COUNTED_AS.get(type(item), type(item)).title
+        numbers[kind] += 1
+        title = f"{translated(kind)} {numbers[kind]}"
+        if word in searchable(f"{title} {item.code} {own_name(item)} {comment}"):
+            indices.append(sum(numbers.values()) - 1)
+    return indices
 
 
 def colour_of(element: Element) -> Rgba:

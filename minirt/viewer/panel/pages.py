@@ -15,6 +15,7 @@ from minirt.movie import FILMS, FPS, QUALITY, numbered, save_movie
 from minirt.rendering.image import Image
 from minirt.rendering.settings import render
 from minirt.scene import Lamp, Scene
+from minirt.scene.names import own_name
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import BINDINGS
@@ -145,8 +146,10 @@ def step_title(before: Snapshot, after: Snapshot) -> str:
     old, new = before.scene.elements, after.scene.elements
     if len(old) != len(new):
         is_more = len(new) > len(old)
-        changed = new[after.selected] if is_more else old[before.selected]
-        return f"{'+' if is_more else '-'} {translated(changed.title)}"
+        names = translated(structure.names_of_chosen(after if is_more else before))
+        return f"{'+' if is_more else '-'} {names}"
     one, other = old[after.selected], new[after.selected]
-    fields = (each for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None))
-    return f"{translated(one.title)}: {', '.join(translated(each.title) for each in fields)}"
+    changed = (each for each in fields_of(type(one)) if getattr(one, each.name) != getattr(other, each.name, None))
+    titles = ["name"] if own_name(one) != own_name(other) else [each.title for each in changed]
+    names = structure.names_of_chosen(before._replace(selected=after.selected))
+    return f"{translated(names)}: {', '.join(map(translated, titles))}"

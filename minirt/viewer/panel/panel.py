@@ -52,7 +52,7 @@ class Panel(Gui):
         paint = (lambda painter, _: self.paint(painter)) if is_open else None
         self.session.mlx.mlx_overlay_hook(self.session.window, paint)
         self.session.screen.covered, self.session.slides = 0, False
-        self.unsettled = 0
+        self.unsettled, self.session.screen.pointed = 0, None
         if is_open:
             self.settle()
         self.session.update()

@@ -227,9 +227,9 @@ LAMPS = {  # a ball on a floor, and what lights it or does not
     "L 4,-9,0 1": "light 1",  # below the floor
     "L 4,9,20 1 255,255,255 reach:9": "light 1",
     "L 4,9,0 0": "",  # it is switched off
-    "L 4,9,0 1\nl 0,0.5,12 1\ndl 0,1,0 1": "light 3",
-    "dl 0,-1,0 1\npl 0,9,0 0,-1,0 9,9,9": "light 1",
-    "sl 4,9,0 0,1,0 30 1": "light 1",
+    "L 4,9,0 1\nl 0,0.5,12 1\ndl 0,1,0 1": "parallel light 1",
+    "dl 0,-1,0 1\npl 0,9,0 0,-1,0 9,9,9": "parallel light 1",
+    "sl 4,9,0 0,1,0 30 1": "spot light 1",
     "sl 4,9,0 -0.4,-0.9,0.9 30 1": "",
     "L 4,-9,0 1\nsp 0,0,5 1 9,9,9 mirror:0.5": "",  # which may show what it lights
     "L 0,0,9 1": "",  # inside of the ball, which is told

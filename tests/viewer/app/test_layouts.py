@@ -33,8 +33,9 @@ KEYBOARDS = {  # X11's names, with the layout of the table and the key codes of 
 }
 SIZE = (320, 240)
 LAST = ("toggle full screen", "quit")  # the window may be replaced or closed afterwards
-# Return closes the list that N has opened; Escape takes the keys from the panel that F1 has opened.
-WITH = {"Shift+N": "Return Shift+N", "F1": "F1 Escape"}
+# Return closes the list that N has opened; Escape takes the keys from the panel that F1 has opened, and from the name
+# that F2 begins.
+WITH = {"Shift+N": "Return Shift+N", "F1": "F1 Escape", "F2": "F2 Escape"}
 
 
 @contextmanager

@@ -155,7 +155,7 @@ def test_tools_do_what_their_keys_do() -> None:
 def test_a_tool_shows_the_handles_of_its_kind_alone(name: str, kinds: set[str]) -> None:
     session = play("press Tab", "press Tab", "press Tab", "press Tab", tool(name))
     kind = session.screen.handle_kind
-    assert {each.kind for each in handles_of(session.state.element, session.view, 1.0, kind)} == kinds
+    assert {each.kind for each in handles_of(session.state.element, session.view, 1.0, kind=kind)} == kinds
     assert play(tool(name), tool(name)).screen.handle_kind == ""
 
 

@@ -30,10 +30,11 @@ def test_random_input_in_memory_loses_nothing(seed: int, tmp_path) -> None:
     ).state
     scene = states[-1].scene  # before anything was undone
     assert sum(type(each) is Camera for each in scene.elements) == 1
-    assert parse(dump(scene)).scene.items == scene.items
+    assert parse(dump(scene), path).scene.items == scene.items
     parse(path.read_bytes(), path)
     assert undone.undo_stack == ()
     assert undone.scene.items == parse(WITH_CYLINDER).scene.items
+    assert dump(undone.scene) == WITH_CYLINDER
 
 
 @pytest.mark.window

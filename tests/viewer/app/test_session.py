@@ -15,7 +15,8 @@ from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.app import commands
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.marks import GOLD, bgra, outline_pixels
+from minirt.viewer.display.marks import GOLD, bgra
+from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME

@@ -14,7 +14,7 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Light
 from minirt.shapes import Shape, Torus
 from minirt.shapes import torus as torus_formulas
-from minirt.viewer.display import marks
+from minirt.viewer.display import marks, outline
 from minirt.viewer.display.marks import (
     AXIS_COLOURS,
     BLACK,
@@ -30,9 +30,9 @@ from minirt.viewer.display.marks import (
     draw_icon,
     draw_line,
     draw_outline,
-    outline_pixels,
     visible_icons,
 )
+from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
 from tests.meshes.examples import named
@@ -95,7 +95,7 @@ def test_an_outline_takes_few_rays_and_no_distances(monkeypatch: pytest.MonkeyPa
         rays.append(np.broadcast(*args[-2:]).size)
         return covers(*args)
 
-    monkeypatch.setattr(marks, "covers", counted)
+    monkeypatch.setattr(outline, "covers", counted)
     monkeypatch.setattr(torus_formulas, "crossing", None)
     outside, _ = outline_pixels(torus, Camera((0, 0, -5), (0, 0, 1), 60), 1920, 1080, MOVING_RAYS)
     assert len(outside[0]) > 3000
@@ -121,7 +121,7 @@ def test_the_outline_is_drawn_in_the_frame_but_not_in_the_picture() -> None:
 def test_an_outline_has_black_beside_it_and_none_beyond_a_corner_of_the_picture(corner: int) -> None:
     pixels, inward = np.full((4, 4, 4), 9, np.uint8), 1 if corner == 0 else -1
     row, rows = np.array([corner]), np.array([corner + inward])
-    draw_outline(pixels, (row, row), (rows, row))
+    draw_outline(pixels, (row, row), (rows, row), GOLD)
     black = np.zeros((4, 4), bool)
     black[[corner, corner + inward, corner + 2 * inward], [corner + inward, corner + inward, corner]] = True
     assert ((pixels == np.array(bgra(BLACK), np.uint8)).all(axis=2) == black).all()
@@ -163,7 +163,7 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     hidden, shown = played("resize 300x200", text=text), played("resize 300x200", "press G", text=text)
     assert not np.array_equal(hidden.screen.frame, shown.screen.frame)
     state = shown.state
-    placed = visible_icons(state.scene, None, projection_of(state.scene.camera, 300, 200), 1.0, every=True)
+    placed = visible_icons(state.scene, (), projection_of(state.scene.camera, 300, 200), 1.0, every=True)
     assert sorted(icon.code for icon in placed) == ["A", "C", "L"]
     for icon in placed:
         keys = ["resize 300x200", "press Tab", "press Tab", "press G", f"click {icon.x},{icon.y}"]
@@ -182,11 +182,11 @@ def test_a_further_camera_has_an_icon_that_can_be_dragged_unless_it_is_in_view()
     state = played("resize 300x200", text=text).state
     for seen, codes in ((state.scene, ["A", "C", "c"]), (state.scene.seen_by(2), ["A", "c"])):
         view = projection_of(seen.camera, 300, 200)
-        placed = visible_icons(seen, None, view, 1.0, every=True)
+        placed = visible_icons(seen, (), view, 1.0, every=True)
         assert sorted(icon.code for icon in placed) == codes
     (icon,) = [
         icon
-        for icon in visible_icons(state.scene, None, projection_of(state.scene.camera, 300, 200), 1.0, True)
+        for icon in visible_icons(state.scene, (), projection_of(state.scene.camera, 300, 200), 1.0, True)
         if icon.code == "c"
     ]
     drag = f"drag {icon.x},{icon.y} {icon.x - 20},{icon.y}"
@@ -204,7 +204,7 @@ def test_an_icon_has_the_colour_of_its_light() -> None:
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 def test_an_icon_is_a_square_with_a_frame(scale: float) -> None:
     pixels = np.full((100, 100, 4), 9, np.uint8)
-    draw_icon(pixels, Icon(0, 50, 50, "L", 0xFF123456), scale, selected=True)
+    draw_icon(pixels, Icon(0, 50, 50, "L", 0xFF123456), scale, GOLD)
     for of_square, side in ((pixels != 9).any(axis=2), 24), (~framed(pixels), 20):
         rows, columns = np.nonzero(of_square)
         assert (np.ptp(rows) + 1, np.ptp(columns) + 1) == (side * scale, side * scale)
@@ -218,7 +218,7 @@ def framed(pixels: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(("colour", "letters"), [(0x0050FB, BLACK), (0x0050F9, WHITE), (0xFB5000, BLACK), (0, WHITE)])
 def test_letters_are_black_on_bright_icons(colour: int, letters: int) -> None:
     pixels = np.zeros((40, 40, 4), np.uint8)
-    draw_icon(pixels, Icon(0, 20, 20, "L", BLACK | colour), 1.0, selected=True)
+    draw_icon(pixels, Icon(0, 20, 20, "L", BLACK | colour), 1.0, GOLD)
     drawn = {tuple(each) for each in pixels[10:30, 10:30].reshape(-1, 4).tolist()}
     assert bgra(letters) in drawn
     assert bgra(BLACK ^ WHITE ^ letters | BLACK) not in drawn - {bgra(BLACK | colour)}

@@ -11,7 +11,8 @@ from minirt.fields.scalars import LEAST_LENGTH
 from minirt.scene import Camera, FurtherCamera, FurtherLight, Light, Scene, dump
 from minirt.shapes import Cylinder, Plane, Sphere
 from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
-from minirt.viewer.editing.motion import rodrigues, turn_camera
+from minirt.viewer.editing.motion import turn_camera
+from minirt.viewer.editing.rigid import rodrigues
 from minirt.viewer.editing.state import STEP_SHARE, State, initial_state
 from tests.viewer.fake import scene
 

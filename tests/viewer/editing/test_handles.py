@@ -183,14 +183,14 @@ def test_a_click_on_an_arrow_at_the_edge_selects_and_frames_the_light() -> None:
     session = played(*OPEN, "press C", "hold Left 1.2", "press L", text=TEXT)
     state = session.state
     view = projection_of(state.scene.camera, WIDTH, HEIGHT)
-    ((owner, way),) = arrows(state.scene, state.selected, view, every=False).items()
+    ((owner, way),) = arrows(state.scene, state.chosen, view, every=False).items()
     tip = arrow_tip(way, WIDTH, HEIGHT, 1.0)
     assert owner == state.selected
     framed = played(*OPEN, "press C", "hold Left 1.2", "press L", f"click {spelled(tip)}", text=TEXT).state
     pixel = projection_of(framed.scene.camera, WIDTH, HEIGHT).pixel(framed.element.position)
     assert pixel
     assert hypot(pixel[0] - WIDTH / 2, pixel[1] - HEIGHT / 2) < 2
-    ways = arrows(state.scene, 1, view, every=True)  # with the icons of lights, another element is selected
+    ways = arrows(state.scene, [1], view, every=True)  # with the icons of lights, another element is selected
     tip = arrow_tip(ways[owner], WIDTH, HEIGHT, 1.0)
     every = played(*OPEN, "press C", "hold Left 1.2", "press G", f"click {spelled(tip)}", text=TEXT).state
     assert every.element.title == "light"

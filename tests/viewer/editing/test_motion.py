@@ -18,8 +18,8 @@ from minirt.scene import Camera, Scene, describe, dump, load, parse
 from minirt.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere, Square, Torus, Triangle
 from minirt.shapes.shape import Flat, Oriented
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.motion import rodrigues, rotate
 from minirt.viewer.editing.projection import scene_size
+from minirt.viewer.editing.rigid import rodrigues, rotate
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.values import round_changes, values
 from tests.reference.uv_mapping import right_and_up_on
