@@ -14,6 +14,7 @@ from typing import NamedTuple
 from minirt.fields import Triple
 from minirt.mlx import Button, Key
 from minirt.scene import Camera
+from minirt.scene.names import element_name
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import ENTER
@@ -87,7 +88,7 @@ class Choosing:
         """Show what can be done with the selected element, or at a pixel that shows a point of the scene or none."""
         state = self.session.state
         self._before, self._group, self._letters, self._place = state, "", "", place
-        self._title = state.element.title
+        self._title = element_name(state.scene, state.selected, translated)
         self._every = [Row(translated(MENU[action]), action=action) for action in menu_of(state, point)]
         self.choose(self._every[0])
 

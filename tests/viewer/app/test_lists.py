@@ -53,7 +53,7 @@ def test_a_right_click_shows_what_can_be_done_with_the_element_there() -> None:
     assert isinstance(session.state.element, Sphere)
     assert session.state.scene.items == scene().items
     box = box_of(session)
-    assert (box.title, box.place) == ("sphere", AT_SPHERE)
+    assert (box.title, box.place) == ("sphere 1", AT_SPHERE)
     assert set(box.rows) == {*MENU.values()} - {"look through", "undo", "redo"}
     assert box.keys[box.rows.index("duplicate")] == "Ctrl+D"
     nothing = play("press Tab", right_click(NOWHERE))
