@@ -63,9 +63,10 @@ def layout_of(box: ListBox, width: int, height: int, size: int) -> Layout:
     else:
         most = (height - 2 * MARGIN - head) // line
         tall = head + min(len(box.rows), max(1, most)) * line
+        widest = max(breadth, measure(translated(box.title), size)[0])
         left, top = (
             max(MARGIN, min(at, side - MARGIN - length))
-            for at, side, length in zip(box.place, (width, height), (breadth, tall), strict=True)
+            for at, side, length in zip(box.place, (width, height), (widest, tall), strict=True)
         )
     count = min(len(box.rows), max(1, most))
     first = min(max(box.chosen - count // 2, 0), len(box.rows) - count)
