@@ -22,7 +22,7 @@ from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
 from minirt.viewer.display.lists import ListBox, layout_of
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.state import State
-from minirt.viewer.language import searchable, translated
+from minirt.viewer.language import GAP, searchable, translated
 
 ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
 LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
@@ -39,6 +39,7 @@ MENU = {  # its rows: actions, and what they are called there
     "undo": "undo",
     "redo": "redo",
 }
+HINT = "type, arrows, click or Enter    Esc: none"
 WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}
 
 
@@ -105,6 +106,9 @@ class Choosing:
         action = pressed.action if pressed and not self._letters else ""
         if self._group and LISTS.get(action) == self._group:  # again: the next choice
             self.step(ADDING.get(action, 1))
+        elif named := [row for row in self._every if row.action and row.action == action]:  # the key beside it
+            self.choose(named[0])
+            self.take()
         elif (self._group and action in LISTS) or self.session.modifiers & SIGNIFICANT:
             return False
         elif key in ENTER:
@@ -190,13 +194,13 @@ class Choosing:
             self.choose(rows[(self.index_in(rows) + step) % len(rows)])
 
     def filter(self, letters: str) -> None:
-        """Show the rows that contain some letters, and choose the first of them."""
-        self._letters = letters
-        rows = self.rows()
-        if rows and letters:
-            self.choose(rows[0])
+        """Show the rows that contain some letters, and choose the first; letters that none has are not taken."""
+        before, self._letters = self._letters, letters
+        if rows := self.rows():
+            self.choose(rows[0] if letters else self._chosen or rows[0])
         else:
-            self.show()
+            self._letters = before
+            self.show(f"nothing is called {letters}")
 
     def choose(self, row: Row) -> None:
         """Choose a row: its state replaces the last one in the scene."""
@@ -220,18 +224,16 @@ class Choosing:
         """Index of the chosen row, or 0."""
         return next((index for index, row in enumerate(rows) if row is self._chosen), 0)
 
-    def show(self) -> None:
-        """Show the list, or nothing if it is closed."""
+    def show(self, complaint: str = "") -> None:
+        """Show the list, with a complaint in place of the hint on its keys; nothing if it is closed."""
         screen = self.session.screen
         screen.list_box = None
         if self.is_open:
-            rows = self.rows()
-            hint = "" if rows else "    nothing is called so"
-            title = self._title
+            rows, title = self.rows(), self._title
             if self._group or self._letters:
-                title = f"{title}: {self._letters}_{hint}"
-            if self._group:
-                title += "    type, arrows, click or Enter    Esc: none"
+                title = f"{title}: {self._letters}_"
+            if complaint or self._group:
+                title = GAP.join((title, complaint or HINT))
             layout = self.session.keymap.layout
             keys = [keys_of(row.action, layout)[0] for row in rows if row.action]
             titles = tuple(row.title for row in rows)

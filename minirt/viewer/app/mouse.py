@@ -9,6 +9,7 @@ from minirt.errors import MiniRTError
 from minirt.fields import Triple
 from minirt.mlx import Button, Cursor, Modifier
 from minirt.scene import Camera
+from minirt.scene.names import element_name
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
@@ -96,7 +97,8 @@ class Mouse:
         for owner, way in arrows(state.scene, state.chosen, session.view, screen.icons).items():
             tip = arrow_tip(way, *screen.size, screen.scale)
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
-                session.show(look_at(state.select(owner), 1.0, session.now))
+                message = f"{element_name(state.scene, owner)} is in the middle now"
+                session.show(look_at(state.select(owner), 1.0, session.now).with_message(message))
                 return True
         shown = bool(state.others), screen.handle_kind
         handles = handles_of(state.element, session.view, screen.scale, *shown) if screen.handles else []

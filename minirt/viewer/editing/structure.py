@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import cos, pi, sin
+from math import cos, dist, pi, sin
 from typing import Any
 
 from minirt.element import Element, Record, fields_of
@@ -32,7 +32,8 @@ from minirt.viewer.files import usable_files
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
-LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs
+LAMP_SHARE = 0.4  # of the distance to a surface: where a new lamp hangs in front of it
+SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
@@ -174,13 +175,13 @@ def one_digit(length: float) -> float:
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
     """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
 
-    What has no surface hangs on the way there, so that a lamp lights the surface that it is aimed at.
+    What has no surface hangs in front of a surface there, along its normal, so that a lamp lights it.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     right, up, _ = camera_frame(state.scene.camera)
     middle = aim.point
     if aim.normal and not issubclass(kind, Shape):
-        middle = linear_combination(1 - LAMP_SHARE, aim.eye, LAMP_SHARE, aim.point)
+        middle = linear_combination(1.0, aim.point, LAMP_SHARE * dist(aim.eye, aim.point), aim.normal)
     radius = one_digit(aim.size) / 2 if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
@@ -191,7 +192,7 @@ def first_lamp(state: State) -> Light:
     """A lamp for a scene without any: above the camera's left shoulder, at a distance that lights what it looks at."""
     camera = state.scene.camera
     right, _, _ = camera_frame(camera)
-    beside = linear_combination(-LAMP_SHARE * state.size, right, LAMP_SHARE * state.size, UP)
+    beside = linear_combination(-SHOULDER * state.size, right, SHOULDER * state.size, UP)
     position = clamp_point(linear_combination(1.0, camera.position, 1.0, beside))
     return Light(position=round_point(position, state.stride), brightness=LAMP_BRIGHTNESS)
 

@@ -132,7 +132,8 @@ class Gui:
         if down:
             is_shortcut = Modifier.ACCEL in self.session.modifiers
             passes = not self.types and (is_shortcut or code in OF_THE_PICTURE)
-            taken = self.has_keys and code not in FUNCTION_KEYS and not passes
+            is_for_list = self.session.screen.list_box is not None and not self.types
+            taken = self.has_keys and code not in FUNCTION_KEYS and not passes and not is_for_list
             ends = code in (*OF_THE_PICTURE, Key.ESCAPE) and not is_shortcut
             self.is_left |= ends and not self.types and not self.has_popup
         else:

@@ -105,6 +105,10 @@ def test_keys_and_the_pointer_go_through_the_list_of_actions() -> None:
     assert len(play(title, "press Down", "press Down", "press Return").state.scene.spheres) == 2
     assert len(play(title, "press d", "press e", "press Return").state.scene.spheres) == 0
     assert box_of(play(title, "press Up")) == box_of(listed)._replace(chosen=len(rows(listed)) - 1)
+    assert rows(play(title, "press N"))[0] == "sphere"  # the key beside a row
+    unknown = play("press N", "press q", "press q")
+    assert box_of(unknown).title == "element: q_    nothing is called qq"
+    assert "square" in rows(unknown)
     over = click_on(listed, "delete").replace("click", "move")
     assert box_of(play(title, over)).chosen == rows(listed).index("delete")
     for end in ("press Escape", "click 5,400", "press Ctrl+Z", "press Tab"):

@@ -154,9 +154,10 @@ def test_a_lamp_hangs_before_the_surface_that_it_is_aimed_at() -> None:
     state = aiming(initial_state(scene(HEAD.replace("L 5,9,5 0.6\n", "") + GROUND)), 200, 250)
     (kind,) = [each for each in addable_kinds(state.scene) if each.code == "L"]
     lamp = default_element(kind, state)
-    assert lamp.position[1] > 0.5  # type: ignore[attr-defined]
-    x, y = projection_of(state.scene.camera, *SIZE).pixel(lamp.position)  # type: ignore[attr-defined]
-    assert hypot(x - 200.5, y - 250.5) < 5
+    x, y, z = lamp.position  # type: ignore[attr-defined]
+    assert y > 0.5
+    column, row = projection_of(state.scene.camera, *SIZE).pixel((x, 0.0, z))  # type: ignore[misc]
+    assert hypot(column - 200.5, row - 250.5) < 5  # the ground below it
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.3, 0.8, 1.2])
