@@ -72,7 +72,7 @@ class Choosing:
         return self._before is not None and (not self._group or (last is not None and last[0] == self._group))
 
     def begin(self, action: str, state: State) -> None:
-        """Add the first choice of an action of LISTS, or an element of the kind that was added last; show the list."""
+        """Add the first choice of an action of LISTS, or by keys an element of the kind that was added last."""
         self._before, self._group, self._letters = state, LISTS[action], ""
         is_element = self._group == structure.ELEMENT
         self._title = "element" if is_element else "attribute"
@@ -82,8 +82,9 @@ class Choosing:
         if not choices:
             self.session.show(state.with_message(f"{state.element.title} has no attribute that can be added"))
             return
-        again = (row for row, each in zip(self._every, choices, strict=True) if type(each.element) is state.added_kind)
-        self.choose(next(again, self._every[0]) if is_element else self._every[0])
+        kind = state.added_kind if is_element and not self._place else None  # a pointer expects the first one
+        again = (row for row, each in zip(self._every, choices, strict=True) if type(each.element) is kind)
+        self.choose(next(again, self._every[0]))
 
     def begin_menu(self, place: tuple[int, int], point: Triple | None) -> None:
         """Show what can be done with the selected element, or at a pixel that shows a point of the scene or none."""

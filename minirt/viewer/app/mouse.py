@@ -21,8 +21,9 @@ from minirt.viewer.editing.motion import APPROACHING, approach, in_reach, look_a
 from minirt.viewer.editing.placing import AHEAD, aim, aim_at_top
 from minirt.viewer.editing.projection import Aim, position_of
 from minirt.viewer.editing.selection import look_through
-from minirt.viewer.editing.state import index_of
+from minirt.viewer.editing.state import State, index_of
 
+NEARER = 0.7  # of the picture's height: where the tool row puts an element
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
 SLIDING = "slide by hand"  # the drag that leaves handles alone, as its chords may be those of a handle, too
 DOUBLE_CLICK = 0.4  # seconds between its presses
@@ -138,10 +139,18 @@ class Mouse:
             self.session.release_button()
             if not pressed.dragging and button != Button.LEFT:
                 self.click(button)
-            elif not pressed.dragging and pressed.owner is not None:
-                state = self.session.state.with_message("")
-                is_with_shift = pressed.action == SHIFT_DRAG
-                self.session.show(state.add_or_remove(pressed.owner) if is_with_shift else state.select(pressed.owner))
+            elif not pressed.dragging and not pressed.handle:
+                self.session.show(self.selection_after(pressed))
+
+    def selection_after(self, pressed: DragStart) -> State:
+        """Return the state after a click of the left button: on nothing the camera is selected."""
+        state, owner = self.session.state, pressed.owner
+        is_with_shift = pressed.action == SHIFT_DRAG
+        if owner is None:
+            camera = index_of(state.scene, state.scene.camera)
+            return state if is_with_shift or state.selected == camera else state.select(camera)
+        state = state.with_message("")
+        return state.add_or_remove(owner) if is_with_shift else state.select(owner)
 
     def click(self, button: int) -> None:
         """Perform the action that is bound to a button."""
@@ -204,7 +213,7 @@ class Mouse:
         if is_elsewhere and not at:
             if isinstance(element, Shape) and element.bounds():
                 return aim_at_top(session.view, element)
-            x, y = width // 2, int(AHEAD * height)
+            x, y = width // 2, int((NEARER if session.screen.tool_at(x, y) else AHEAD) * height)
         try:
             hit = session.surface_at(x, y)
         except MiniRTError as error:

@@ -58,7 +58,9 @@ class Groups:
         colours = {imgui.Col.HEADER: LIST, imgui.Col.HEADER_HOVERED: BOX_UNDER_POINTER, imgui.Col.HEADER_ACTIVE: BOX}
         for part, colour in colours.items():  # not those of a row that is chosen
             imgui.push_style_color(part, rgba(colour))
+        imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab goes from value to value
         unfolded = imgui.collapsing_header(f"{title}###{name} group", flags=flags)[0]
+        imgui.pop_item_flag()
         imgui.pop_style_color(len(colours))
         return bool(unfolded)
 

@@ -131,6 +131,9 @@ class Gui:
         """
         if down:
             is_shortcut = Modifier.ACCEL in self.session.modifiers
+            if is_shortcut and self.types and code == Key.S:  # what is typed is set, and then saved
+                self.on_key(Key.RETURN, down=True)
+                self.on_key(Key.RETURN, down=False)
             passes = not self.types and (is_shortcut or code in OF_THE_PICTURE)
             is_for_list = self.session.screen.list_box is not None and not self.types
             taken = self.has_keys and code not in FUNCTION_KEYS and not passes and not is_for_list

@@ -182,12 +182,12 @@ def test_a_held_plus_goes_on_and_grows(shift):
     assert tapped.diameter == pytest.approx(2 * 1.05**2, abs=5e-5)
 
 
-def test_clicks_select_elements_and_comments_are_skipped():
+def test_clicks_select_elements_on_nothing_the_camera_and_comments_are_skipped():
     assert played("", "   ", "# press Tab", "press Tab  # twice").state.element.title == "light"
     assert played("click 32,24").state.element.title == "sphere"
     assert played("click 32,40").state.element.title == "plane"
     nothing = played("press Tab", "click 1,1").state
-    assert (nothing.element.title, nothing.message) == ("light", "there is nothing")
+    assert (nothing.element.title, nothing.message) == ("camera", "there is nothing")
 
 
 def test_quitting_the_session_ends_the_replay():
