@@ -13,10 +13,9 @@ from minirt.lanes import Vec
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.rays import Hits, camera_rays, trace
+from minirt.rendering.queries.rays import camera_rays, trace
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Ambient, Scene, check_scene
-from minirt.shapes import Shape
 
 WHITE = (255, 255, 255)
 UNLIT = ("specular", "mirror", "glass", "tint", "fresnel", "glow", "bump", "normal_map")  # no part of the albedo
@@ -52,7 +51,9 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
     forward = np.array(unit(scene.camera.direction))
     distance, shape = hits.distance.reshape(height, width), hits.owner.reshape(height, width)
-    parts = hits.point, hits.normal, coordinates(scene.shapes, hits)
+    arrays = ShapeArrays()
+    arrays.update(*scene.runs)
+    parts = hits.point, hits.normal, coordinates(arrays, hits.known().primitives, hits.point, hits.normal)
     point, normal, uv = (each.reshape(height, width, -1) for each in parts)
     colours = albedo(scene, width, height, threads)
     return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, colours)
@@ -73,12 +74,12 @@ def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArra
     return light
 
 
-def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
-    """Return u and v of n hits, (n, 2)."""
-    arrays = ShapeArrays()
-    arrays.update(shapes)
-    owner, primitive = hits.owner, hits.known().primitives
-    uv, normal = np.full((len(owner), 2), np.nan), hits.normal.copy()
+def coordinates(
+    arrays: ShapeArrays, primitive: NDArray[np.int64], point: NDArray[np.float64], normal: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return u and v, (n, 2), of n points of primitives, -1 where there is none, and their outward normals."""
+    shapes, owner = arrays.shapes, np.append(arrays.owner, -1)[primitive]  # the last one where there is none
+    uv, normal = np.full((len(owner), 2), np.nan), normal.copy()
     # Where `uv:` or a turn of the shape changes its coordinates from those of its `mapping`.
     turned = [i for i in np.unique(owner[owner >= 0]) if shapes[i].uv or shapes[i].map_frame()]
     placements = {i: placement_numbers(shapes[i]) for i in turned}
@@ -88,7 +89,7 @@ def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
         here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
         packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
         with np.errstate(all="ignore"):
-            u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*hits.point[here].T), Vec(*normal[here].T))
+            u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*point[here].T), Vec(*normal[here].T))
         uv[here, 0], uv[here, 1] = u, v
     for i, (scale_u, scale_v, shift_u, shift_v, c, s, *_) in placements.items():
         u, v = uv[owner == i].T - np.array([[shift_u], [shift_v]])

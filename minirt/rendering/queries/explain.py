@@ -1,0 +1,272 @@
+"""Explains a pixel by the kernel's own formulas, which run, interpreted, on its one ray.
+
+No formula is stated a second time: copies of the kernel's functions report the calls of other ones. Light is additive,
+so a light's part is what `direct_light` computes for a scene that has this light alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from math import inf
+from types import FunctionType, ModuleType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from minirt.errors import RenderError, check_whole
+from minirt.fields import Triple
+from minirt.kernel import frame
+from minirt.kernel.pixels import PACKET_HEIGHT
+from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.shading import shade, whitted
+from minirt.kernel.shading.patterns import remember_spacing
+from minirt.kernel.shading.surfaces import Ray, Surface
+from minirt.kernel.trace import Hit
+from minirt.lanes import Mask, Number, Vec, dot, lane
+from minirt.lanes import width as lanes_of
+from minirt.rendering.buffers import coordinates
+from minirt.rendering.frame import frame_rays, thread_memory
+from minirt.rendering.notes import shape_name
+from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.packing.lights import emitting_lights
+from minirt.rendering.packing.ray_casting import hit_distances
+from minirt.rendering.queries.explanation import (
+    PRIMARY,
+    REFLECTED,
+    REFRACTED,
+    Explanation,
+    LightPart,
+    Meeting,
+    RayNode,
+    SurfacePoint,
+)
+from minirt.rendering.scene_packing import Packing
+from minirt.rendering.tone_mapping import map_tones
+from minirt.scene import Scene, check_scene
+
+
+def explain(scene: Scene, width: int, height: int, x: int, y: int, *, depth: int | None = None) -> Explanation:
+    """Return the tree of rays of the pixel in column x and row y of a picture: why it has its colour.
+
+    The ray is that of a picture with one sample a pixel: through the pixel's centre, from the centre of a lens, to the
+    centres of lights. `depth` is that of `minirt.render`. RenderError for a pixel that does not lie in the picture.
+
+        print(minirt.explain(scene, 640, 480, 320, 240))
+    """
+    check_scene(scene, "explain")
+    width, height = check_whole("width", width, 1), check_whole("height", height, 1)
+    if not (0 <= x < width and 0 <= y < height):
+        raise RenderError(f"pixel {x},{y} does not lie in the picture of {width}x{height} pixels")
+    depth = DEPTH if depth is None else check_whole("depth", depth, 0, whitted.MAX_DEPTH)
+    with np.errstate(all="ignore"):
+        ray, light = Watch(scene, width, height, depth).trace(x, y)
+    pixel = np.empty((1, 1, 4), np.uint8)
+    map_tones(np.array([[light]]), pixel, scene.camera.tone)
+    blue, green, red, _ = pixel[0, 0].tolist()
+    return Explanation(x, y, width, height, ray, light, scene.camera.tone, (red, green, blue))
+
+
+def watched(module: ModuleType, reports: dict[str, Callable[..., None]], **others: Any) -> SimpleNamespace:
+    """Return copies of the functions of a module which call one another, and `others` by their names.
+
+    A call of a function in `reports` is followed by one of its report, with the result and the arguments.
+    """
+    names = vars(module) | others
+    for name, each in vars(module).items():
+        if isinstance(each, FunctionType) and each.__module__ == module.__name__:
+            names[name] = FunctionType(each.__code__, names, name, each.__defaults__, each.__closure__)
+    names |= {name: reporting(names[name], report) for name, report in reports.items()}
+    return SimpleNamespace(**names)
+
+
+def reporting(function: Callable[..., Any], report: Callable[..., None]) -> Callable[..., Any]:
+    def call(*arguments: Any) -> Any:
+        result = function(*arguments)
+        report(result, *arguments)
+        return result
+
+    return call
+
+
+# The functions whose calls are reported.
+OF_RAYS = "primary_ray attenuated direct_light shade coloured push_rays load_rays weighted_background background_light"
+OF_LIGHTS = "aim bump_fading trace_shadow_rays shares_of_light"
+
+
+class Branch:
+    """A ray of the tree in the making."""
+
+    def __init__(self, kind: str, ray: Ray) -> None:
+        self.kind, self.ray = kind, ray
+        self.weight, self.tint = ray.weight, ray.colour
+        self.lights: tuple[LightPart, ...] = ()
+        self.surface: SurfacePoint | None = None
+        self.point, self.facing = ray.origin, ray.direction  # of the surface, and its normal
+        self.light = Vec(0.0, 0.0, 0.0)
+        self.rays: list[Branch] = []
+
+
+class Watch:
+    """Traces the ray of a pixel, the same in all lanes of a packet, and takes down what the formulas compute.
+
+    A method whose name begins with `on_` is the report of the calls of a function of the kernel.
+    """
+
+    branch: Branch  # that is being traced
+
+    def __init__(self, scene: Scene, width: int, height: int, depth: int) -> None:
+        self.scene, self.across = scene, width
+        packing = Packing(depth=depth)
+        self.arrays, self.shapes = packing.pack(scene, width, height), packing.shape_arrays
+        self.memory = thread_memory(self.arrays)[0]
+        self.waiting: dict[int, Branch] = {}  # rays by their numbers on the kernel's stack
+        self.is_background = False  # whether what is coloured next is the light of the background
+        self.last: dict[str, Any] = {}  # the last results of functions for the light of a lamp
+        emitting = [*map(id, emitting_lights(scene))]
+        self.lamps = [number for number, lamp in enumerate(scene.lights) if id(lamp) in emitting]
+        self.tracing = watched(whitted, {name: getattr(self, f"on_{name}") for name in OF_RAYS.split()})
+        self.lighting = watched(shade, {name: partial(self.on_light, name) for name in OF_LIGHTS.split()})
+
+    def trace(self, x: int, y: int) -> tuple[RayNode, Triple]:
+        """Return the tree of rays of a pixel, and its light."""
+        lanes = lanes_of(self.arrays.camera)
+        packet_width = lanes // PACKET_HEIGHT
+        column, row = x % packet_width, y % PACKET_HEIGHT
+        rays = frame_rays(self.arrays, 1)[0].reshape(-1, lanes)[:, row * packet_width + column].repeat(lanes)
+        remember_spacing(self.arrays, self.memory, 1, 0)
+        tile = frame.tile_at(self.arrays, x, y, self.across)
+        tracing = watched(frame, {}, incoming_radiance=self.tracing.incoming_radiance)
+        light = tracing.packet_radiance(self.arrays, self.memory, tile, rays, x - column, y - row)
+        return self.node(self.root), triple(frame.without_non_finite(light, self.memory))
+
+    def on_primary_ray(self, ray: Ray, *_: Any) -> None:
+        self.root = self.branch = Branch(PRIMARY, ray)
+
+    def on_push_rays(self, count: int, scene: SceneArrays, stack: Any, waiting: int, ray: Ray, level: int) -> None:
+        is_outside = lane(dot(ray.origin - self.branch.point, self.branch.facing), 0) > 0.0
+        self.waiting[waiting] = Branch(REFLECTED if is_outside else REFRACTED, ray)
+        self.branch.rays.append(self.waiting[waiting])
+
+    def on_load_rays(self, _: Any, scene: SceneArrays, stack: Any, number: int, zero: Number) -> None:
+        self.branch = self.waiting[number]
+
+    def on_attenuated(self, result: tuple[Number, Vec], *_: Any) -> None:
+        self.branch.weight, self.branch.tint = result
+
+    def on_weighted_background(self, *_: Any) -> None:
+        self.is_background = True
+
+    def on_coloured(self, light: Vec, *_: Any) -> None:
+        weight = 1.0 if self.is_background else self.branch.weight
+        self.branch.light, self.is_background = self.branch.light + weight * light, False
+
+    def on_background_light(self, light: Vec, *_: Any) -> None:
+        self.branch.light = light  # of the only ray of a scene without mirrors and glass
+
+    def on_shade(
+        self, result: tuple[Vec, Surface], scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask
+    ) -> None:
+        light, surface = result
+        primitive = int(lane(found[1], 0))
+        shape, normal = int(self.shapes.owner[primitive]), triple(surface.normal)
+        point = triple(surface.point)
+        leaves = lane(surface.side, 0) < 0.0
+        outwards = np.array([normal]) * (-1.0 if leaves else 1.0)
+        uv = coordinates(self.shapes, np.array([primitive]), np.array([point]), outwards)
+        self.branch.facing, self.branch.point = surface.normal, surface.point
+        self.branch.surface = SurfacePoint(
+            shape,
+            shape_name(self.scene.shapes, shape),
+            lane(found[0], 0),
+            point,
+            leaves,
+            normal,
+            triple(surface.shading_normal),
+            tuple(uv[0].tolist()),
+            triple(surface.colour),
+            triple(surface.specular),
+            *triple(surface.reflective),
+            lane(surface.glow, 0),
+            tuple(scene.ambient.tolist()),
+            self.branch.lights,
+            triple(light),
+        )
+
+    def on_direct_light(
+        self, _: Any, scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface: Surface, hit: Mask
+    ) -> None:
+        """Compute the light of each lamp by the same function, in a scene that has no other light."""
+        self.branch.lights = tuple(
+            self.light_part(row, lamp, ray, found, surface, hit) for row, lamp in enumerate(self.lamps)
+        )
+
+    def light_part(self, row: int, lamp: int, ray: Ray, found: Hit, surface: Surface, hit: Mask) -> LightPart:
+        """Return what the lamp in a row of the kernel's lights gives to a surface."""
+        self.last = {}
+        light = self.lighting.direct_light(self.lit_by(row), self.memory[[row, -1]], ray, found, surface, hit)
+        rays, strength = self.last["aim"]
+        origin, direction, distance = triple(rays.origin), triple(rays.direction), lane(rays.distance, 0)
+        traced = self.last.get("shares_of_light", self.last.get("trace_shadow_rays"))
+        passes = (0.0, 0.0, 0.0)
+        if isinstance(traced, Vec):
+            passes = triple(traced)
+        elif traced is not None:
+            passes = (lane(traced, 0),) * 3
+        meets = [] if traced is None else self.meets(origin, direction, distance)
+        return LightPart(
+            lamp,
+            origin,
+            direction,
+            distance,
+            lane(dot(surface.shading_normal, rays.direction), 0),
+            lane(strength * self.last.get("bump_fading", 1.0), 0),
+            passes,
+            tuple(meets),
+            *map(triple, light),
+        )
+
+    def on_light(self, name: str, result: Any, *_: Any) -> None:
+        self.last[name] = result
+
+    def lit_by(self, row: int) -> SceneArrays:
+        """Return the arrays of the scene with one of its lights alone."""
+        arrays, one = self.arrays, slice(row, row + 1)
+        kept = {name: getattr(arrays, name) for name in ("lights", "light_cones", "spots", "soft")}
+        some: Any = {name: None if rows is None else rows[one] for name, rows in kept.items()}
+        groups = tuple(group._replace(light_starts=group.light_starts[one]) for group in arrays.groups)
+        return arrays._replace(ambient=np.zeros(3), light_grid=None, groups=groups, **some)
+
+    def meets(self, origin: Triple, direction: Triple, end: float = inf) -> list[Meeting]:
+        """Return the shapes that a ray meets before its end, the first one first."""
+        start, way = Vec(*np.array(origin)), Vec(*np.array(direction))
+        distances = hit_distances(self.shapes, start, way)
+        found: dict[int, Meeting] = {}
+        for primitive in np.argsort(distances).tolist():
+            distance, shape = float(distances[primitive]), int(self.shapes.owner[primitive])
+            if distance >= end:
+                break
+            name = shape_name(self.scene.shapes, shape)
+            found.setdefault(shape, Meeting(shape, name, distance, triple(start + distance * way)))
+        return [*found.values()]
+
+    def node(self, branch: Branch) -> RayNode:
+        """Return a ray of the finished tree."""
+        origin, direction = triple(branch.ray.origin), triple(branch.ray.direction)
+        return RayNode(
+            branch.kind,
+            origin,
+            direction,
+            lane(branch.weight, 0),
+            triple(branch.tint),
+            tuple(self.meets(origin, direction)),
+            branch.surface,
+            triple(branch.light),
+            tuple(map(self.node, branch.rays)),
+        )
+
+
+def triple(v: Vec) -> Triple:
+    """Return the vector of the first lane."""
+    x, y, z = (float(np.ravel(part)[0]) for part in (v.x, v.y, v.z))
+    return x, y, z
