@@ -24,7 +24,8 @@ Command = Callable[["Scene", argparse.Namespace], int]
 
 def command_for(options: argparse.Namespace) -> Command:
     """Return the command that the options select; showing a window is the default."""
-    commands = {"check": check, "bench": bench, "report": report, "replay": replay, "output": render}
+    commands = {"check": check, "bench": bench, "report": report, "explain": explain, "replay": replay}
+    commands |= {"buffers": write_buffer, "output": render}
     return next((command for name, command in commands.items() if getattr(options, name)), show)
 
 
@@ -84,6 +85,20 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     how = options.threads, options.quick, options.ablation
     say(write_report(scene, options.scene[0], options.report, size, *how))
     return OK
+
+
+def explain(scene: Scene, options: argparse.Namespace) -> int:
+    """Print why a pixel has its colour."""
+    from minirt.cli.pixels import explain_pixel
+
+    return explain_pixel(scene, options)
+
+
+def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
+    """Write what each pixel shows to the output."""
+    from minirt.cli.pixels import write_buffer as write
+
+    return write(scene, options)
 
 
 def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) -> int:

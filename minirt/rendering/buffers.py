@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from minirt.errors import RenderError
 from minirt.fields import unit
 from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec
+from minirt.rendering.image import Image
+from minirt.rendering.packing.camera import GOLDEN_RATIO
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -32,9 +35,64 @@ class Buffers(NamedTuple):
     uv: NDArray[np.float64]  # (h, w, 2) at which pictures are looked up, `uv:` included; NaN where nothing is hit
     albedo: NDArray[np.float64]  # (h, w, 3) colour under white light, textures included; 0 where nothing is hit
 
+    def picture(self, kind: str) -> Image:
+        """Return one of `KINDS` of buffers as a picture: colours to look at, and the numbers themselves as its light.
+
+        RenderError for another kind.
+        """
+        if kind not in KINDS:
+            raise RenderError(f"a picture of buffers shows {', '.join(KINDS)}, got {kind!r}")
+        is_hit = self.shape >= 0
+        numbers: Any = {"normals": self.normal, "depth": self.depth, "ids": self.shape, "point": self.point}.get(kind)
+        if numbers is None:
+            numbers = np.insert(self.uv, 2, 0.0, axis=-1)
+        elif numbers.ndim == 2:
+            numbers = np.repeat(numbers[..., None], 3, axis=-1).astype(np.float64)
+        colours = np.zeros(numbers.shape)
+        if is_hit.any():
+            colours[is_hit] = COLOURS[kind](numbers[is_hit])
+        return Image(np.rint(255 * colours).astype(np.uint8), numbers)
+
     def __repr__(self) -> str:
         height, width = self.depth.shape
         return f"<Buffers of {width}x{height} pixels: {', '.join(self._fields)}>"
+
+
+def colours_of_normals(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return red, green and blue of normals (n, 3): x, y and z from -1 to 1."""
+    return (normal + 1) / 2
+
+
+def colours_of_depths(depth: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return white for the nearest depth, and grey in proportion to one over the others."""
+    return depth.min() / depth
+
+
+def colours_of_ids(index: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a colour for each shape: hues that a golden angle divides, so that no two near numbers look alike."""
+    hue = index * GOLDEN_RATIO + np.array([0.0, 1 / 3, 2 / 3])
+    return np.clip(np.abs(6 * (hue % 1) - 3) - 1, 0, 1) * 0.7 + 0.3 * (1 - index % 3 / 4)
+
+
+def colours_of_uvs(uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return red for u and green for v, each from one whole number to the next."""
+    return uv % 1
+
+
+def colours_of_points(point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return red, green and blue for x, y and z, between those of most points: a plane reaches far away."""
+    low, high = np.percentile(point, (5, 95), axis=0)
+    return np.clip((point - low) / np.where(high > low, high - low, 1.0), 0, 1)
+
+
+COLOURS = {  # by the kinds of pictures
+    "normals": colours_of_normals,
+    "depth": colours_of_depths,
+    "ids": colours_of_ids,
+    "uv": colours_of_uvs,
+    "point": colours_of_points,
+}
+KINDS = tuple(COLOURS)
 
 
 def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None) -> Buffers:

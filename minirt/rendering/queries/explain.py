@@ -6,10 +6,8 @@ so a light's part is what `direct_light` computes for a scene that has this ligh
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from math import inf
-from types import FunctionType, ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -41,6 +39,7 @@ from minirt.rendering.queries.explanation import (
     RayNode,
     SurfacePoint,
 )
+from minirt.rendering.queries.watched import watched
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.tone_mapping import map_tones
 from minirt.scene import Scene, check_scene
@@ -67,28 +66,6 @@ def explain(scene: Scene, width: int, height: int, x: int, y: int, *, depth: int
     return Explanation(x, y, width, height, ray, light, scene.camera.tone, (red, green, blue))
 
 
-def watched(module: ModuleType, reports: dict[str, Callable[..., None]], **others: Any) -> SimpleNamespace:
-    """Return copies of the functions of a module which call one another, and `others` by their names.
-
-    A call of a function in `reports` is followed by one of its report, with the result and the arguments.
-    """
-    names = vars(module) | others
-    for name, each in vars(module).items():
-        if isinstance(each, FunctionType) and each.__module__ == module.__name__:
-            names[name] = FunctionType(each.__code__, names, name, each.__defaults__, each.__closure__)
-    names |= {name: reporting(names[name], report) for name, report in reports.items()}
-    return SimpleNamespace(**names)
-
-
-def reporting(function: Callable[..., Any], report: Callable[..., None]) -> Callable[..., Any]:
-    def call(*arguments: Any) -> Any:
-        result = function(*arguments)
-        report(result, *arguments)
-        return result
-
-    return call
-
-
 # The functions whose calls are reported.
 OF_RAYS = "primary_ray attenuated direct_light shade coloured push_rays load_rays weighted_background background_light"
 OF_LIGHTS = "aim bump_fading trace_shadow_rays shares_of_light"
@@ -99,7 +76,7 @@ class Branch:
 
     def __init__(self, kind: str, ray: Ray) -> None:
         self.kind, self.ray = kind, ray
-        self.weight, self.tint = ray.weight, ray.colour
+        self.weight, self.tint = ray.weight, Vec(1.0, 1.0, 1.0)
         self.lights: tuple[LightPart, ...] = ()
         self.surface: SurfacePoint | None = None
         self.point, self.facing = ray.origin, ray.direction  # of the surface, and its normal
@@ -110,7 +87,7 @@ class Branch:
 class Watch:
     """Traces the ray of a pixel, the same in all lanes of a packet, and takes down what the formulas compute.
 
-    A method whose name begins with `on_` is the report of the calls of a function of the kernel.
+    A method whose name begins with `on_` is the report of a function of the kernel, see `watched`.
     """
 
     branch: Branch  # that is being traced
@@ -152,7 +129,9 @@ class Watch:
         self.branch = self.waiting[number]
 
     def on_attenuated(self, result: tuple[Number, Vec], *_: Any) -> None:
-        self.branch.weight, self.branch.tint = result
+        self.branch.weight, tint = result
+        if self.arrays.media is not None:  # else rays have no colour
+            self.branch.tint = tint
 
     def on_weighted_background(self, *_: Any) -> None:
         self.is_background = True

@@ -82,6 +82,11 @@ class Explanation(NamedTuple):
     tone: str
     level: tuple[int, int, int]  # of the pixel in a picture of 8 bits
 
+    def __str__(self) -> str:
+        from minirt.rendering.queries.tree_text import TreeText
+
+        return str(TreeText(self))
+
     def as_dict(self) -> dict[str, Any]:
         """Return dictionaries and lists by the names of the fields; what is infinite is None."""
         made: dict[str, Any] = plain(self)
