@@ -21,6 +21,7 @@ from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Ambient, Scene, check_scene
 
 WHITE = (255, 255, 255)
+MEMORY = 500  # bytes a pixel of all buffers while they are made
 UNLIT = ("specular", "mirror", "glass", "tint", "fresnel", "glow", "bump", "normal_map")  # no part of the albedo
 
 
@@ -36,7 +37,7 @@ class Buffers(NamedTuple):
     albedo: NDArray[np.float64]  # (h, w, 3) colour under white light, textures included; 0 where nothing is hit
 
     def picture(self, kind: str) -> Image:
-        """Return one of `KINDS` of buffers as a picture: colours to look at, and the numbers themselves as its light.
+        """Return normals, depth, ids, uv or point as a picture: colours to look at, and the numbers as its light.
 
         RenderError for another kind.
         """

@@ -29,16 +29,8 @@ from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.ray_casting import hit_distances
-from minirt.rendering.queries.explanation import (
-    PRIMARY,
-    REFLECTED,
-    REFRACTED,
-    Explanation,
-    LightPart,
-    Meeting,
-    RayNode,
-    SurfacePoint,
-)
+from minirt.rendering.queries.explanation import Explanation
+from minirt.rendering.queries.ray_tree import PRIMARY, REFLECTED, REFRACTED, LightPart, Meeting, RayNode, SurfacePoint
 from minirt.rendering.queries.watched import watched
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.tone_mapping import map_tones
