@@ -108,7 +108,7 @@ def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
     """Write what each pixel shows to the output: as numbers where its format holds them, else as colours."""
     from minirt.cli.files import check_output, format_name, write
     from minirt.formats.table import FLOAT, FORMATS
-    from minirt.rendering.buffers import MEMORY, buffers
+    from minirt.rendering.buffers import MEMORY, geometry
 
     (width, height), name = options.size or size_of(scene), format_name(options.output)
     if name == "HDR":
@@ -116,7 +116,7 @@ def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
     check_output(options.output, width, height)
     system.check_picture(height, width, MEMORY)
     with progress(lambda: State("tracing")):
-        picture = buffers(scene, width, height, threads=options.threads).picture(options.buffers)
+        picture = geometry(scene, width, height, options.threads).picture(options.buffers)
     write(picture.encode(name, bits=FLOAT if FLOAT in FORMATS[name].bits else None), options.output)
     return OK
 

@@ -106,6 +106,11 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
         ball = seen.shape == 0  # the mask of the first shape
     """
     check_scene(scene, "buffers")
+    return geometry(scene, width, height, threads)._replace(albedo=albedo(scene, width, height, threads))
+
+
+def geometry(scene: Scene, width: int, height: int, threads: int | None = None) -> Buffers:
+    """Return the buffers without albedo, which is an array without rows."""
     origins, directions = camera_rays(scene, width, height)
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
     forward = np.array(unit(scene.camera.direction))
@@ -114,8 +119,7 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
     arrays.update(*scene.runs)
     parts = hits.point, hits.normal, coordinates(arrays, hits.known().primitives, hits.point, hits.normal)
     point, normal, uv = (each.reshape(height, width, -1) for each in parts)
-    colours = albedo(scene, width, height, threads)
-    return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, colours)
+    return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, np.zeros((0, 0, 3)))
 
 
 def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArray[np.float64]:

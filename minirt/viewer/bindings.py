@@ -108,6 +108,8 @@ BINDINGS = (
     once(LOOK, "look at", "bring the selected element into view; the camera: the scene", "F"),
     once(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
     once(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
+    once(LOOK, "explain pixel", "explain the pixel under the pointer: its rays and lights; again: hide them", "Y"),
+    once(LOOK, "next view", "next view: normals, depth, shapes, colours", "O"),
     once(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),
     while_held(MOVE, "left", "move left", "A", azerty="Q"),
     while_held(MOVE, "right", "move right", "D"),

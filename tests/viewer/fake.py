@@ -49,6 +49,8 @@ def scene(text: str = TEXT) -> Scene:
 class FakeRenderer:
     """A renderer that fills each picture with one colour, which depends on the scene."""
 
+    depth = 8
+
     def __init__(self) -> None:
         self.rendered: list[tuple[int, int]] = []  # width and height of the finished pictures
         self.samples: list[int] = []  # of the pictures that were started

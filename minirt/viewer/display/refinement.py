@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from math import prod
 from statistics import median_low
+from typing import Any
 
 from minirt.mlx import Window
 from minirt.scene import Scene
@@ -26,11 +27,16 @@ class Refinement:
         self.latest: Outcome | None = None  # the latest picture
         self._window = window
         self.samples = samples
+        self.view = ""  # what pictures show in place of colours
         self._requested: Job | None = None
 
     def restart(self, samples: int) -> None:
         """Let the next request be that of a first picture, whose final one has so many rays per pixel."""
         self.samples, self._requested = samples, None
+
+    def show_view(self, view: str) -> None:
+        """Let the next request be that of a first picture of a view."""
+        self.view, self._requested = view, None
 
     @property
     def complete(self) -> bool:
@@ -41,11 +47,12 @@ class Refinement:
         """Request the next picture of a scene, if one is missing; `moving`: the scene will change again soon."""
         width, height = self._window.width, self._window.height
         last = self._requested
+        how: dict[str, Any] = {"view": self.view} if self.view else {"goal": self.samples}
         if last is None:
-            self._request(Job(scene, width, height, goal=self.samples))
+            self._request(Job(scene, width, height, **how))
         elif not last.shows(scene, width, height):
             divisor = self.resolution.divisor(width, height)
-            self._request(Job(scene, width, height, divisor, urgent=True, goal=self.samples))
+            self._request(Job(scene, width, height, divisor, urgent=True, **how))
         elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.is_final:
             self._request(answer.next())
 

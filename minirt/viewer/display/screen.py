@@ -19,6 +19,7 @@ from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import key_groups
 from minirt.viewer.display import overlay
+from minirt.viewer.display.explained import Explained, draw_explained
 from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, wrap
@@ -52,6 +53,7 @@ class Screen:
         self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
         self.list_box: ListBox | None = None  # a value that is typed, or a list to choose from
+        self.explained: Explained | None = None  # a pixel, whose rays are shown
         self.handles = False  # whether those of the selected element are shown, and the tool row
         self.handle_kind = ""  # of the handles that are shown alone
         self.tool: Tool | None = None  # the one under the pointer
@@ -109,7 +111,7 @@ class Screen:
         handles = self.handles and not keys_held
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips
         row = handles, self.handles, self.handle_kind, self.tool
-        contents = described, picture, message, *shown, *row, self.covered, width, height, scale
+        contents = described, picture, message, self.explained, *shown, *row, self.covered, width, height, scale
         if contents == self._drawn:
             return False
         self._drawn = contents
@@ -122,6 +124,8 @@ class Screen:
                 job = picture.job
                 marks = {"icons": self.icons, "handles": handles}
                 draw_marks(self.frame, state, job.scene, scale, moving=job.urgent, kind=self.handle_kind, **marks)
+                if self.explained:
+                    draw_explained(self.frame, self.explained, job.scene, scale)
             if self.handles:
                 draw_tools(self.frame, scale, size, self.tool, self.handle_kind, self.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
@@ -129,6 +133,8 @@ class Screen:
             overlay.draw_tab(self.frame, size)
         if self.list_box and not self.help:
             draw_list(clear, self.list_box, size)
+        elif self.explained and self.level and not self.help and self.explained.fits(state.scene):
+            draw_list(clear, self.explained.box, size)
         elif self.tips and self.level and not message and not self.covered:
             message = TIPS
         if message and not self.help:  # above the text at the bottom
