@@ -116,7 +116,8 @@ def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
     check_output(options.output, width, height)
     system.check_picture(height, width, MEMORY)
     with progress(lambda: State("tracing")):
-        picture = geometry(scene, width, height, options.threads).picture(options.buffers)
+        seen = geometry(scene, width, height, options.threads, has_uv=options.buffers == "uv")
+        picture = seen.picture(options.buffers)
     write(picture.encode(name, bits=FLOAT if FLOAT in FORMATS[name].bits else None), options.output)
     return OK
 

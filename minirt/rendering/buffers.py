@@ -71,8 +71,11 @@ def colours_of_depths(depth: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def colours_of_ids(index: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a colour for each shape: hues that a golden angle divides, so that no two near numbers look alike."""
-    hue = index * GOLDEN_RATIO + np.array([0.0, 1 / 3, 2 / 3])
-    return np.clip(np.abs(6 * (hue % 1) - 3) - 1, 0, 1) * 0.7 + 0.3 * (1 - index % 3 / 4)
+    ids = index[:, 0].astype(np.int64)
+    numbers = np.arange(ids.max() + 1)[:, None]
+    hue = numbers * GOLDEN_RATIO + np.array([0.0, 1 / 3, 2 / 3])
+    table = np.clip(np.abs(6 * (hue % 1) - 3) - 1, 0, 1) * 0.7 + 0.3 * (1 - numbers % 3 / 4)
+    return table[ids]
 
 
 def colours_of_uvs(uv: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -109,17 +112,19 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
     return geometry(scene, width, height, threads)._replace(albedo=albedo(scene, width, height, threads))
 
 
-def geometry(scene: Scene, width: int, height: int, threads: int | None = None) -> Buffers:
-    """Return the buffers without albedo, which is an array without rows."""
+def geometry(scene: Scene, width: int, height: int, threads: int | None = None, has_uv: bool = True) -> Buffers:
+    """Return the buffers without albedo, and perhaps without uv, which takes most of the time: arrays without rows."""
     origins, directions = camera_rays(scene, width, height)
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
     forward = np.array(unit(scene.camera.direction))
     distance, shape = hits.distance.reshape(height, width), hits.owner.reshape(height, width)
-    arrays = ShapeArrays()
-    arrays.update(*scene.runs)
-    parts = hits.point, hits.normal, coordinates(arrays, hits.known().primitives, hits.point, hits.normal)
-    point, normal, uv = (each.reshape(height, width, -1) for each in parts)
-    return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, np.zeros((0, 0, 3)))
+    point, normal = (each.reshape(height, width, 3) for each in (hits.point, hits.normal))
+    uv, colours = np.zeros((0, 0, 2)), np.zeros((0, 0, 3))
+    if has_uv:
+        arrays = ShapeArrays()
+        arrays.update(*scene.runs)
+        uv = coordinates(arrays, hits.known().primitives, hits.point, hits.normal).reshape(height, width, 2)
+    return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, colours)
 
 
 def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArray[np.float64]:

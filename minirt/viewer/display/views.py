@@ -18,5 +18,5 @@ def view_pixels(scene: Scene, view: str, width: int, height: int) -> NDArray[np.
     """Return the picture of a view, (h, w, 4) in the order blue, green, red, alpha."""
     from minirt.rendering.buffers import geometry
 
-    levels = geometry(scene, width, height).picture(view).array
+    levels = geometry(scene, width, height, has_uv=False).picture(view).array
     return np.insert(levels[..., ::-1], 3, 255, axis=-1)
