@@ -26,12 +26,12 @@ from minirt.lanes import width as lanes_of
 from minirt.rendering.buffers import coordinates
 from minirt.rendering.frame import frame_rays, thread_memory
 from minirt.rendering.notes import shape_name
-from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.ray_casting import hit_distances
 from minirt.rendering.queries.explanation import Explanation
 from minirt.rendering.queries.ray_tree import PRIMARY, REFLECTED, REFRACTED, LightPart, Meeting, RayNode, SurfacePoint
 from minirt.rendering.queries.watched import watched
+from minirt.rendering.renderer import PATIENCE, Renderer, renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.rendering.tone_mapping import map_tones
 from minirt.scene import Scene, check_scene
@@ -47,11 +47,21 @@ def explain(scene: Scene, width: int, height: int, x: int, y: int, *, depth: int
     """
     check_scene(scene, "explain")
     width, height = check_whole("width", width, 1), check_whole("height", height, 1)
+    return explained_by(renderer(depth=depth), scene, width, height, x, y)
+
+
+def explained_by(chosen: Renderer, scene: Scene, width: int, height: int, x: int, y: int) -> Explanation:
+    """Return the tree of rays of a pixel, with the packed scene of a renderer, or one of its own while that is busy."""
     if not (0 <= x < width and 0 <= y < height):
         raise RenderError(f"pixel {x},{y} does not lie in the picture of {width}x{height} pixels")
-    depth = DEPTH if depth is None else check_whole("depth", depth, 0, whitted.MAX_DEPTH)
-    with np.errstate(all="ignore"):
-        ray, light = Watch(scene, width, height, depth).trace(x, y)
+    is_free = chosen.precision == "double" and chosen.busy.acquire(timeout=PATIENCE)
+    packing = chosen.packing if is_free else Packing(depth=chosen.depth)
+    try:
+        with np.errstate(all="ignore"):
+            ray, light = Watch(packing, scene, width, height).trace(x, y)
+    finally:
+        if is_free:
+            chosen.busy.release()
     pixel = np.empty((1, 1, 4), np.uint8)
     map_tones(np.array([[light]]), pixel, scene.camera.tone)
     blue, green, red, _ = pixel[0, 0].tolist()
@@ -84,9 +94,8 @@ class Watch:
 
     branch: Branch  # that is being traced
 
-    def __init__(self, scene: Scene, width: int, height: int, depth: int) -> None:
+    def __init__(self, packing: Packing, scene: Scene, width: int, height: int) -> None:
         self.scene, self.across = scene, width
-        packing = Packing(depth=depth)
         self.arrays, self.shapes = packing.pack(scene, width, height), packing.shape_arrays
         self.memory = thread_memory(self.arrays)[0]
         self.waiting: dict[int, Branch] = {}  # rays by their numbers on the kernel's stack

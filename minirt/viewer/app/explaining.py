@@ -18,10 +18,11 @@ def explain_pixel(session: Session) -> None:
     if before and before.scene is scene and (before.explanation.x, before.explanation.y) == (x, y):
         screen.explained = None
         return
-    from minirt.rendering.queries.explain import explain
+    from minirt.rendering.queries.explain import explained_by
 
-    depth = session.refinement.painter.renderer.depth
-    explanation = explain(scene, window.width, window.height, x, y, depth=depth)
+    renderer = session.refinement.painter.renderer
+    renderer.cancel()  # the picture that is being made
+    explanation = explained_by(renderer, scene, window.width, window.height, x, y)
     screen.explained = explained(explanation, scene)
     session.say(screen.explained.parts[0].details)
 

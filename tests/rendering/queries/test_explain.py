@@ -129,6 +129,12 @@ def test_a_pixel_outside_of_the_picture_is_refused(x: int, y: int) -> None:
         minirt.explain(SIMPLE, 33, 25, x, y)
 
 
+def test_a_busy_renderer_is_not_waited_for() -> None:
+    expected = minirt.explain(SIMPLE, *MIDDLE)
+    with minirt.renderer().busy:
+        assert minirt.explain(SIMPLE, *MIDDLE) == expected
+
+
 def test_the_keys_of_json_are_those_of_the_records() -> None:
     scene = SIMPLE.replace(LAMP, minirt.ParallelLight((0, -0.6, 0.8), 0.5))
     made = json.loads(json.dumps(minirt.explain(scene, *MIDDLE).as_dict(), allow_nan=False))
