@@ -127,7 +127,7 @@ class TreeText:
     def swatch(self, light: Triple) -> str:
         """Return a block of the colour that light has in the picture."""
         levels = np.searchsorted(self.halfway, light, "right")
-        return "  " + self.coloured("██", levels) if self.has_colours else ""
+        return " " + self.coloured("██", levels) if self.has_colours else ""
 
     def coloured(self, text: str, colour: Iterable[int]) -> str:
         """Return a text with the control characters that give it a colour in a terminal."""
@@ -144,7 +144,8 @@ def way_of(light: LightPart) -> str:
         return f"in the shadow of {named(light.meets)}" if light.meets else "in shadow"
     if light.passes == (1.0, 1.0, 1.0):
         return "free"
-    return f"through {named(light.meets)}: {shares(light.passes)}"
+    share = f"{light.passes[0]:.1%}" if len({*light.passes}) == 1 else shares(light.passes)
+    return f"through {named(light.meets)}: {share}"
 
 
 def named(meets: tuple[Meeting, ...]) -> str:
