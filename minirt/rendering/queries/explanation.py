@@ -14,6 +14,7 @@ from minirt.rendering.tone_mapping import tone_named
 
 MOST = 4  # shapes that are named of those along a ray
 TIMES = "\N{MULTIPLICATION SIGN}"
+SHORT = 3  # digits of directions
 LEAST = 0.0005  # light that is shown
 NOTHING = 1e-9  # of a vector's largest coordinate: a smaller one is rounding
 
@@ -110,12 +111,13 @@ class TreeText:
 
     def lights(self, at: SurfacePoint) -> Iterator[str]:
         """Yield the table of the lights that fall onto a surface."""
-        table = [("light", "cosine", "way", "falls onto it", "highlight" if at.specular[0] else "")]
-        table.append(("ambient", "", "", shares(at.ambient), ""))
+        table = [("light", "towards", "cosine", "way", "falls onto it", "highlight" if at.specular[0] else "")]
+        table.append(("ambient", "", "", "", shares(at.ambient), ""))
         for each in at.lights:
             cosine = f"{each.cosine:.3f}" + ("" if each.strength == 1.0 else f" {TIMES} {each.strength:.2g}")
             highlight = shares(each.highlight) if max(each.highlight) >= LEAST else ""
-            table.append((f"light {each.light + 1}", cosine, way_of(each), shares(each.diffuse), highlight))
+            towards = numbers(each.direction, SHORT)
+            table.append((f"light {each.light + 1}", towards, cosine, way_of(each), shares(each.diffuse), highlight))
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         swatches = "", self.swatch(at.ambient), *(self.swatch(each.diffuse) for each in at.lights)
         for cells, swatch in zip(table, swatches, strict=True):
@@ -154,10 +156,10 @@ def named(meets: tuple[Meeting, ...]) -> str:
     return names + (", ..." if len(meets) > MOST else "")
 
 
-def numbers(values: tuple[float, ...]) -> str:
+def numbers(values: tuple[float, ...], digits: int = 4) -> str:
     """Return coordinates as a scene file has them."""
     least = NOTHING * max(map(abs, values))
-    return ",".join(f"{value if abs(value) > least else 0.0:.4g}" for value in values)
+    return ",".join(f"{value if abs(value) > least else 0.0:.{digits}g}" for value in values)
 
 
 def shares(light: Triple) -> str:

@@ -164,9 +164,9 @@ pixel 16,12 of 33x25: red 30, green 15, blue 8
 │   ◆ sphere 1 at the distance 4
 │     point 0,0,4   normal 0,0,-1   u,v 0.5,0.5
 │     colour 0.784 0.392 0.196, 75.0% its own, 25.0% mirrored
-│     light    cosine  way                                falls onto it
-│     ambient                                             0.200 0.200 0.200
-│     light 1  0.800   in the shadow of sphere 2 at 2.25  0.000 0.000 0.000
+│     light    towards     cosine  way                                falls onto it
+│     ambient                                                         0.200 0.200 0.200
+│     light 1  0,0.6,-0.8  0.800   in the shadow of sphere 2 at 2.25  0.000 0.000 0.000
 │     0.75 x colour x light = 0.118 0.059 0.029
 │   ⇒ adds 0.118 0.059 0.029 to the pixel
 │
