@@ -73,32 +73,21 @@ OF_RAYS = "primary_ray attenuated direct_light shade coloured push_rays load_ray
 OF_LIGHTS = "aim bump_fading trace_shadow_rays shares_of_light"
 
 
-class Branch:
-    """A ray of the tree in the making."""
-
-    def __init__(self, kind: str, ray: Ray) -> None:
-        self.kind, self.ray = kind, ray
-        self.weight, self.tint = ray.weight, Vec(1.0, 1.0, 1.0)
-        self.lights: tuple[LightPart, ...] = ()
-        self.surface: SurfacePoint | None = None
-        self.point, self.facing = ray.origin, ray.direction  # of the surface, and its normal
-        self.light = Vec(0.0, 0.0, 0.0)
-        self.rays: list[Branch] = []
-
-
 class Watch:
     """Traces the ray of a pixel, the same in all lanes of a packet, and takes down what the formulas compute.
 
     A method whose name begins with `on_` is the report of a function of the kernel, see `watched`.
     """
 
-    branch: Branch  # that is being traced
+    root: RayNode
+    ray: RayNode  # that is being traced
 
     def __init__(self, packing: Packing, scene: Scene, width: int, height: int) -> None:
         self.scene, self.across = scene, width
         self.arrays, self.shapes = packing.pack(scene, width, height), packing.shape_arrays
         self.memory = thread_memory(self.arrays)[0]
-        self.waiting: dict[int, Branch] = {}  # rays by their numbers on the kernel's stack
+        self.waiting: dict[int, RayNode] = {}  # rays by their numbers on the kernel's stack
+        self.lights: tuple[LightPart, ...] = ()  # of the surface that is being shaded
         self.is_background = False  # whether what is coloured next is the light of the background
         self.last: dict[str, Any] = {}  # the last results of functions for the light of a lamp
         emitting = [*map(id, emitting_lights(scene))]
@@ -116,70 +105,77 @@ class Watch:
         tile = frame.tile_at(self.arrays, x, y, self.across)
         tracing = watched(frame, {}, incoming_radiance=self.tracing.incoming_radiance)
         light = tracing.packet_radiance(self.arrays, self.memory, tile, rays, x - column, y - row)
-        return self.node(self.root), triple(frame.without_non_finite(light, self.memory))
+        return self.root, triple(frame.without_non_finite(light, self.memory))
+
+    def node(self, kind: str, ray: Ray) -> RayNode:
+        origin, direction = triple(ray.origin), triple(ray.direction)
+        return RayNode(kind, origin, direction, self.meets(origin, direction))
 
     def on_primary_ray(self, ray: Ray, *_: Any) -> None:
-        self.root = self.branch = Branch(PRIMARY, ray)
+        self.root = self.ray = self.node(PRIMARY, ray)
 
     def on_push_rays(self, count: int, scene: SceneArrays, stack: Any, waiting: int, ray: Ray, level: int) -> None:
-        is_outside = lane(dot(ray.origin - self.branch.point, self.branch.facing), 0) > 0.0
-        self.waiting[waiting] = Branch(REFLECTED if is_outside else REFRACTED, ray)
-        self.branch.rays.append(self.waiting[waiting])
+        assert self.ray.surface
+        is_outside = np.dot(np.subtract(triple(ray.origin), self.ray.surface.point), self.ray.surface.normal) > 0.0
+        self.waiting[waiting] = self.node(REFLECTED if is_outside else REFRACTED, ray)
+        self.ray.rays.append(self.waiting[waiting])
 
     def on_load_rays(self, _: Any, scene: SceneArrays, stack: Any, number: int, zero: Number) -> None:
-        self.branch = self.waiting[number]
+        self.ray = self.waiting[number]
 
     def on_attenuated(self, result: tuple[Number, Vec], *_: Any) -> None:
-        self.branch.weight, tint = result
+        weight, tint = result
+        self.ray.weight = lane(weight, 0)
         if self.arrays.media is not None:  # else rays have no colour
-            self.branch.tint = tint
+            self.ray.tint = triple(tint)
 
     def on_weighted_background(self, *_: Any) -> None:
         self.is_background = True
 
     def on_coloured(self, light: Vec, *_: Any) -> None:
-        weight = 1.0 if self.is_background else self.branch.weight
-        self.branch.light, self.is_background = self.branch.light + weight * light, False
+        red, green, blue = triple(light)
+        if not self.is_background:
+            self.ray.light = self.ray.weight * red, self.ray.weight * green, self.ray.weight * blue
+        elif not self.ray.surface:
+            self.ray.light = red, green, blue
+        self.is_background = False
 
     def on_background_light(self, light: Vec, *_: Any) -> None:
-        self.branch.light = light  # of the only ray of a scene without mirrors and glass
+        self.ray.light = triple(light)  # of the only ray of a scene without mirrors and glass
 
     def on_shade(
         self, result: tuple[Vec, Surface], scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask
     ) -> None:
         light, surface = result
-        primitive = int(lane(found[1], 0))
-        shape, normal = int(self.shapes.owner[primitive]), triple(surface.normal)
-        point = triple(surface.point)
-        leaves = lane(surface.side, 0) < 0.0
-        outwards = np.array([normal]) * (-1.0 if leaves else 1.0)
-        uv = coordinates(self.shapes, np.array([primitive]), np.array([point]), outwards)
-        self.branch.facing, self.branch.point = surface.normal, surface.point
-        self.branch.surface = SurfacePoint(
-            shape,
-            shape_name(self.scene.shapes, shape),
-            lane(found[0], 0),
-            point,
-            leaves,
-            normal,
-            triple(surface.shading_normal),
-            tuple(uv[0].tolist()),
-            triple(surface.colour),
-            triple(surface.specular),
-            *triple(surface.reflective),
-            lane(surface.glow, 0),
-            tuple(scene.ambient.tolist()),
-            self.branch.lights,
-            triple(light),
+        primitive, point, normal = int(lane(found[1], 0)), triple(surface.point), triple(surface.normal)
+        shape, side = int(self.shapes.owner[primitive]), lane(surface.side, 0)
+        uv = coordinates(self.shapes, np.array([primitive]), np.array([point]), side * np.array([normal]))
+        mirror, glass, ior = triple(surface.reflective)
+        self.ray.surface = SurfacePoint(
+            shape=shape,
+            name=shape_name(self.scene.shapes, shape),
+            distance=lane(found[0], 0),
+            point=point,
+            leaves=side < 0.0,
+            normal=normal,
+            shading_normal=triple(surface.shading_normal),
+            uv=tuple(uv[0].tolist()),
+            colour=triple(surface.colour),
+            specular=triple(surface.specular),
+            mirror=mirror,
+            glass=glass,
+            ior=ior,
+            glow=lane(surface.glow, 0),
+            ambient=tuple(scene.ambient.tolist()),
+            lights=self.lights,
+            light=triple(light),
         )
 
     def on_direct_light(
         self, _: Any, scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface: Surface, hit: Mask
     ) -> None:
         """Compute the light of each lamp by the same function, in a scene that has no other light."""
-        self.branch.lights = tuple(
-            self.light_part(row, lamp, ray, found, surface, hit) for row, lamp in enumerate(self.lamps)
-        )
+        self.lights = tuple(self.light_part(row, lamp, ray, found, surface, hit) for row, lamp in enumerate(self.lamps))
 
     def light_part(self, row: int, lamp: int, ray: Ray, found: Hit, surface: Surface, hit: Mask) -> LightPart:
         """Return what the lamp in a row of the kernel's lights gives to a surface."""
@@ -193,17 +189,18 @@ class Watch:
             passes = triple(traced)
         elif traced is not None:
             passes = (lane(traced, 0),) * 3
-        meets = [] if traced is None else self.meets(origin, direction, distance)
+        diffuse, highlight = map(triple, light)
         return LightPart(
-            lamp,
-            origin,
-            direction,
-            distance,
-            lane(dot(surface.shading_normal, rays.direction), 0),
-            lane(strength * self.last.get("bump_fading", 1.0), 0),
-            passes,
-            tuple(meets),
-            *map(triple, light),
+            light=lamp,
+            origin=origin,
+            direction=direction,
+            distance=distance,
+            cosine=lane(dot(surface.shading_normal, rays.direction), 0),
+            strength=lane(strength * self.last.get("bump_fading", 1.0), 0),
+            passes=passes,
+            meets=() if traced is None else self.meets(origin, direction, distance),
+            diffuse=diffuse,
+            highlight=highlight,
         )
 
     def on_light(self, name: str, result: Any, *_: Any) -> None:
@@ -217,7 +214,7 @@ class Watch:
         groups = tuple(group._replace(light_starts=group.light_starts[one]) for group in arrays.groups)
         return arrays._replace(ambient=np.zeros(3), light_grid=None, groups=groups, **some)
 
-    def meets(self, origin: Triple, direction: Triple, end: float = inf) -> list[Meeting]:
+    def meets(self, origin: Triple, direction: Triple, end: float = inf) -> tuple[Meeting, ...]:
         """Return the shapes that a ray meets before its end, the first one first."""
         start, way = Vec(*np.array(origin)), Vec(*np.array(direction))
         distances = hit_distances(self.shapes, start, way)
@@ -228,22 +225,7 @@ class Watch:
                 break
             name = shape_name(self.scene.shapes, shape)
             found.setdefault(shape, Meeting(shape, name, distance, triple(start + distance * way)))
-        return [*found.values()]
-
-    def node(self, branch: Branch) -> RayNode:
-        """Return a ray of the finished tree."""
-        origin, direction = triple(branch.ray.origin), triple(branch.ray.direction)
-        return RayNode(
-            branch.kind,
-            origin,
-            direction,
-            lane(branch.weight, 0),
-            triple(branch.tint),
-            tuple(self.meets(origin, direction)),
-            branch.surface,
-            triple(branch.light),
-            tuple(map(self.node, branch.rays)),
-        )
+        return tuple(found.values())
 
 
 def triple(v: Vec) -> Triple:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,8 @@ LEAST = 0.0005  # light that is shown
 NOTHING = 1e-9  # of a vector's largest coordinate: a smaller one is rounding
 
 
-class Explanation(NamedTuple):
+@dataclass(frozen=True)
+class Explanation:
     """The tree of rays of a pixel. `print` shows it, and `as_dict` is for JSON."""
 
     x: int
@@ -35,18 +37,8 @@ class Explanation(NamedTuple):
         return str(TreeText(self))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return dictionaries and lists by the names of the fields; what is infinite is None."""
-        made: dict[str, Any] = plain(self)
-        return made
-
-
-def plain(value: Any) -> Any:
-    """Return records as dictionaries, and other tuples as lists."""
-    if hasattr(value, "_asdict"):
-        return {name: plain(each) for name, each in value._asdict().items()}
-    if isinstance(value, tuple):
-        return [*map(plain, value)]
-    return None if value == inf else value
+        """Return dictionaries and sequences by the names of the fields; what is infinite is None."""
+        return asdict(self, dict_factory=lambda pairs: {name: None if each == inf else each for name, each in pairs})
 
 
 class TreeText:

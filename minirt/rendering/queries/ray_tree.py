@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass, field
 
 from minirt.fields import Triple
 
@@ -10,7 +10,8 @@ PRIMARY, REFLECTED, REFRACTED = "primary", "reflected", "refracted"
 COLOURS = {PRIMARY: (255, 255, 255), REFLECTED: (80, 200, 255), REFRACTED: (255, 110, 220)}  # wherever rays are drawn
 
 
-class Meeting(NamedTuple):
+@dataclass(frozen=True)
+class Meeting:
     """A shape that a ray meets, and where it does so first."""
 
     shape: int  # index in `scene.shapes`
@@ -19,7 +20,8 @@ class Meeting(NamedTuple):
     point: Triple
 
 
-class LightPart(NamedTuple):
+@dataclass(frozen=True)
+class LightPart:
     """What a light gives to a surface."""
 
     light: int  # index in `scene.lights`
@@ -34,7 +36,8 @@ class LightPart(NamedTuple):
     highlight: Triple  # light that is reflected as a specular highlight
 
 
-class SurfacePoint(NamedTuple):
+@dataclass(frozen=True)
+class SurfacePoint:
     """The point of a surface that a ray hits."""
 
     shape: int  # index in `scene.shapes`
@@ -56,15 +59,16 @@ class SurfacePoint(NamedTuple):
     light: Triple  # (ambient + diffuse) * colour * (1 - mirror - glass) + highlights + glow * colour
 
 
-class RayNode(NamedTuple):
+@dataclass
+class RayNode:
     """A ray, and those that the surface which it hits sends on."""
 
     kind: str  # primary, reflected or refracted
     origin: Triple
     direction: Triple
-    weight: float  # share of its light in the pixel
-    tint: Triple  # shares of red, green and blue that tinted glass on its way leaves
     meets: tuple[Meeting, ...]  # all shapes along it, the first one first
-    surface: SurfacePoint | None  # None where it meets nothing
-    light: Triple  # what it adds to the pixel: weight * tint * light of the surface, or of the background
-    rays: tuple[RayNode, ...]
+    weight: float = 1.0  # share of its light in the pixel
+    tint: Triple = (1.0, 1.0, 1.0)  # shares of red, green and blue that tinted glass on its way leaves
+    surface: SurfacePoint | None = None  # None where it meets nothing
+    light: Triple = (0.0, 0.0, 0.0)  # what it adds to the pixel: weight * tint * light of the surface or background
+    rays: list[RayNode] = field(default_factory=list)
