@@ -47,12 +47,13 @@ def explain(scene: Scene, width: int, height: int, x: int, y: int, *, depth: int
     """
     check_scene(scene, "explain")
     width, height = check_whole("width", width, 1), check_whole("height", height, 1)
+    x, y = check_whole("x", x, 0), check_whole("y", y, 0)
     return explained_by(renderer(depth=depth), scene, width, height, x, y)
 
 
 def explained_by(chosen: Renderer, scene: Scene, width: int, height: int, x: int, y: int) -> Explanation:
     """Return the tree of rays of a pixel, with the packed scene of a renderer, or one of its own while that is busy."""
-    if not (0 <= x < width and 0 <= y < height):
+    if x >= width or y >= height:
         raise RenderError(f"pixel {x},{y} does not lie in the picture of {width}x{height} pixels")
     is_free = chosen.precision == "double" and chosen.busy.acquire(timeout=PATIENCE)
     packing = chosen.packing if is_free else Packing(depth=chosen.depth)

@@ -123,10 +123,16 @@ def test_a_scene_without_shapes_has_the_light_of_the_background(paint: tuple[int
     assert explanation.level == (paint or (0, 0, 0))
 
 
-@pytest.mark.parametrize(("x", "y"), [(-1, 0), (33, 0), (0, 25)])
+@pytest.mark.parametrize(("x", "y"), [(33, 0), (0, 25)])
 def test_a_pixel_outside_of_the_picture_is_refused(x: int, y: int) -> None:
     with pytest.raises(minirt.RenderError, match=f"pixel {x},{y} does not lie in the picture of 33x25 pixels"):
         minirt.explain(SIMPLE, 33, 25, x, y)
+
+
+@pytest.mark.parametrize("wrong", [-1, 2.5])
+def test_a_pixel_has_whole_numbers(wrong: int) -> None:
+    with pytest.raises(minirt.RenderError, match=f"y must be a whole number of at least 0, got {wrong}"):
+        minirt.explain(SIMPLE, 33, 25, 0, wrong)
 
 
 def test_a_busy_renderer_is_not_waited_for() -> None:
