@@ -53,7 +53,7 @@ def explain(scene: Scene, width: int, height: int, x: int, y: int, *, depth: int
 
 def explained_by(chosen: Renderer, scene: Scene, width: int, height: int, x: int, y: int) -> Explanation:
     """Return the tree of rays of a pixel, with the packed scene of a renderer, or one of its own while that is busy."""
-    if x >= width or y >= height:
+    if not (0 <= x < width and 0 <= y < height):
         raise RenderError(f"pixel {x},{y} does not lie in the picture of {width}x{height} pixels")
     is_free = chosen.precision == "double" and chosen.busy.acquire(timeout=PATIENCE)
     packing = chosen.packing if is_free else Packing(depth=chosen.depth)
