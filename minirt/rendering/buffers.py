@@ -41,52 +41,53 @@ class Buffers(NamedTuple):
 
         RenderError for another kind.
         """
-        if kind not in KINDS:
-            raise RenderError(f"a picture of buffers shows {', '.join(KINDS)}, got {kind!r}")
-        is_hit = self.shape >= 0
+        if kind not in COLOURS:
+            raise RenderError(f"a picture of buffers shows {', '.join(COLOURS)}, got {kind!r}")
         numbers: Any = {"normals": self.normal, "depth": self.depth, "ids": self.shape, "point": self.point}.get(kind)
         if numbers is None:
             numbers = np.insert(self.uv, 2, 0.0, axis=-1)
         elif numbers.ndim == 2:
             numbers = np.repeat(numbers[..., None], 3, axis=-1).astype(np.float64)
-        colours = np.zeros(numbers.shape)
-        if is_hit.any():
-            colours[is_hit] = COLOURS[kind](numbers[is_hit])
-        return Image(np.rint(255 * colours).astype(np.uint8), numbers)
+        return Image(self.levels(kind), numbers)
+
+    def levels(self, kind: str) -> NDArray[np.uint8]:
+        """Return the colours of a picture of buffers, (h, w, 3); black where nothing is hit."""
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(255 * COLOURS[kind](self) + 0.5).astype(np.uint8)
 
     def __repr__(self) -> str:
         height, width = self.depth.shape
         return f"<Buffers of {width}x{height} pixels: {', '.join(self._fields)}>"
 
 
-def colours_of_normals(normal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return red, green and blue of normals (n, 3): x, y and z from -1 to 1."""
-    return (normal + 1) / 2
+def colours_of_normals(seen: Buffers) -> NDArray[np.float64]:
+    """Return red, green and blue for x, y and z from -1 to 1."""
+    return (seen.normal + 1) / 2
 
 
-def colours_of_depths(depth: NDArray[np.float64]) -> NDArray[np.float64]:
+def colours_of_depths(seen: Buffers) -> NDArray[np.float64]:
     """Return white for the nearest depth, and grey in proportion to one over the others."""
-    return depth.min() / depth
+    return np.broadcast_to((seen.depth.min() / seen.depth)[..., None], (*seen.depth.shape, 3))
 
 
-def colours_of_ids(index: NDArray[np.float64]) -> NDArray[np.float64]:
+def colours_of_ids(seen: Buffers) -> NDArray[np.float64]:
     """Return a colour for each shape: hues that a golden angle divides, so that no two near numbers look alike."""
-    ids = index[:, 0].astype(np.int64)
-    numbers = np.arange(ids.max() + 1)[:, None]
+    numbers = np.arange(seen.shape.max() + 1)[:, None]
     hue = numbers * GOLDEN_RATIO + np.array([0.0, 1 / 3, 2 / 3])
     table = np.clip(np.abs(6 * (hue % 1) - 3) - 1, 0, 1) * 0.7 + 0.3 * (1 - numbers % 3 / 4)
-    return table[ids]
+    return np.append(table, np.zeros((1, 3)), axis=0)[seen.shape]
 
 
-def colours_of_uvs(uv: NDArray[np.float64]) -> NDArray[np.float64]:
+def colours_of_uvs(seen: Buffers) -> NDArray[np.float64]:
     """Return red for u and green for v, each from one whole number to the next."""
-    return uv % 1
+    return np.insert(seen.uv % 1, 2, 0.0, axis=-1)
 
 
-def colours_of_points(point: NDArray[np.float64]) -> NDArray[np.float64]:
+def colours_of_points(seen: Buffers) -> NDArray[np.float64]:
     """Return red, green and blue for x, y and z, between those of most points: a plane reaches far away."""
-    low, high = np.percentile(point, (5, 95), axis=0)
-    return np.clip((point - low) / np.where(high > low, high - low, 1.0), 0, 1)
+    points = seen.point[seen.shape >= 0]
+    low, high = np.percentile(points, (5, 95), axis=0) if len(points) else np.zeros((2, 3))
+    return np.clip((seen.point - low) / np.where(high > low, high - low, 1.0), 0, 1)
 
 
 COLOURS = {  # by the kinds of pictures
@@ -96,7 +97,6 @@ COLOURS = {  # by the kinds of pictures
     "uv": colours_of_uvs,
     "point": colours_of_points,
 }
-KINDS = tuple(COLOURS)
 
 
 def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None) -> Buffers:
@@ -109,12 +109,21 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
         ball = seen.shape == 0  # the mask of the first shape
     """
     check_scene(scene, "buffers")
-    return geometry(scene, width, height, threads)._replace(albedo=albedo(scene, width, height, threads))
+    return geometry(scene, width, height, threads, has_uv=True)._replace(albedo=albedo(scene, width, height, threads))
 
 
-def geometry(scene: Scene, width: int, height: int, threads: int | None = None, has_uv: bool = True) -> Buffers:
-    """Return the buffers without albedo, and perhaps without uv, which takes most of the time: arrays without rows."""
-    origins, directions = camera_rays(scene, width, height)
+def geometry(
+    scene: Scene,
+    width: int,
+    height: int,
+    threads: int | None = None,
+    has_uv: bool = False,
+    rows: tuple[int, int] | None = None,
+) -> Buffers:
+    """Return the buffers, or some rows of them, without albedo: an array without rows, and so is uv unless it is asked
+    for, which takes most of the time."""
+    origins, directions = camera_rays(scene, width, height, rows)
+    height, width, _ = directions.shape
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
     forward = np.array(unit(scene.camera.direction))
     distance, shape = hits.distance.reshape(height, width), hits.owner.reshape(height, width)

@@ -114,7 +114,7 @@ def paint(
     """Render a job: all pixels, or only the edges in a copy of `base`."""
     try:
         if job.view:
-            return Outcome(job, view_pixels(job.scene, job.view, *job.shape[1::-1]))
+            return Outcome(job, view_pixels(job.scene, job.view, *job.shape[1::-1], is_wanted))
         pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
         done = renderer.render(job.scene, pixels, job.samples, is_wanted=is_wanted, edges_only=base is not None)
     except Exception as error:  # of any kind: the session raises it in the main thread

@@ -157,6 +157,10 @@ def test_a_view_follows_the_camera() -> None:
     assert np.array_equal(latest.pixels, view_pixels(session.state.scene, "normals", *latest.pixels.shape[1::-1]))
 
 
+def test_a_view_that_is_not_wanted_any_more_is_not_made() -> None:
+    assert view_pixels(scene(), "depth", 64, 48, lambda: False) is None
+
+
 @pytest.mark.window
 def test_a_real_window_draws_rays_and_views(desktop: Desktop, tmp_path: Path) -> None:
     with viewing(desktop, tmp_path / "scene.rt") as viewer:
@@ -169,6 +173,7 @@ def test_a_real_window_draws_rays_and_views(desktop: Desktop, tmp_path: Path) ->
         until(lambda: (desktop.screenshot(viewer.window)[beside] == 255).all(axis=-1).any(), "a white ray")
         viewer.key("Home", "o", "i", "i")  # the last ones hide what the window says about the view
         normals = view_pixels(minirt.load(viewer.path), "normals", 320, 240)
+        assert normals is not None
         viewer.shows(normals[..., 2::-1])
         viewer.key("o", "o", "o", "i", "i", "i")
         viewer.shows(picture(viewer.path))
