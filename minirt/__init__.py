@@ -40,6 +40,8 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering.image import Image as Image
     from minirt.rendering.image import LinearImage as LinearImage
     from minirt.rendering.outcome import Outcome as Outcome
+    from minirt.rendering.queries.explain import explain as explain
+    from minirt.rendering.queries.explanation import Explanation as Explanation
     from minirt.rendering.queries.rays import Hits as Hits
     from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace
@@ -77,6 +79,8 @@ HOMES = {
         "minirt.rendering.buffers": "Buffers buffers",
         "minirt.rendering.image": "Image LinearImage",
         "minirt.rendering.outcome": "Outcome",
+        "minirt.rendering.queries.explain": "explain",
+        "minirt.rendering.queries.explanation": "Explanation",
         "minirt.rendering.queries.rays": "Hits camera_rays trace",
         "minirt.rendering.renderer": "renderer",
         "minirt.rendering.settings": "DEFAULT_ERROR render",

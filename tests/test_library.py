@@ -263,10 +263,15 @@ def test_a_scene_is_written_and_read_again(scene: minirt.Scene, tmp_path: Path) 
         scene.save(tmp_path / "a.txt")
 
 
-@pytest.mark.parametrize("function", ["render", "buffers", "camera_rays", "view", "dumps", "trace"])
+@pytest.mark.parametrize("function", ["render", "buffers", "camera_rays", "explain", "view", "dumps", "trace"])
 @pytest.mark.parametrize("path", ["demo.rt", Path("demo.rt")])
 def test_the_name_of_a_file_is_refused_with_what_to_do(function: str, path: Path | str) -> None:
-    arguments = {"buffers": (8, 6), "camera_rays": (8, 6), "trace": ([[0, 0, 0]], [[0, 0, 1]])}.get(function, ())
+    arguments = {
+        "buffers": (8, 6),
+        "camera_rays": (8, 6),
+        "explain": (8, 6, 1, 2),
+        "trace": ([[0, 0, 0]], [[0, 0, 1]]),
+    }.get(function, ())
     with pytest.raises(TypeError, match=rf"minirt\.{function} takes a scene, .*: use minirt.load\('demo.rt'\)"):
         getattr(minirt, function)(path, *arguments)
 

@@ -146,7 +146,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     check_format(options)  # before the work, not after it
     output, replay, auto = options.output, options.replay, options.samples == "auto"
     nameless, last = not output or is_nameless(output), options.frames.stop - 1 if options.frames else 0
-    is_one = output and not (replay or (options.turntable and not options.cluster))
+    is_one = output and not (options.buffers or replay or (options.turntable and not options.cluster))
     side, made = max(options.size or (0,)), counted(options.turntable, "picture")
     is_too_large = side > MAX_SIDE and not options.cluster
     wrong = (
@@ -158,6 +158,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         (options.strict and not options.error, "--strict needs --error"),
         (auto and not is_one, "--samples auto makes one picture: it needs -o, and no --replay or --turntable"),
         (options.cluster and options.time, "--cluster has no effect with --time"),
+        (options.buffers and not output, f"--buffers needs {NAME.replace('spin.gif', 'normals.png')}"),
         (is_too_large, f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster"),
     )
     for is_wrong, message in wrong:
@@ -176,10 +177,10 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
     scenes, output = options.scene, options.output
     if not scenes:
         parser.error("expected a scene file, such as scene.rt, or --example")
-    is_headless = output or options.check or options.bench or options.report
+    is_headless = output or options.check or options.bench or options.report or options.explain
     streams = [*filter(is_nameless, scenes)]
     if streams and (not is_headless or options.replay or len(streams) > len(set(streams))):
-        parser.error(f"{streams[0]} is a stream, which is read once: it needs -o or --check")
+        parser.error(f"{streams[0]} is a stream, which is read once: it needs -o, --explain or --check")
     if len(scenes) == 1 or options.check:
         return
     picture = "" if scenes[-1].endswith(".rt") else f"; did you mean -o {scenes[-1]}?"

@@ -122,6 +122,7 @@ KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more
     "region": partial(
         numbers, sign=",", form="X,Y,WIDTH,HEIGHT, like 320,0,640,480", limits=[(0, MAX_SIDE)] * 2 + [(1, MAX_SIDE)] * 2
     ),
+    "explain": partial(numbers, sign=",", form="X,Y, like 320,240", limits=[(0, MAX_SIDE)] * 2),
     "samples": lambda text: text if text == "auto" else whole_number(text, 1, 65536, ", or auto"),
     "turntable": partial(whole_number, low=1, high=3600),
     "frames": span,

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Callable
 from typing import Any
 
 from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say
-from minirt.errors import MlxError, SceneError, counted
-from minirt.helpers import file_io
+from minirt.errors import MlxError, RenderError, SceneError, counted
+from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, progress
 from minirt.helpers.signals import ended_by_signals, leave_at_once
 from minirt.scene import Scene, size_of
@@ -24,7 +25,8 @@ Command = Callable[["Scene", argparse.Namespace], int]
 
 def command_for(options: argparse.Namespace) -> Command:
     """Return the command that the options select; showing a window is the default."""
-    commands = {"check": check, "bench": bench, "report": report, "replay": replay, "output": render}
+    commands = {"check": check, "bench": bench, "report": report, "explain": explain, "replay": replay}
+    commands |= {"buffers": write_buffer, "output": render}
     return next((command for name, command in commands.items() if getattr(options, name)), show)
 
 
@@ -83,6 +85,40 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     size = options.size or size_of(scene)
     how = options.threads, options.quick, options.ablation
     say(write_report(scene, options.scene[0], options.report, size, *how))
+    return OK
+
+
+def explain(scene: Scene, options: argparse.Namespace) -> int:
+    """Print why a pixel has its colour: as a tree, in a terminal with the colours of light, or as JSON."""
+    import json
+
+    from minirt.rendering.queries.explain import explain as explanation_of
+    from minirt.rendering.queries.explanation import TreeText
+
+    explanation = explanation_of(scene, *(options.size or size_of(scene)), *options.explain, depth=options.depth)
+    has_colours = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    if options.json:
+        say(json.dumps(explanation.as_dict()))
+    else:
+        say(f"{TreeText(explanation, has_colours)}\n", is_own=True)
+    return OK
+
+
+def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
+    """Write what each pixel shows to the output: as numbers where its format holds them, else as colours."""
+    from minirt.cli.files import check_output, format_name, write
+    from minirt.formats.table import FLOAT, FORMATS
+    from minirt.rendering.buffers import MEMORY, geometry
+
+    (width, height), name = options.size or size_of(scene), format_name(options.output)
+    if name == "HDR":
+        raise RenderError(f"{options.output}: Radiance holds no numbers below 0, try .exr")
+    check_output(options.output, width, height)
+    system.check_picture(height, width, MEMORY)
+    with progress(lambda: State("tracing")):
+        seen = geometry(scene, width, height, options.threads, has_uv=options.buffers == "uv")
+        picture = seen.picture(options.buffers)
+    write(picture.encode(name, bits=FLOAT if FLOAT in FORMATS[name].bits else None), options.output)
     return OK
 
 

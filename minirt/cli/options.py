@@ -25,20 +25,25 @@ CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "
 IN_WINDOWS_TOO = ("size", "depth", "precision", "camera", "left_handed")
 # Options that choose a command, the first of which counts, and the commands with which each option has an effect, where
 # that is not all of them. Without such an option there is a window.
-COMMANDS = {"check": "--check", "bench": "--bench", "report": "--report", "replay": "--replay", "output": "-o"}
+COMMANDS = {"check": "--check", "bench": "--bench", "report": "--report", "explain": "--explain"}
+COMMANDS |= {"replay": "--replay", "buffers": "--buffers", "output": "-o"}
 EFFECTS = {
     name: set(commands.split())
     for names, commands in (
         ("region turntable frames resume error time strict cluster verbose", "output"),
-        ("output bits quality metadata", "replay output"),
-        ("samples depth dither", "replay output window"),
+        ("output", "replay buffers output"),
+        ("bits quality metadata", "replay output"),
+        ("samples dither", "replay output window"),
+        ("depth", "explain replay output window"),
         ("precision", "bench replay output window"),
-        ("size threads tone exposure", "bench report replay output window"),
+        ("size", "bench report explain replay buffers output window"),
+        ("threads", "bench report replay buffers output window"),
+        ("tone exposure", "bench report explain replay output window"),
         ("keys", "replay window"),
         ("fallback text_scale watch", "window"),
         ("quick ablation", "report"),
-        ("json", "check bench"),
-        *((command, command) for command in ("check", "bench", "report", "replay")),
+        ("json", "check bench explain"),
+        *((command, command) for command in COMMANDS if command != "output"),
     )
     for name in names.split()
 }

@@ -84,7 +84,7 @@ def render_band(band: Job) -> Made:
     """Render a band in this process."""
     image = rendering_settings.rendered(band.scene, band.size, band.settings)
     if band.bits:
-        return Strips(tiff.strips(image.array if band.bits == 8 else image.deep), image.reached)
+        return Strips(tiff.strips(image.channels(band.bits)), image.reached)
     return image
 
 

@@ -63,7 +63,7 @@ def render_to(
     height: int | None = None,
     *,
     executor: Workers | None = None,
-    bits: Literal[8, 16] = 8,
+    bits: Literal[8, 16, 32] = 8,
     on_progress: Progress = lambda done, bands: None,
     **settings: Unpack[Keywords],
 ) -> Outcome | None:
@@ -84,7 +84,7 @@ def render_to(
     if name != "TIFF":
         raise RenderError(f"{os.fspath(path)}: render_to writes TIFF, try {Path(path).stem}.tif")
     check_bits(name, bits)
-    how = RenderSettings(linear=bits == 16, **settings)
+    how = RenderSettings(linear=bits != 8, **settings)
     size = size_for(scene, width, height)
     check_size(path, name, *size)
     return stream(path, Job(scene, size, how), bits, executor, on_progress)

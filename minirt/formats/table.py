@@ -38,7 +38,7 @@ FORMATS = {  # by Pillow's name, where Pillow writes the format
     "WEBP": Format((".webp",), 16_383, is_lossy=True, is_film=True, memory=18),
     "AVIF": Format((".avif",), 65_536, is_lossy=True, memory=33),
     "GIF": Format((".gif",), 65_535, is_film=True, memory=18),
-    "TIFF": Format((".tif", ".tiff"), bits=(8, 16)),
+    "TIFF": Format((".tif", ".tiff"), bits=(8, 16, FLOAT)),
     "BMP": Format((".bmp", ".dib")),
     "PPM": Format((".ppm", ".pnm")),
     "TGA": Format((".tga",), 65_535),

@@ -1,4 +1,4 @@
-"""Writer of TIFF pictures of 8 or 16 bits (TIFF 6.0; compressed by Deflate): whole, or strip by strip.
+"""Writer of TIFF pictures of 8 or 16 bits, or of float32 (TIFF 6.0; compressed by Deflate): whole, or strip by strip.
 
 The directory, at the end, has the places of the strips. BigTIFF has places of 64 bits, so many more pixels than fit
 into memory.
@@ -18,11 +18,12 @@ SHORT, LONG, RATIONAL, LONG8 = 3, 4, 5, 16  # types of values
 CODES = {SHORT: "H", LONG: "I", RATIONAL: "I", LONG8: "Q"}
 ROWS = 16  # of a strip: those of a row of tiles
 DEFLATE, DIFFERENCES = 8, 2  # compression, and predictor: each pixel less the one before
+FLOAT, PLAIN, WHOLE, REAL = 32, 1, 1, 3  # bits of float32, the predictor of its pixels, and formats of samples
 LEVEL, FAST = 6, 2  # of zlib: of 1 to 9; the fast one takes no longer than rendering
 
 
 def encode(levels: np.ndarray) -> bytes:
-    """Return the file of levels, (h, w, 3) uint8 or uint16."""
+    """Return the file of levels, (h, w, 3) uint8 or uint16, or of light, float32."""
     buffer, (height, width) = io.BytesIO(), levels.shape[:2]
     write(buffer, width, height, 8 * levels.itemsize, strips(levels, LEVEL), is_big=False)
     return buffer.getvalue()
@@ -48,10 +49,11 @@ def header(place: int, is_big: bool) -> bytes:
 
 
 def strips(levels: np.ndarray, level: int = FAST) -> tuple[bytes, ...]:
-    """Return the compressed strips of some rows, (h, w, 3) uint8 or uint16."""
-    differences = levels.astype(levels.dtype.newbyteorder("<"))
-    differences[:, 1:] -= levels[:, :-1]
-    return tuple(zlib.compress(differences[top : top + ROWS].data, level) for top in range(0, len(levels), ROWS))
+    """Return the compressed strips of some rows, (h, w, 3) uint8, uint16 or float32."""
+    numbers = levels.astype(levels.dtype.newbyteorder("<"))
+    if levels.dtype.kind == "u":
+        numbers[:, 1:] -= levels[:, :-1]
+    return tuple(zlib.compress(numbers[top : top + ROWS].data, level) for top in range(0, len(levels), ROWS))
 
 
 def directory(
@@ -73,7 +75,8 @@ def directory(
         (283, RATIONAL, [72, 1]),
         (284, SHORT, [1]),  # the channels of a pixel side by side
         (296, SHORT, [2]),
-        (317, SHORT, [DIFFERENCES]),
+        (317, SHORT, [PLAIN if bits == FLOAT else DIFFERENCES]),
+        (339, SHORT, [REAL if bits == FLOAT else WHOLE] * 3),
     ]
     short = struct.calcsize(word)  # bytes of values that stand in the entry itself
     out, behind = struct.pack(f"<{number}", len(entries)), b""

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from minirt.errors import RenderError
 from minirt.fields import unit
 from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec
+from minirt.rendering.image import Image
+from minirt.rendering.packing.camera import GOLDEN_RATIO
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.rays import Hits, camera_rays, trace
+from minirt.rendering.queries.rays import camera_rays, trace
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Ambient, Scene, check_scene
-from minirt.shapes import Shape
 
 WHITE = (255, 255, 255)
+MEMORY = 500  # bytes a pixel of all buffers while they are made
 UNLIT = ("specular", "mirror", "glass", "tint", "fresnel", "glow", "bump", "normal_map")  # no part of the albedo
 
 
@@ -33,9 +36,67 @@ class Buffers(NamedTuple):
     uv: NDArray[np.float64]  # (h, w, 2) at which pictures are looked up, `uv:` included; NaN where nothing is hit
     albedo: NDArray[np.float64]  # (h, w, 3) colour under white light, textures included; 0 where nothing is hit
 
+    def picture(self, kind: str) -> Image:
+        """Return normals, depth, ids, uv or point as a picture: colours to look at, and the numbers as its light.
+
+        RenderError for another kind.
+        """
+        if kind not in COLOURS:
+            raise RenderError(f"a picture of buffers shows {', '.join(COLOURS)}, got {kind!r}")
+        numbers: Any = {"normals": self.normal, "depth": self.depth, "ids": self.shape, "point": self.point}.get(kind)
+        if numbers is None:
+            numbers = np.insert(self.uv, 2, 0.0, axis=-1)
+        elif numbers.ndim == 2:
+            numbers = np.repeat(numbers[..., None], 3, axis=-1).astype(np.float64)
+        return Image(self.levels(kind), numbers)
+
+    def levels(self, kind: str) -> NDArray[np.uint8]:
+        """Return the colours of a picture of buffers, (h, w, 3); black where nothing is hit."""
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(255 * COLOURS[kind](self) + 0.5).astype(np.uint8)
+
     def __repr__(self) -> str:
         height, width = self.depth.shape
         return f"<Buffers of {width}x{height} pixels: {', '.join(self._fields)}>"
+
+
+def colours_of_normals(seen: Buffers) -> NDArray[np.float64]:
+    """Return red, green and blue for x, y and z from -1 to 1."""
+    return (seen.normal + 1) / 2
+
+
+def colours_of_depths(seen: Buffers) -> NDArray[np.float64]:
+    """Return white for the nearest depth, and grey in proportion to one over the others."""
+    return np.broadcast_to((seen.depth.min() / seen.depth)[..., None], (*seen.depth.shape, 3))
+
+
+def colours_of_ids(seen: Buffers) -> NDArray[np.float64]:
+    """Return a colour for each shape: hues that a golden angle divides, so that no two near numbers look alike."""
+    numbers = np.arange(seen.shape.max() + 1)[:, None]
+    hue = numbers * GOLDEN_RATIO + np.array([0.0, 1 / 3, 2 / 3])
+    table = np.clip(np.abs(6 * (hue % 1) - 3) - 1, 0, 1) * 0.7 + 0.3 * (1 - numbers % 3 / 4)
+    return np.append(table, np.zeros((1, 3)), axis=0)[seen.shape]
+
+
+def colours_of_uvs(seen: Buffers) -> NDArray[np.float64]:
+    """Return red for u and green for v, each from one whole number to the next."""
+    return np.insert(seen.uv % 1, 2, 0.0, axis=-1)
+
+
+def colours_of_points(seen: Buffers) -> NDArray[np.float64]:
+    """Return red, green and blue for x, y and z, between those of most points: a plane reaches far away."""
+    points = seen.point[seen.shape >= 0]
+    low, high = np.percentile(points, (5, 95), axis=0) if len(points) else np.zeros((2, 3))
+    return np.clip((seen.point - low) / np.where(high > low, high - low, 1.0), 0, 1)
+
+
+COLOURS = {  # by the kinds of pictures
+    "normals": colours_of_normals,
+    "depth": colours_of_depths,
+    "ids": colours_of_ids,
+    "uv": colours_of_uvs,
+    "point": colours_of_points,
+}
 
 
 def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None) -> Buffers:
@@ -48,13 +109,30 @@ def buffers(scene: Scene, width: int, height: int, *, threads: int | None = None
         ball = seen.shape == 0  # the mask of the first shape
     """
     check_scene(scene, "buffers")
-    origins, directions = camera_rays(scene, width, height)
+    return geometry(scene, width, height, threads, has_uv=True)._replace(albedo=albedo(scene, width, height, threads))
+
+
+def geometry(
+    scene: Scene,
+    width: int,
+    height: int,
+    threads: int | None = None,
+    has_uv: bool = False,
+    rows: tuple[int, int] | None = None,
+) -> Buffers:
+    """Return the buffers, or some rows of them, without albedo: an array without rows, and so is uv unless it is asked
+    for, which takes most of the time."""
+    origins, directions = camera_rays(scene, width, height, rows)
+    height, width, _ = directions.shape
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
     forward = np.array(unit(scene.camera.direction))
     distance, shape = hits.distance.reshape(height, width), hits.owner.reshape(height, width)
-    parts = hits.point, hits.normal, coordinates(scene.shapes, hits)
-    point, normal, uv = (each.reshape(height, width, -1) for each in parts)
-    colours = albedo(scene, width, height, threads)
+    point, normal = (each.reshape(height, width, 3) for each in (hits.point, hits.normal))
+    uv, colours = np.zeros((0, 0, 2)), np.zeros((0, 0, 3))
+    if has_uv:
+        arrays = ShapeArrays()
+        arrays.update(*scene.runs)
+        uv = coordinates(arrays, hits.known().primitives, hits.point, hits.normal).reshape(height, width, 2)
     return Buffers(distance * (directions @ forward), distance, shape, point, normal, uv, colours)
 
 
@@ -73,12 +151,12 @@ def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArra
     return light
 
 
-def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
-    """Return u and v of n hits, (n, 2)."""
-    arrays = ShapeArrays()
-    arrays.update(shapes)
-    owner, primitive = hits.owner, hits.known().primitives
-    uv, normal = np.full((len(owner), 2), np.nan), hits.normal.copy()
+def coordinates(
+    arrays: ShapeArrays, primitive: NDArray[np.int64], point: NDArray[np.float64], normal: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return u and v, (n, 2), of n points of primitives, -1 where there is none, and their outward normals."""
+    shapes, owner = arrays.shapes, np.append(arrays.owner, -1)[primitive]  # the last one where there is none
+    uv, normal = np.full((len(owner), 2), np.nan), normal.copy()
     # Where `uv:` or a turn of the shape changes its coordinates from those of its `mapping`.
     turned = [i for i in np.unique(owner[owner >= 0]) if shapes[i].uv or shapes[i].map_frame()]
     placements = {i: placement_numbers(shapes[i]) for i in turned}
@@ -88,7 +166,7 @@ def coordinates(shapes: tuple[Shape, ...], hits: Hits) -> NDArray[np.float64]:
         here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
         packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
         with np.errstate(all="ignore"):
-            u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*hits.point[here].T), Vec(*normal[here].T))
+            u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*point[here].T), Vec(*normal[here].T))
         uv[here, 0], uv[here, 1] = u, v
     for i, (scale_u, scale_v, shift_u, shift_v, c, s, *_) in placements.items():
         u, v = uv[owner == i].T - np.array([[shift_u], [shift_v]])

@@ -74,6 +74,12 @@ class Image:
             into[...] = np.searchsorted(curve.halfway, row, "right")
         return levels
 
+    def channels(self, bits: int) -> np.ndarray:
+        """Return the picture with 8 or 16 bits a channel, or its light as float32; RenderError without light."""
+        if bits == FLOAT:
+            return self.light(f"{FLOAT} bits").astype(np.float32)
+        return self.array if bits == 8 else self.deep
+
     def light(self, what: str) -> np.ndarray:
         """Return the linear light; RenderError, which says that `what` needs it, where the picture has none."""
         if self.linear is None:
@@ -91,8 +97,8 @@ class Image:
         """Return the bytes of a file in a format of `minirt.formats.table`; RenderError when it cannot hold the
         picture.
 
-        `bits` a channel are 8 or 16 for PNG and TIFF; `quality`, from 1 to 100, is for lossy formats. A PNG file
-        carries `texts`, by their keywords.
+        `bits` a channel are 8 or 16 for PNG and TIFF, or 32 for the light in a TIFF file; `quality`, from 1 to 100, is
+        for lossy formats. A PNG file carries `texts`, by their keywords.
         """
         from minirt.formats import floats, tiff
 
@@ -100,9 +106,9 @@ class Image:
         check_quality(name, quality)
         with encoding("picture", name):
             if name == "PNG":
-                return png.encode(self.array if bits == 8 else self.deep, texts)
+                return png.encode(self.channels(bits), texts)
             if name == "TIFF" and bits != 8:
-                return tiff.encode(self.deep)
+                return tiff.encode(self.channels(bits))
             if bits == FLOAT:
                 return floats.ENCODERS[name](self.light(f"{FLOAT} bits"))
             buffer = io.BytesIO()

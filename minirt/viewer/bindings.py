@@ -115,6 +115,8 @@ BINDINGS = (
     once(LOOK, "focus", "focus the camera on what is under the pointer", "Shift+F"),
     once(LOOK, "look through", "look through the selected further camera", "Shift+C", "double click"),
     once(LOOK, "reset camera", "reset the camera to that of the file", "Home", "R"),
+    once(LOOK, "explain pixel", "explain the pixel under the pointer: its rays and lights; again: hide them", "Y"),
+    once(LOOK, "next view", "next view: normals, depth, shapes, colours", "O"),
     once(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),
     while_held(MOVE, "left", "move left", "A", azerty="Q"),
     while_held(MOVE, "right", "move right", "D"),

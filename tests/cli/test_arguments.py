@@ -35,6 +35,8 @@ VALUES = (  # an option, what is said of a wrong value, and such values
     ("--frames", "must be FIRST-LAST, like 10-20, got '%s'", "3-2 x"),
     ("--region", "must be X,Y,WIDTH,HEIGHT, like 320,0,640,480, got '%s'", "1,2,3"),
     ("--region", "must be a whole number from 1 to 16384, got '0'", "0,0,0,5"),
+    ("--explain", "must be X,Y, like 320,240, got '%s'", "1 1,2,3 1,-2"),
+    ("--buffers", "must be normals, depth, ids, uv or point, got '%s'", "colours"),
     ("--cluster", "must be local, or the address of a scheduler like tcp://host:8786, got '%s'", "here"),
     (
         "--memory",
@@ -91,10 +93,15 @@ TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "-o x.gif --resume --replay keys.txt": RESUME,
     "--cluster local": "--cluster has no effect without -o",
     "-o x.png --cluster local --samples auto --time 1": "--cluster has no effect with --time",
-    "-o x.png --json": "--json has no effect without --check or --bench",
+    "-o x.png --json": "--json has no effect without --check or --bench or --explain",
     **{f"-o x.png {each}": f"{each} has no effect without --report" for each in ("--quick", "--ablation")},
     **{f"-o x.png --{each}": f"-o does not go with --{each}" for each in ("check", "bench")},
     "-o x.png --report x": "-o does not go with --report",
+    "--buffers depth": "--buffers needs the name of a file: -o normals.png",
+    "--buffers depth -o x.png --samples 4": "--samples has no effect with --buffers",
+    "--buffers ids -o x.png --turntable 4": "--turntable has no effect without -o",
+    "--explain 1,2 -o x.png": "-o does not go with --explain",
+    "--explain 1,2 --buffers ids -o x.png": "-o does not go with --explain",
     "--check --bench": "--bench does not go with --check",
     "--report x --keys azerty": "--keys has no effect with --report",
     "--no-watch --check": "--no-watch has no effect with --check",
@@ -103,7 +110,7 @@ TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "x.png": "expected one scene file, got 2: ball.rt x.png; did you mean -o x.png?",
     "ball.rt -o x.png": "expected one scene file, got 2: ball.rt ball.rt; several need -o with {name}, such as -o "
     "out/{name}.png",
-    **dict.fromkeys(("-", "- - --check"), "- is a stream, which is read once: it needs -o or --check"),
+    **dict.fromkeys(("-", "- - --check"), "- is a stream, which is read once: it needs -o, --explain or --check"),
 }
 WRONG = {
     f"{name} {each}": f"argument {name}: {told % each if '%' in told else told}"

@@ -56,12 +56,14 @@ def test_the_picture_is_the_same_whoever_renders_its_bands(make: Callable[[], Ex
         executor.shutdown()
 
 
-def test_tone_dithering_and_16_bits_are_those_of_the_picture(tmp_path: Path) -> None:
+def test_tone_dithering_and_more_bits_are_those_of_the_picture(tmp_path: Path) -> None:
     scene = BALL.replace(BALL.camera, tone="srgb", exposure=0.5)
     minirt.render_to(tmp_path / "a.tif", scene, *SIZE, dither=True)
     assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(scene, *SIZE, dither=True).array)
     minirt.render_to(tmp_path / "b.tif", scene, *SIZE, bits=16)
     assert np.array_equal(tifffile.imread(tmp_path / "b.tif"), minirt.render(scene, *SIZE).deep)
+    minirt.render_to(tmp_path / "c.tif", scene, *SIZE, bits=32)
+    assert np.array_equal(tifffile.imread(tmp_path / "c.tif"), minirt.render(scene, *SIZE).linear.astype(np.float32))
 
 
 def test_a_region_has_the_pixels_of_the_picture(tmp_path: Path) -> None:
@@ -187,7 +189,7 @@ def test_a_large_picture_needs_the_memory_of_a_few_bands(tmp_path: Path) -> None
         ("no/a.tif", {}, "cannot write"),
         ("a.tif", {"width": 0}, "must be a whole number of at least 1"),
         ("a.tif", {"width": 2**31}, "at most 2,147,483,647 pixels"),
-        ("a.tif", {"bits": 12}, "TIFF has 8 or 16 bits"),
+        ("a.tif", {"bits": 12}, "TIFF has 8 or 16 or 32 bits"),
         ("a.tif", {"error": 0.1}, "samples='auto'"),
         ("a.tif", {"samples": 0}, "samples must be a whole number"),
         ("a.tif", {"precision": "half"}, "double or single"),

@@ -35,12 +35,18 @@ def read_opencv(path: Path) -> np.ndarray:
     return pixels
 
 
-@pytest.mark.parametrize(("name", "read"), [("a.exr", read_exr), ("a.pfm", read_opencv)])
+def read_tiff(path: Path) -> np.ndarray:
+    """The pixels of a TIFF file, by tifffile."""
+    pixels: np.ndarray = tifffile.imread(path)
+    return pixels
+
+
+@pytest.mark.parametrize(("name", "read"), [("a.exr", read_exr), ("a.pfm", read_opencv), ("a.tif", read_tiff)])
 @pytest.mark.parametrize("size", SIZES)
 def test_float32_is_read_back_to_the_bit(
     tmp_path: Path, name: str, read: Callable[[Path], np.ndarray], size: tuple[int, int]
 ) -> None:
-    picture(*size).save(tmp_path / name)
+    picture(*size).save(tmp_path / name, bits=32)
     found = read(tmp_path / name)
     assert found.dtype == np.float32
     assert np.array_equal(found, light(*size).astype(np.float32))

@@ -87,6 +87,9 @@ table: dict[str, NDArray[np.float64] | NDArray[np.int64]] = hits.columns()
 buffers: minirt.Buffers = minirt.buffers(scene, 8, 6)
 depth: NDArray[np.float64] = buffers.depth
 albedo: NDArray[np.float64] = buffers.albedo
+buffers.picture("normals").save(FOLDER / "normals.png")
+explanation: minirt.Explanation = minirt.explain(scene, 8, 6, 4, 3)
+assert_type(explanation.level, tuple[int, int, int])
 
 renderer: minirt.Renderer = minirt.renderer(None)
 frame = np.zeros((6, 8, 4), np.uint8)

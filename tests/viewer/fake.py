@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.rendering.queries.pick import pick
+from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
@@ -49,7 +50,10 @@ def scene(text: str = TEXT) -> Scene:
 class FakeRenderer:
     """A renderer that fills each picture with one colour, which depends on the scene."""
 
+    precision = "double"
+
     def __init__(self) -> None:
+        self.busy, self.packing = threading.Lock(), Packing()
         self.rendered: list[tuple[int, int]] = []  # width and height of the finished pictures
         self.samples: list[int] = []  # of the pictures that were started
         self.refined: list[int] = []  # samples of the refinements that were started

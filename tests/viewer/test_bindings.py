@@ -264,6 +264,13 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
     "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
     "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
+    "explain pixel": (
+        (f"move {AT_SPHERE}",),
+        lambda _, after: (
+            after.screen.explained is not None and after.screen.explained.parts[0].title.endswith("sphere 1")
+        ),
+    ),
+    "next view": ((), lambda _, after: after.refinement.latest.job.view == "normals"),
     "next tone": ((), lambda _, after: camera(after).tone == "srgb"),
     "focus": ((f"move {AT_SPHERE}",), focused),
     "look at": (("press Tab",), centred),

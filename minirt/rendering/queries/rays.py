@@ -24,11 +24,13 @@ if TYPE_CHECKING:
     from minirt.rendering.queries.certificates import Certificate
 
 
-def camera_rays(scene: Scene | Camera, width: int, height: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def camera_rays(
+    scene: Scene | Camera, width: int, height: int, rows: tuple[int, int] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the rays through the centres of all pixels: origins and unit directions, each (height, width, 3).
 
-    They are the primary rays of a picture of that size with one sample a pixel; row 0 is the upper one. RenderError for
-    a size below 1.
+    They are the primary rays of a picture of that size with one sample a pixel; row 0 is the upper one. `rows` (a, b)
+    are the rows from a to b - 1. RenderError for a size below 1.
 
         origins, directions = minirt.camera_rays(scene, 640, 480)
         hits = minirt.trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3))
@@ -36,7 +38,7 @@ def camera_rays(scene: Scene | Camera, width: int, height: int) -> tuple[NDArray
     check_scene(scene, "camera_rays")
     width, height = check_whole("width", width, 1), check_whole("height", height, 1)
     camera = scene if isinstance(scene, Camera) else scene.camera
-    y, x = np.mgrid[0:height, 0:width] + 0.5
+    y, x = np.mgrid[slice(*rows or (0, height)), 0:width] + 0.5
     _, toward = camera_ray(camera, width, height, x, y)
     directions = np.stack(np.broadcast_arrays(toward.x, toward.y, toward.z), axis=-1)
     return np.broadcast_to(np.array(camera.position, np.float64), directions.shape).copy(), directions

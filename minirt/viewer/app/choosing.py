@@ -36,6 +36,7 @@ MENU = {  # its rows: actions, and what they are called there
     "look at": "bring into view",
     "look through": "look through",
     "focus": "focus here",
+    "explain pixel": "explain this pixel",
     "undo": "undo",
     "redo": "redo",
 }

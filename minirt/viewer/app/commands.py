@@ -15,6 +15,7 @@ from minirt.scene import describe, dump, load, parse
 from minirt.scene.files import MAX_BYTES, SUFFIX, check_name
 from minirt.scene.parser import load_for_window
 from minirt.viewer import files
+from minirt.viewer.app.explaining import explain_pixel, show_next_view
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
@@ -216,6 +217,8 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "reload": reload,
     "copy camera": copy_camera,
     "focus": focus,
+    "explain pixel": explain_pixel,
+    "next view": show_next_view,
     "toggle HUD": toggle_hud,
     "toggle icons": partial(toggle, name="icons"),
     "toggle handles": partial(toggle, name="handles"),

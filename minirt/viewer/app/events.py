@@ -12,6 +12,7 @@ from minirt.errors import MlxError
 from minirt.mlx.events import MODIFIER_KEYS, Button, Event
 from minirt.viewer.app.choosing import ADDING, LISTS, OPEN_MENU, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
+from minirt.viewer.app.explaining import choose_row
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session
@@ -73,6 +74,8 @@ class EventDispatcher:
         match event, arguments:
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if screen.has_tab and screen.is_on_tab(x, y):
                 self.toggle_panel()
+            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if choose_row(session, x, y):
+                pass
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if not self.choosing.row_at(x, y) and screen.tool_at(x, y):
                 self.use_tool(x, y)
             case Event.MOTION_NOTIFY, (x, y):

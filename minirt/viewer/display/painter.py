@@ -21,6 +21,7 @@ from minirt.rendering.renderer import Renderer
 from minirt.rendering.sampling.packets import estimated_error
 from minirt.scene import Scene
 from minirt.viewer.display.precision import MovingPrecision
+from minirt.viewer.display.views import view_pixels
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 
@@ -40,6 +41,7 @@ class Job:
     urgent: bool = False  # something moves: finish it although a newer request waits
     samples: int = 1  # per pixel
     goal: int = 1  # samples per pixel of the final picture, when nothing moves any more
+    view: str = ""  # what it shows in place of colours: one of `minirt.viewer.display.views`
     base: Pixels | None = field(default=None, compare=False, repr=False)  # the same picture with fewer samples
     base_samples: int = 1  # samples per pixel of `base`
 
@@ -116,6 +118,8 @@ def paint(
 ) -> Outcome:
     """Render a job: all pixels, or only the edges in a copy of `base`."""
     try:
+        if job.view:
+            return Outcome(job, view_pixels(job.scene, job.view, *job.shape[1::-1], is_wanted))
         pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
         done = renderer.render(job.scene, pixels, job.samples, is_wanted=is_wanted, edges_only=base is not None)
     except Exception as error:  # of any kind: the session raises it in the main thread
@@ -205,11 +209,11 @@ class BackgroundPainter(Painter):
                 return None if pixels is None else Outcome(job, pixels, preview=True)
         except Exception as error:  # the file of a texture may be gone meanwhile
             return Outcome(job, error=error)
-        single, start = self._precision.is_single(urgent=job.urgent), time.perf_counter()
+        single, start = not job.view and self._precision.is_single(urgent=job.urgent), time.perf_counter()
         renderer = self._precision.single if single else self.renderer
         outcome = paint(renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
         seconds = time.perf_counter() - start
-        if job.urgent and outcome.pixels is not None:
+        if job.urgent and outcome.pixels is not None and not job.view:
             self._precision.record(seconds / outcome.pixels.size, single=single)
         return replace(outcome, seconds=seconds, single=single)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from math import prod
 from statistics import median_low
+from typing import Any
 
 from minirt.scene import Scene
 from minirt.viewer.display.painter import Job, Outcome, Painter, Pixels
@@ -24,6 +25,7 @@ class Refinement:
         self.resolution = AdaptiveResolution()
         self.latest: Outcome | None = None  # the latest picture
         self.samples = samples
+        self.view = ""  # what pictures show in place of colours
         self._requested: Job | None = None
 
     def restart(self, samples: int) -> None:
@@ -46,6 +48,10 @@ class Refinement:
         if kept and kept is not self.latest:
             self.latest, self._requested = kept, kept.job
 
+    def show_view(self, view: str) -> None:
+        """Let the next request be that of a first picture of a view."""
+        self.view, self._requested = view, None
+
     @property
     def complete(self) -> bool:
         """Whether the latest picture is the final one of the last request."""
@@ -54,11 +60,12 @@ class Refinement:
     def request_missing(self, scene: Scene, size: tuple[int, int], moving: bool) -> None:
         """Request the next picture of a scene, if one is missing; `moving`: the scene will change again soon."""
         last = self._requested
+        how: dict[str, Any] = {"view": self.view} if self.view else {"goal": self.samples}
         if last is None:
-            self._request(Job(scene, *size, goal=self.samples))
+            self._request(Job(scene, *size, **how))
         elif not last.shows(scene, size):
             divisor = self.resolution.divisor(*size)
-            self._request(Job(scene, *size, divisor, urgent=True, goal=self.samples))
+            self._request(Job(scene, *size, divisor, urgent=True, **how))
         elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.is_final:
             self._request(answer.next())
 

@@ -9,7 +9,7 @@ import ctypes
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import zip_longest
 
 import numpy as np
@@ -19,6 +19,7 @@ from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import Keymap, key_groups
 from minirt.viewer.display import overlay, tool_row
+from minirt.viewer.display.explained import Explained, draw_explained
 from minirt.viewer.display.ground import ground_lines
 from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
@@ -54,6 +55,7 @@ class Screen:
         self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
         self.list_box: ListBox | None = None  # a value that is typed, or a list to choose from
+        self.explained: Explained | None = None  # a pixel, whose rays are shown
         self.handles = False  # whether those of the selected element are shown, and the tool row
         self.handle_kind = ""  # of the handles that are shown alone
         self.tool: Tool | None = None  # the one under the pointer
@@ -124,7 +126,7 @@ class Screen:
         described = state if self.level and not self.help else None
         handles = self.handles and not keys_held
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
-        row = handles, self.handles, self.handle_kind, self.tool
+        row = self.explained, handles, self.handles, self.handle_kind, self.tool
         contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout
         if contents == self._drawn:
             return False
@@ -138,20 +140,7 @@ class Screen:
             draw_help(clear, self.keymap.layout, self.search, size, self.help)
         elif self.level:
             if picture and picture.job.size == self.size:  # not an old one, stretched
-                job = picture.job
-                if not job.scene.runs:
-                    clear[ground_lines(job.scene.camera, *self.size)] = GRID_COLOUR
-                draw_marks(
-                    clear,
-                    state,
-                    job.scene,
-                    scale,
-                    moving=job.urgent,
-                    icons=self.icons,
-                    handles=handles,
-                    kind=self.handle_kind,
-                    pointed=self.pointed,
-                )
+                self.draw_over(clear, state, picture, handles)
             if self.handles:
                 draw_tools(clear, scale, size, self.tool, self.handle_kind, self.keymap.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
@@ -159,6 +148,8 @@ class Screen:
             overlay.draw_tab(self.frame, size)
         if self.list_box and not self.help:
             draw_list(clear, self.list_box, size)
+        elif self.explained and self.level and not self.help and self.explained.fits(state.scene):
+            draw_list(clear, self.explained.box, size)
         elif self.tips and self.level and not self.covered:
             message = "\n".join(filter(None, (message, self.tips_that_fit(message))))
         if message and not self.help:  # above the text at the bottom
@@ -168,6 +159,17 @@ class Screen:
             overlay.draw_lines(clear, -MARGIN - bottom, words, MESSAGE_COLOUR, size, left)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
+
+    def draw_over(self, pixels: Pixels, state: State, picture: Outcome, handles: bool) -> None:
+        """Draw what fits a picture: the ground of a scene without shapes, marks, and the rays of a pixel."""
+        scene, scale, moving = picture.job.scene, self.scale, picture.job.urgent
+        if not scene.runs:
+            pixels[ground_lines(scene.camera, *self.size)] = GRID_COLOUR
+        kind, pointed = self.handle_kind, self.pointed
+        shown = partial(draw_marks, moving=moving, icons=self.icons, handles=handles, kind=kind, pointed=pointed)
+        shown(pixels, state, scene, scale)
+        if self.explained:
+            draw_explained(pixels, self.explained, scene, scale)
 
     def picture_alone(self, picture: Outcome | None) -> Pixels:
         """Return a copy of the picture without overlay, stretched to `size`; black if there is no picture yet."""

@@ -1,0 +1,49 @@
+"""Commands that look into a picture: explain a pixel, and show normals, depth or shapes in place of colours."""
+
+from __future__ import annotations
+
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.explained import explained
+from minirt.viewer.display.lists import layout_of
+from minirt.viewer.display.views import next_view
+
+LOOKS = {"": "colours", "normals": "normals", "depth": "depth", "ids": "a colour for each shape"}  # names of views
+
+
+def explain_pixel(session: Session) -> None:
+    """Show the rays of the pixel under the pointer; again at the same pixel: hide them. RenderError."""
+    screen, scene = session.screen, session.shown_scene
+    x, y = session.pointer
+    before = screen.explained
+    if before and before.scene is scene and (before.explanation.x, before.explanation.y) == (x, y):
+        screen.explained = None
+        return
+    from minirt.rendering.queries.explain import explained_by
+
+    renderer = session.refinement.painter.renderer
+    renderer.cancel()  # the picture that is being made
+    explanation = explained_by(renderer, scene, *screen.size, x, y)
+    screen.explained = explained(explanation, scene)
+    session.say(screen.explained.parts[0].details)
+
+
+def choose_row(session: Session, x: int, y: int) -> bool:
+    """Choose the row at a pixel of the list of rays, whose numbers are then shown; False beside the list."""
+    screen, shown = session.screen, session.screen.explained
+    if not shown or screen.list_box or screen.help or not screen.level:
+        return False
+    box = layout_of(shown.box, *screen.size, screen.text_size)
+    row = box.row_at(x, y)
+    if row is None:
+        return False
+    screen.explained = shown._replace(chosen=row)
+    session.say(shown.parts[row].details)
+    session.show(session.state)
+    return True
+
+
+def show_next_view(session: Session) -> None:
+    """Show the next view of the scene: normals, depth, shapes, and colours again."""
+    view = next_view(session.refinement.view)
+    session.refinement.show_view(view)
+    session.say(f"view: {LOOKS[view]}")
