@@ -1,0 +1,93 @@
+"""Compare a picture of another ray tracer with the reference, and name what it does in another way."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare import answer, pictures
+from minirt.compare.answer import Cause, Rest
+from minirt.compare.search import Case, search
+from minirt.compare.table import OURS, Guess
+from minirt.rendering.settings import render
+from minirt.scene import Scene, check_scene
+
+KNOWN = 0.8  # share of the inner pixels; what explains less is not told
+
+
+class Comparison(NamedTuple):
+    """What is found about a picture. `str()` of it is the answer in words, `.json()` the same for programs."""
+
+    equal: bool
+    explained: float  # share of the inner pixels
+    causes: tuple[Cause, ...]
+    rest: tuple[Rest, ...]
+    notices: tuple[str, ...]
+    scene: Scene
+    picture: NDArray[np.uint8]  # (h, w, 3), without a border
+    guess: Guess
+
+    def json(self) -> dict[str, Any]:
+        """Return the answer as what `json.dumps` takes: equal, explained, causes, rest and notices."""
+        return {
+            "equal": self.equal,
+            "explained": round(self.explained, 4),
+            "causes": [each._asdict() for each in self.causes],
+            "rest": [each._asdict() | {"share": round(each.share, 4)} for each in self.rest],
+            "notices": list(self.notices),
+        }
+
+    def __str__(self) -> str:
+        lines = [*self.notices, self.verdict()]
+        lines += [f"- {each.name}: {each.sentence}" for each in self.causes]
+        if self.rest:
+            lines.append("What is left:" if self.causes else "Where they differ:")
+        for each in self.rest:
+            where = each.shape if each.part == "surface" else f"{each.part} of {each.shape}"
+            lines.append(f"- {each.share:.1%} of all pixels: {where}, such as pixel {each.pixel[0]},{each.pixel[1]}")
+        return "\n".join(lines)
+
+    def verdict(self) -> str:
+        """Return the first sentence of the answer."""
+        if self.equal:
+            return "The pictures are equal."
+        if self.explained < KNOWN:
+            return f"The pictures differ, and why is not known: {self.explained:.0%} of the inner pixels are explained."
+        what = "this explains" if len(self.causes) == 1 else "these explain together"
+        if not self.causes:
+            return f"The pictures differ in parts: {self.explained:.1%} of the inner pixels are equal."
+        return f"The pictures differ; {what} {self.explained:.1%} of the inner pixels:"
+
+    def panels(self) -> NDArray[np.uint8]:
+        """Four pictures beside each other: theirs, the reference, the reference under the causes, the difference."""
+        return pictures.panels(self.scene, self.picture, self.guess)
+
+
+def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
+    """Compare a picture file of another program with the picture of a scene, and tell what differs and why.
+
+        print(minirt.compare(minirt.load("scene.rt"), "mine.ppm"))
+
+    The picture may have any size. FileError if it cannot be read.
+    """
+    check_scene(scene, "compare")
+    theirs, notices, is_lossy = pictures.read(Path(picture))
+    height, width, _ = theirs.shape
+    reference = render(scene, width, height).array
+    if pictures.are_equal(theirs, reference, is_lossy):
+        return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
+    tolerance = answer.tolerance_of(is_lossy)
+    case = Case(scene, theirs / 255)
+    is_alike = pictures.are_alike(theirs, reference, is_lossy)
+    judge = answer.with_corners(answer.needed(case, OURS if is_alike else search(case), tolerance))
+    found, explained = tuple(answer.causes(judge)), 1 - judge.left(judge.fit)
+    if is_alike and not found:
+        notices += ("They differ at edges alone.",)
+        return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
+    if explained < KNOWN:
+        found = ()
+    return Comparison(False, explained, found, tuple(answer.rest(judge)), notices, scene, theirs, judge.guess)

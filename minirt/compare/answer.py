@@ -1,0 +1,192 @@
+"""The answer: whether pictures are equal, else causes, what they explain together, and where the rest lies."""
+
+from __future__ import annotations
+
+from math import atan, degrees
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare import lighting
+from minirt.compare.geometry import Floats, Seen, changed_scene, on_cap, see, slopes
+from minirt.compare.lighting import LEVEL, Fit
+from minirt.compare.search import Case
+from minirt.compare.table import FREE, OURS, TABLE, Guess
+
+PIXELS = 40_000  # of the sample by which causes are judged
+LEAST_GAIN = 0.003  # of inner pixels that a cause explains
+CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
+EDGE_GAIN = 0.7  # of the unexplained pixels at edges are left by a cause that only moves edges
+LEAST_REST = 0.001  # share of pixels of a part that is worth a line
+MOST_REST = 6  # parts
+TOGETHER = {"scale": ("scale", "fov")}  # parameters that are one cause
+
+
+class Cause(NamedTuple):
+    """What the other program does in another way."""
+
+    name: str
+    value: Any
+    sentence: str
+
+
+class Rest(NamedTuple):
+    """Where pixels are not explained."""
+
+    shape: str
+    part: str  # surface, cap, shadow or edge
+    share: float  # of all pixels
+    pixel: tuple[int, int]  # column and row of one of them
+
+
+class Judge:
+    """Judges a guess by a large sample of pixels."""
+
+    def __init__(self, case: Case, guess: Guess, tolerance: float) -> None:
+        self.case, self.guess, self.tolerance = case, guess, tolerance
+        self.x, self.y, self.colours = case.sample(PIXELS)
+        self.seen = self.look(guess)
+        self.judged = case.judged[self.seen.owner]
+        self.inner = self.judged & self.is_inner()
+        self.fit = self.fitted(guess)
+
+    def look(self, guess: Guess, across: int = 0, down: int = 0) -> Seen:
+        """Trace the sample, or the pixels beside it."""
+        size = self.case.width, self.case.height
+        return see(self.case.scene, size, self.x + across, self.y + down, guess)
+
+    def is_inner(self) -> NDArray[np.bool_]:
+        """Whether pixels are neither beside another face nor at the edge of a shadow."""
+        inner = np.ones(len(self.x), bool)
+        normal = np.nan_to_num(self.seen.normal)
+        for across, down in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            near = self.look(self.guess, across, down)
+            inner &= near.owner == self.seen.owner
+            inner &= (near.open_to == self.seen.open_to).all(axis=0)
+            bent = np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1)
+            inner &= bent < 0.5
+        return inner
+
+    def fitted(self, guess: Guess, fixed: str = "") -> Fit:
+        """How a guess explains the inner pixels."""
+        seen = self.seen if guess == self.guess else self.look(guess)
+        return lighting.fit(self.case.scene, seen, self.colours, guess, self.inner, fixed)
+
+    def left(self, fit: Fit) -> float:
+        """The share of inner pixels that a fit does not explain."""
+        return float((fit.error[self.inner] > self.tolerance).mean()) if self.inner.any() else 1.0
+
+    def left_at_edges(self, fit: Fit) -> float:
+        """The share of other pixels that a fit does not explain."""
+        edges = self.judged & ~self.inner
+        return float((fit.error[edges] > self.tolerance).mean()) if edges.any() else 0.0
+
+    def gain(self, without: Fit) -> float:
+        """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
+        explained, before = self.fit.error[self.inner] <= self.tolerance, without.error[self.inner] <= self.tolerance
+        won, lost = float((explained & ~before).mean()), float((before & ~explained).mean())
+        return won - lost if won > CLEARLY * lost else 0.0
+
+
+def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
+    """Leave out, one by one, what a guess explains nothing by; return the judge of the guess that remains."""
+    while True:
+        judge = Judge(case, guess, tolerance)
+        different = [name for name in guess if guess[name] != OURS[name] and name != "pixel"]
+        plainer = [guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))} for name in different]
+        fits = [judge.fitted(each) for each in plainer]
+        gains = [(judge.gain(fit), number) for number, fit in enumerate(fits) if is_simpler(fit, judge.fit)]
+        if not gains or min(gains)[0] > LEAST_GAIN:
+            return judge
+        guess = plainer[min(gains)[1]]
+
+
+def is_simpler(one: Fit, other: Fit) -> bool:
+    """Whether a fit, which has a difference less than another, has no factor more that is not this program's."""
+    return lighting.odd_factors(one) <= lighting.odd_factors(other)
+
+
+def with_corners(judge: Judge) -> Judge:
+    """Return the judge of the guess that rays go through the corners of pixels, if edges say so."""
+    moved = judge.guess | {"pixel": "corner"}
+    before, after = judge.left_at_edges(judge.fit), judge.left_at_edges(judge.fitted(moved))
+    return Judge(judge.case, moved, judge.tolerance) if after < EDGE_GAIN * before else judge
+
+
+def causes(judge: Judge) -> list[Cause]:
+    """Return what a guess says, as sentences."""
+    guess, fit, scene = judge.guess, judge.fit, judge.case.scene
+    found = []
+    for row in TABLE:
+        (name, value), *_ = row.changes.items()
+        if guess[name] != value:
+            continue
+        sentence, told = row.sentence, row.value
+        if name == "specular":
+            sentence = FREE[name].format(sentence=sentence, value=round(fit.specular, 2))
+        if name == "background":
+            told = [round(each * 255) for each in fit.background]
+            here = [round(each * 255) for each in lighting.background(scene)]
+            sentence = sentence.format(colour=",".join(map(str, told)), ours=",".join(map(str, here)))
+        found.append(Cause(row.name, told, sentence))
+    if guess["scale"] != 1.0:
+        across = round(2 * degrees(atan(slopes(scene.camera, judge.case.width / judge.case.height, guess)[0])), 1)
+        found.append(Cause("fov", across, FREE["scale"].format(value=across, ours=scene.camera.fov)))
+    if guess["roll"]:
+        found.append(Cause("roll", guess["roll"], FREE["roll"].format(value=guess["roll"])))
+    return found + factors(judge)
+
+
+def factors(judge: Judge) -> list[Cause]:
+    """Return the factors of ambient light and of lamps that are not those of the scene, and that count."""
+    guess, fit = judge.guess, judge.fit
+    diffuse = [round(float(each), 2) for each in fit.diffuse]
+    if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
+        diffuse = diffuse[:1]
+    told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
+    if guess["fading"]:
+        del told["diffuse"]  # whose unit is a free choice of the other program
+    found = []
+    for name, values in told.items():
+        if any(map(lighting.differs, values)) and judge.gain(judge.fitted(guess, name)) > LEAST_GAIN:
+            value = values[0] if len(values) == 1 else values
+            spelled = ", ".join(map(str, values))
+            found.append(Cause(name, value, FREE[name].format(value=spelled)))
+    return found
+
+
+def rest(judge: Judge) -> list[Rest]:
+    """Return where the pixels lie that a guess does not explain, the largest part first."""
+    seen, scene = judge.seen, changed_scene(judge.case.scene, judge.guess)
+    wrong = judge.judged & (judge.fit.error > judge.tolerance)
+    _, cosine = lighting.cosines(seen, judge.guess)
+    shadow = (cosine > 0).any(axis=0) & ~((cosine > 0) & seen.open_to).any(axis=0)
+    masks = {"edge": ~judge.inner, "cap": on_cap(scene, seen.owner, seen.normal), "shadow": shadow}
+    masks["surface"] = np.ones(len(wrong), bool)
+    found = []
+    for part, mask in masks.items():
+        for owner in np.unique(seen.owner[wrong & mask]):
+            here = np.flatnonzero(wrong & mask & (seen.owner == owner))
+            x, y = judge.x[here], judge.y[here]
+            middle = np.argmin(np.hypot(x - np.median(x), y - np.median(y)))
+            place = int(x[middle]), int(y[middle])
+            found.append(Rest(shape_name(judge.case, int(owner)), part, len(here) / len(wrong), place))
+        wrong &= ~mask
+    large = [each for each in found if each.share >= LEAST_REST]
+    return sorted(large, key=lambda each: -each.share)[:MOST_REST]
+
+
+def shape_name(case: Case, owner: int) -> str:
+    """Return the name of a shape: `cylinder 2` is the second one of the scene."""
+    if owner < 0:
+        return "background"
+    shapes = case.scene.shapes
+    kind = type(shapes[owner])
+    number = sum(type(shape) is kind for shape in shapes[: owner + 1])
+    return f"{kind.title} {number}"
+
+
+def tolerance_of(is_lossy: bool) -> float:
+    """The error up to which a pixel is explained."""
+    return (12.5 if is_lossy else 4.5) * LEVEL

@@ -1,0 +1,199 @@
+"""The light of another ray tracer: how bright its terms are, by least squares, under a guess about their form."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare.geometry import Floats, Seen, unit
+from minirt.compare.table import OURS, Guess
+from minirt.element import fields_of
+from minirt.materials import Attributes
+from minirt.scene import Scene
+
+LEVEL = 1 / 255
+DARKEST, BRIGHTEST = 3 * LEVEL, 252 * LEVEL  # levels that are neither clamped nor rounded to nothing
+WORST = 20 * LEVEL  # a larger error counts as this one
+PRICE = 0.1 * LEVEL  # of a difference from this program
+PRIOR = 1e-6  # how much a factor that the picture does not tell is drawn to that of this program
+HELD = 1e9  # times the prior, for a factor that is fixed
+SLACK = 0.08  # by which a factor may differ from 1 without a word
+ROUNDS = 4  # of least squares, each without what the one before did not explain
+PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
+
+
+class Fit(NamedTuple):
+    """How a guess explains the colours of pixels."""
+
+    score: float  # mean error plus the price of the guess
+    error: Floats  # (n,) of the worst channel, from 0 to 1
+    predicted: Floats  # (n, 3)
+    ambient: float  # factors; 1 in this program
+    diffuse: Floats  # (lamps,)
+    specular: float
+    background: Floats
+
+
+def plain_shapes(scene: Scene) -> NDArray[np.bool_]:
+    """Whether the light of each shape is that of its colour alone, without mirrors, glass and textures; and True for
+    the background, unless it is a picture."""
+    names = [each.name for each in fields_of(Attributes) if each.name not in PLAIN]
+    shapes = [all(getattr(shape, name, None) is None for name in names) for shape in scene.shapes]
+    has_colour = [getattr(shape, "colour", None) is not None for shape in scene.shapes]
+    sky = not scene.background or not isinstance(scene.background.paint, str)
+    return np.array([is_plain and has for is_plain, has in zip(shapes, has_colour, strict=True)] + [sky])
+
+
+def numbers(colour: Any) -> Floats:
+    """A colour from 0 to 1."""
+    return np.array(colour, float) / 255
+
+
+def cosines(seen: Seen, guess: Guess) -> tuple[Floats, Floats]:
+    """Return the normals that light falls onto, and the cosine for each lamp, (lamps, n), 0 on the other side."""
+    normal = np.nan_to_num(seen.normal)
+    if guess["normals"] != "outward":
+        away = np.einsum("ij,ij->i", normal, seen.direction) > 0
+        normal = np.where(away[:, None], -normal, normal)
+    cosine = np.einsum("lij,ij->li", seen.to_light, normal)
+    return normal, np.abs(cosine) if guess["normals"] == "both sides" else np.maximum(cosine, 0)
+
+
+def arriving(seen: Seen, guess: Guess) -> Floats:
+    """Return the share of each lamp's light that reaches each point, (lamps, n)."""
+    if guess["shadows"] == "none":
+        return seen.strength
+    return seen.strength * (seen.open_beyond if guess["shadows"] == "behind the lamp" else seen.open_to)
+
+
+def highlights(seen: Seen, normal: Floats, form: str, exponent: Any) -> Floats:
+    """Return the highlights of each lamp, (lamps, n), without its colour."""
+    if form == "blinn":
+        base = np.einsum("lij,ij->li", unit(seen.to_light - seen.direction), normal)
+    else:
+        along = np.einsum("lij,ij->li", seen.to_light, normal) * np.einsum("ij,ij->i", normal, -seen.direction)
+        base = 2 * along + np.einsum("lij,ij->li", seen.to_light, seen.direction)
+    result: Floats = np.clip(base, 0, 1) ** exponent
+    return result
+
+
+def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
+    """Return the terms of the light at each point, (n, 3, 1 + lamps + 1): ambient, each lamp's, highlights."""
+    shapes = scene.shapes
+    colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
+    if guess["colours"] == "object ignored":
+        colours = np.ones_like(colours)
+    lamp_colours = [numbers((255, 255, 255) if guess["colours"] == "light ignored" else lamp.colour)
+                    for lamp in scene.lights]  # fmt: skip
+    normal, cosine = cosines(seen, guess)
+    arrived = arriving(seen, guess)
+    light = cosine * arrived
+    if guess["fading"]:
+        light = light / np.maximum(seen.distance / usual_distance(seen), 1e-3) ** guess["fading"]
+    tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
+    grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
+    forms = {"object x light": colours * tint, "light alone": tint + 0 * colours, "object alone": colours * grey}
+    ambient = forms.get(guess["ambient"], 0 * colours)
+    if not guess["ambient_in_shadow"]:
+        ambient = ambient * (light > 0).any(axis=0)[:, None]
+    terms = [ambient]
+    glint = np.zeros_like(colours)
+    materials = [getattr(shape, "specular", None) for shape in shapes]
+    for i, lamp in enumerate(scene.lights):
+        terms.append(colours * lamp_colours[i] * lamp.brightness * light[i][:, None])
+        if guess["specular"]:
+            shine = highlights(seen, normal, *guess["specular"])[i] * arrived[i] * (cosine[i] > 0)
+            glint += shine[:, None] * lamp_colours[i] * lamp.brightness
+    for number, material in enumerate(materials):
+        if material:
+            form = "blinn" if material.blinn else "phong"
+            shine = material.share * highlights(seen, normal, form, material.exponent) * arrived * (cosine > 0)
+            for i, lamp in enumerate(scene.lights):
+                own = (seen.owner == number) * shine[i]
+                glint += own[:, None] * lamp_colours[i] * lamp.brightness
+    return np.stack([*terms, glint], axis=-1)
+
+
+def usual_distance(seen: Seen) -> float:
+    """The median distance of points from lamps."""
+    known = seen.distance[np.isfinite(seen.distance)]
+    return float(np.median(known)) if len(known) else 1.0
+
+
+def fit(
+    scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = ""
+) -> Fit:
+    """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
+
+    `judged` are the pixels that count; the factor of the `fixed` term, ambient or diffuse, is that of this program.
+    """
+    theirs = colours[:, ::-1] if guess["colours"] == "swapped" else colours
+    terms = columns(scene, seen, guess)
+    there = seen.owner >= 0
+    gamma = guess["gamma"]
+    target = theirs**gamma
+    usable = (theirs > DARKEST) & (theirs < BRIGHTEST) & (there & judged)[:, None]
+    slope = gamma * np.maximum(theirs, DARKEST) ** (gamma - 1)
+    usual = np.ones(terms.shape[-1])
+    has_materials = any(getattr(shape, "specular", None) for shape in scene.shapes)
+    usual[-1] = 1.0 if has_materials and not guess["specular"] else 0.0
+    factors, kept = usual, usable
+    for _ in range(ROUNDS):
+        rows, values = terms[kept] / slope[kept][:, None], target[kept] / slope[kept]
+        weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
+        held = {"ambient": slice(1), "diffuse": slice(1, -1)}.get(fixed, slice(0))
+        weight[held, held] *= HELD
+        factors = np.linalg.solve(rows.T @ rows + weight, rows.T @ values + weight @ usual)
+        factors = np.maximum(factors, 0)
+        off = np.abs(terms @ factors - target) / slope
+        typical = np.median(off[usable]) if usable.any() else 0.0
+        kept = usable & (off < max(2 * typical, 3 * LEVEL))
+    light = terms @ factors
+    shown = shown_levels(light, guess)
+    sky = background(scene)
+    if guess["background"] == "own" and (judged & ~there).any():
+        sky = np.median(theirs[judged & ~there], axis=0)
+    shown[~there] = sky
+    error = np.abs(shown - theirs).max(axis=-1)
+    if guess["acne"]:
+        dark = shown_levels(terms[..., :1] @ factors[:1], guess)
+        error = np.minimum(error, np.where(there, np.abs(dark - theirs).max(axis=-1), 1))
+    diffuse = factors[1:-1] * usual_distance(seen) ** guess["fading"]
+    differences = sum(guess[name] != value for name, value in OURS.items())
+    predicted = shown[:, ::-1] if guess["colours"] == "swapped" else shown
+    found = Fit(WORST, error, predicted, float(factors[0]), diffuse, float(factors[-1]), sky)
+    if not judged.any():
+        return found
+    price = PRICE * (differences + odd_factors(found))
+    return found._replace(score=float(np.minimum(error[judged], WORST).mean()) + price)
+
+
+def odd_factors(fit: Fit) -> int:
+    """The number of factors, of ambient light and of lamps, that are not those of this program."""
+    return sum(map(differs, (fit.ambient, middle(fit.diffuse))))
+
+
+def middle(factors: Floats) -> float:
+    """The median of the factors of lamps; 1 without any."""
+    return float(np.median(factors)) if len(factors) else 1.0
+
+
+def differs(factor: float) -> bool:
+    """Whether a factor is not the one of this program."""
+    return abs(factor - 1) > SLACK
+
+
+def shown_levels(light: Floats, guess: Guess) -> Floats:
+    """Return the levels, from 0 to 1, by which light is shown."""
+    if guess["overflow"] == "wrapped":
+        light = light % (256 * LEVEL)
+    result: Floats = np.clip(light, 0, 1) ** (1 / guess["gamma"])
+    return result
+
+
+def background(scene: Scene) -> Floats:
+    """The colour of the background."""
+    paint = scene.background.paint if scene.background else (0, 0, 0)
+    return np.zeros(3) if isinstance(paint, str) else numbers(paint)

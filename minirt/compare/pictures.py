@@ -1,0 +1,98 @@
+"""Pictures that are compared: how they are read, whether they are equal, and the four panels of the answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare import lighting
+from minirt.compare.geometry import see
+from minirt.compare.table import Guess
+from minirt.materials.pictures import picture
+from minirt.rendering.settings import render
+from minirt.scene import Scene
+
+Levels = NDArray[np.uint8]  # (h, w, 3)
+LOSSY = {".jpg", ".jpeg", ".jpe", ".jfif", ".webp"}
+EXACT, CLOSE = 1, 4  # levels
+EXACT_LOSSY, CLOSE_LOSSY = 8, 12
+EDGE = 8  # levels between neighbours
+STRAY = 1e-4  # share of pixels that may be off beside edges
+GAP = 4  # pixels between panels
+BRIGHTER = 4  # times the difference, in its panel
+
+
+def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
+    """Return a picture without its border, what is to be told about that, and whether its format is lossy."""
+    levels = picture(path)
+    left, above, right, below = border(levels)
+    is_lossy = path.suffix.lower() in LOSSY
+    if not (left and above and right and below):
+        return levels, (), is_lossy
+    height, width, _ = levels.shape
+    inside = np.ascontiguousarray(levels[above : height - below, left : width - right])
+    notice = (
+        f"The picture has a border of one colour ({left}, {above}, {right} and {below} pixels at the left, top, right "
+        f"and bottom): the {inside.shape[1]}x{inside.shape[0]} pixels inside are compared."
+    )
+    return inside, (notice,), is_lossy
+
+
+def border(levels: Levels) -> tuple[int, int, int, int]:
+    """Return the width of a frame that has the colour of the corner, at the left, top, right and bottom; 0 where the
+    corner is black, as the background of a scene."""
+    corner = levels[0, 0]
+    other = (levels != corner).any(axis=-1)
+    rows, columns = np.flatnonzero(other.any(axis=1)), np.flatnonzero(other.any(axis=0))
+    if not len(rows) or not corner.any():
+        return 0, 0, 0, 0
+    height, width = other.shape
+    return int(columns[0]), int(rows[0]), int(width - 1 - columns[-1]), int(height - 1 - rows[-1])
+
+
+def distance(one: Levels, other: Levels) -> NDArray[np.int_]:
+    """Return the difference of the worst channel of each pixel, in levels."""
+    result: NDArray[np.int_] = np.abs(one.astype(int) - other).max(axis=-1)
+    return result
+
+
+def are_equal(one: Levels, other: Levels, is_lossy: bool) -> bool:
+    """Whether all pixels are equal within a level."""
+    return bool(distance(one, other).max() <= (EXACT_LOSSY if is_lossy else EXACT))
+
+
+def are_alike(one: Levels, other: Levels, is_lossy: bool) -> bool:
+    """Whether pixels differ by a few levels at most, but at edges."""
+    off = distance(one, other) > (CLOSE_LOSSY if is_lossy else CLOSE)
+    return bool((off & ~edges(other)).mean() < STRAY)
+
+
+def edges(levels: Levels) -> NDArray[np.bool_]:
+    """Whether pixels are near an edge: their neighbourhoods have different colours."""
+    padded = np.pad(levels.astype(int), ((1, 1), (1, 1), (0, 0)), mode="edge")
+    height, width, _ = levels.shape
+    around = [padded[i : i + height, j : j + width] for i in range(3) for j in range(3)]
+    result: NDArray[np.bool_] = np.ptp(np.array(around), axis=0).max(axis=-1) > EDGE
+    return result
+
+
+def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
+    """Return the reference under a guess; black where the light of shapes is not known."""
+    height, width, _ = theirs.shape
+    y, x = np.mgrid[0:height, 0:width].reshape(2, -1).astype(float)
+    seen = see(scene, (width, height), x, y, guess)
+    judged = lighting.plain_shapes(scene)[seen.owner]
+    fit = lighting.fit(scene, seen, theirs.reshape(-1, 3) / 255, guess, judged)
+    shown = np.where(judged[:, None], fit.predicted, 0)
+    return np.rint(255 * shown).astype(np.uint8).reshape(theirs.shape)
+
+
+def panels(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
+    """Put theirs, the reference, the reference under a guess and the difference from theirs beside each other."""
+    height, width, _ = theirs.shape
+    under = explained(scene, theirs, guess)
+    difference = np.minimum(BRIGHTER * np.abs(under.astype(int) - theirs), 255).astype(np.uint8)
+    gap = np.full((height, GAP, 3), 255, np.uint8)
+    return np.hstack([theirs, gap, render(scene, width, height).array, gap, under, gap, difference])

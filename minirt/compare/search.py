@@ -1,0 +1,195 @@
+"""The search for the guess that explains a picture best.
+
+First the camera and the shapes, by how well each region that traced rays give is one colour in one light, whatever
+they are; then the light; then all rows of the table in turn, from the best few beginnings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare import lighting
+from minirt.compare.geometry import Floats, Seen, frame, see, slopes
+from minirt.compare.lighting import Fit
+from minirt.compare.table import GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
+from minirt.scene import Scene
+
+COARSE, FINE = 900, 2600  # pixels of the samples
+UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
+FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too near"
+SCALES = tuple(np.geomspace(0.35, 2.8, 19))
+FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
+ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
+STEADY = 0.1  # a residual of a region that is larger counts as this one
+BEGINNINGS, FINALISTS = 8, 3
+ALIKE = 1.05  # scores up to this times another are as good
+NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
+BETTER = 0.97  # a step is taken where the score falls to this share
+SOURCES = "cylinder", "radius", "cone"
+
+
+class Case:
+    """A scene, a picture of another program, and samples of its pixels."""
+
+    def __init__(self, scene: Scene, picture: Floats) -> None:
+        self.scene, self.picture = scene, picture
+        self.height, self.width = picture.shape[:2]
+        self.judged = lighting.plain_shapes(scene)
+        self.kept: dict[Any, Seen] = {}
+
+    def sample(self, count: int) -> tuple[Floats, Floats, Floats]:
+        """Return x, y and colours of about that many pixels, on a slanted grid."""
+        step = max(1.0, (self.width * self.height / count) ** 0.5)
+        rows = np.arange(step / 2, self.height, step)
+        places = [((np.arange(0, self.width, step) + shift * step) % self.width, row)
+                  for shift, row in zip((0.618034 * np.arange(len(rows))) % 1, rows, strict=True)]  # fmt: skip
+        x = np.concatenate([np.floor(along) for along, _ in places])
+        y = np.concatenate([np.full(len(along), float(int(row))) for along, row in places])
+        return x, y, self.picture[y.astype(int), x.astype(int)]
+
+    def see(self, guess: Guess, count: int, lit: bool = True) -> Seen:
+        """What the pixels of a sample show under a guess; the last ones are kept."""
+        key = count, lit, *(guess[name] for name in GEOMETRIC)
+        if key not in self.kept:
+            if len(self.kept) > 400:
+                self.kept.clear()
+            x, y, _ = self.sample(count)
+            self.kept[key] = see(self.scene, (self.width, self.height), x, y, guess, lit)
+        return self.kept[key]
+
+    def fit(self, guess: Guess, count: int = FINE) -> Fit:
+        """How a guess explains the sample."""
+        seen = self.see(guess, count)
+        return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
+
+    def unevenness(self, guess: Guess) -> float:
+        """How far the regions of a guess are from being one colour in one light each."""
+        seen = self.see(guess, COARSE)
+        _, cosine = lighting.cosines(seen, guess)
+        light = (cosine * lighting.arriving(seen, guess)).sum(axis=0)
+        colours, region = self.sample(COARSE)[2], seen.owner + 1
+        count = np.bincount(region)
+        means = [np.bincount(region, each) / np.maximum(count, 1) for each in (light, *colours.T)]
+        off = light - means[0][region]
+        variance = np.bincount(region, off * off) + 1e-6
+        residual = np.zeros(len(region))
+        for channel, mean in zip(colours.T, means[1:], strict=True):
+            apart = channel - mean[region]
+            slope = np.bincount(region, apart * off) / variance
+            residual += (apart - slope[region] * off) ** 2
+        return float(np.minimum(residual, STEADY**2).mean())
+
+
+GEOMETRIC = tuple(dict.fromkeys(name for row in GEOMETRY for name in row.changes)) + ("scale", "roll")
+
+
+def search(case: Case) -> Guess:
+    """Find the guess that explains the picture best."""
+    guesses = sorted((case.unevenness(each), number, each) for number, each in enumerate(cameras(case)))
+    names = [name for name in SOURCES if used(case.scene, name)]
+    shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
+    variants = [
+        each | dict(zip(names, values, strict=True))
+        for values in product(*shaped)
+        for _, _, each in guesses[:BEGINNINGS]
+    ]
+    ranked = sorted((case.unevenness(each), number, each) for number, each in enumerate(variants))
+    lit = [descend(case, each, LIGHT, 1) for _, _, each in ranked[:BEGINNINGS]]
+    lit.append(descend(case, OURS, LIGHT, 1))
+    best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
+    found = [simplify(case, descend(case, each, TABLE, 3)) for each in best]
+    return min(found, key=lambda each: case.fit(each).score)
+
+
+def used(scene: Scene, name: str) -> bool:
+    """Whether a scene has shapes that a parameter changes."""
+    wanted = {"cylinder": scene.cylinders, "cone": scene.cones, "radius": (*scene.spheres, *scene.cylinders)}
+    return bool(wanted[name])
+
+
+def cameras(case: Case) -> Iterator[Guess]:
+    """Yield guesses about the camera, simple ones first; of those that draw the same only the first."""
+    drawn = set()
+    views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
+    names = "direction", "mirrored", "flipped", "up"
+    values = product(("as given", "reversed"), (False, True), (False, True), UPS)
+    frames = sorted((OURS | dict(zip(names, each, strict=True)) for each in values), key=differences)
+    for each in frames:
+        for fov, scale in views if each["direction"] == "as given" else views[:2]:
+            guess = each | {"fov": fov, "scale": scale}
+            if (key := drawn_by(case, guess)) not in drawn:
+                drawn.add(key)
+                yield guess
+
+
+def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
+    """Numbers that are equal for guesses whose cameras draw the same."""
+    edges = slopes(case.scene.camera, case.width / case.height, guess)
+    return tuple(np.round([*frame(case.scene.camera, guess).ravel(), *edges], 4) + 0.0)
+
+
+def differences(guess: Guess) -> int:
+    """The number of parameters in which a guess differs from this program; free numbers count twice."""
+    free = (guess["scale"] != 1.0) + (guess["roll"] != 0.0)
+    return sum(guess[name] != value for name, value in OURS.items()) + free
+
+
+def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
+    """Return the neighbours of a guess by the parameter in which they differ."""
+    found: dict[str, list[Guess]] = {}
+    for row in rows:
+        (name, value), *_ = row.changes.items()
+        if guess[name] != value:
+            found.setdefault(name, []).append(guess | row.changes)
+    for name in found:
+        if guess[name] != OURS[name]:
+            found[name].append(guess | {name: OURS[name]})
+    if "fov" in found:
+        scales = [guess["scale"] * factor for factor in FINER] + [1.0]
+        found["fov"] += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS if guess["scale"] != 1.0]
+        found["scale"] = [guess | {"scale": scale} for scale in scales]
+        found["roll"] = [guess | {"roll": guess["roll"] + sign * turn} for turn in ROLLS for sign in (1, -1)]
+        found["roll"].append(guess | {"roll": 0.0})
+    return found
+
+
+def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int) -> Guess:
+    """Improve a guess, one parameter after the other, until no step explains the picture clearly better."""
+    best = case.fit(guess).score
+    for _ in range(rounds):
+        before = best
+        for name in steps(guess, rows):
+            for each in steps(guess, rows).get(name, ()):
+                score = case.fit(each).score
+                if score < best * BETTER:
+                    guess, best = each, score
+        if best == before:
+            break
+    return guess
+
+
+def simplify(case: Case, guess: Guess) -> Guess:
+    """Return the simplest guess that explains the picture as well: with a named camera in place of free numbers."""
+    limit = case.fit(guess).score * ALIKE
+    plain = {"roll": 0.0, "scale": 1.0, "fov": "horizontal", "up": "y", "mirrored": False, "flipped": False}
+    named = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS]
+    named += [each | {"roll": 0.0, "up": up} for each in (guess, *named) for up in UPS]
+    flips = product((False, True), (False, True), UPS)
+    named += [guess | {"mirrored": left, "flipped": down, "up": up} for left, down, up in flips]
+    named += [guess | {name: value} for name, value in plain.items()]
+    simpler = sorted((each for each in named if differences(each) < differences(guess)), key=differences)
+    key = drawn_by(case, guess)
+    for each in simpler:
+        if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR and case.fit(each).score < limit:
+            return each
+    if lighting.differs(lighting.middle(case.fit(guess).diffuse)):
+        for fading in (1, 2):
+            faded = case.fit(guess | {"fading": fading})
+            if faded.score < limit and not lighting.differs(lighting.middle(faded.diffuse)):
+                return guess | {"fading": fading}
+    return guess
