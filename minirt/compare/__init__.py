@@ -83,7 +83,7 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     tolerance = answer.tolerance_of(is_lossy)
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
-    judge = answer.with_corners(answer.needed(case, OURS if is_alike else search(case), tolerance))
+    judge = answer.at_edges(answer.needed(case, OURS if is_alike else search(case), tolerance))
     found, explained = tuple(answer.causes(judge)), 1 - judge.left(judge.fit)
     if is_alike and not found:
         notices += ("They differ at edges alone.",)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Floats, Seen, changed_scene, on_cap, see, slopes
+from minirt.compare.geometry import Floats, Seen, changed_scene, on_cap, owners, see, slopes
 from minirt.compare.lighting import LEVEL, Fit
 from minirt.compare.search import Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
@@ -17,7 +17,10 @@ from minirt.compare.table import FREE, OURS, TABLE, Guess
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.003  # of inner pixels that a cause explains
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
-EDGE_GAIN = 0.7  # of the unexplained pixels at edges are left by a cause that only moves edges
+MOST_PIXELS, MOST_EDGES = 2_000_000, 5000  # of a picture, in which pixels at edges are looked for
+LEAST_EDGES = 50
+EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
+TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
 LEAST_REST = 0.001  # share of pixels of a part that is worth a line
 MOST_REST = 6  # parts
 TOGETHER = {"scale": ("scale", "fov")}  # parameters that are one cause
@@ -77,11 +80,6 @@ class Judge:
         """The share of inner pixels that a fit does not explain."""
         return float((fit.error[self.inner] > self.tolerance).mean()) if self.inner.any() else 1.0
 
-    def left_at_edges(self, fit: Fit) -> float:
-        """The share of other pixels that a fit does not explain."""
-        edges = self.judged & ~self.inner
-        return float((fit.error[edges] > self.tolerance).mean()) if edges.any() else 0.0
-
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
         explained, before = self.fit.error[self.inner] <= self.tolerance, without.error[self.inner] <= self.tolerance
@@ -104,14 +102,34 @@ def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
 
 def is_simpler(one: Fit, other: Fit) -> bool:
     """Whether a fit, which has a difference less than another, has no factor more that is not this program's."""
-    return lighting.odd_factors(one) <= lighting.odd_factors(other)
+    return one.odd <= other.odd
 
 
-def with_corners(judge: Judge) -> Judge:
-    """Return the judge of the guess that rays go through the corners of pixels, if edges say so."""
-    moved = judge.guess | {"pixel": "corner"}
-    before, after = judge.left_at_edges(judge.fit), judge.left_at_edges(judge.fitted(moved))
-    return Judge(judge.case, moved, judge.tolerance) if after < EDGE_GAIN * before else judge
+def at_edges(judge: Judge) -> Judge:
+    """Return the judge of the guess that explains the edges of shapes best, which tell small changes of the camera."""
+    case, guess = judge.case, judge.guess
+    rows = min(case.height, MOST_PIXELS // case.width)
+    first = (case.height - rows) // 2
+    y, x = np.mgrid[first : first + rows, 0 : case.width].astype(float)
+    size = case.width, case.height
+    owner = owners(case.scene, size, x.ravel(), y.ravel(), guess).reshape(x.shape)
+    beside = (owner[1:, 1:] != owner[1:, :-1]) | (owner[1:, 1:] != owner[:-1, 1:])
+    places = np.flatnonzero(beside)
+    places = places[:: len(places) // MOST_EDGES + 1]
+    if len(places) < LEAST_EDGES:
+        return judge
+    at = x[1:, 1:].ravel()[places], y[1:, 1:].ravel()[places]
+    colours = case.picture[at[1].astype(int), at[0].astype(int)]
+
+    def left(each: Guess) -> float:
+        seen = see(case.scene, size, *at, each)
+        fit = lighting.fit(case.scene, seen, colours, each, case.judged[seen.owner])
+        return float((fit.error > judge.tolerance).mean())
+
+    tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
+    others = [guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts]
+    best = min(others, key=left)
+    return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
 
 
 def causes(judge: Judge) -> list[Cause]:
@@ -145,11 +163,10 @@ def factors(judge: Judge) -> list[Cause]:
     if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
         diffuse = diffuse[:1]
     told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
-    if guess["fading"]:
-        del told["diffuse"]  # whose unit is a free choice of the other program
     found = []
     for name, values in told.items():
-        if any(map(lighting.differs, values)) and judge.gain(judge.fitted(guess, name)) > LEAST_GAIN:
+        slack = lighting.slack(guess) if name == "diffuse" else lighting.SLACK
+        if any(lighting.differs(each, slack) for each in values) and judge.gain(judge.fitted(guess, name)) > LEAST_GAIN:
             value = values[0] if len(values) == 1 else values
             spelled = ", ".join(map(str, values))
             found.append(Cause(name, value, FREE[name].format(value=spelled)))

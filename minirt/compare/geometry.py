@@ -147,6 +147,14 @@ def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np
     return result
 
 
+def owners(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> NDArray[np.int64]:
+    """Return the index of the shape that each pixel shows, -1 for the background."""
+    scene = changed_scene(scene, guess)
+    ways = directions(scene, size, x, y, guess)
+    owner: NDArray[np.int64] = hits(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)[1]
+    return owner
+
+
 def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any, ...]:
     """Return distance, owner, point and normal of what rays meet, past the surfaces that the guess does not draw."""
     found = trace(scene, origins, ways, threads=1)
@@ -168,13 +176,13 @@ def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any
     return distance, owner, point, normal
 
 
-def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess, lit: bool = True) -> Seen:
+def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Seen:
     """Trace pixels of a picture, and from what they show to all lamps."""
     scene = changed_scene(scene, guess)
     ways = directions(scene, size, x, y, guess)
     eye = np.broadcast_to(np.array(scene.camera.position), ways.shape)
     _, owner, point, normal = hits(scene, eye, ways, guess)
-    lamps, count = scene.lights if lit else (), len(owner)
+    lamps, count = scene.lights, len(owner)
     to_light, distance = np.zeros((len(lamps), count, 3)), np.full((len(lamps), count), np.inf)
     strength, open_to, open_beyond = np.ones((len(lamps), count)), *np.zeros((2, len(lamps), count), bool)
     there = owner >= 0

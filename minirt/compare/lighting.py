@@ -19,7 +19,7 @@ WORST = 20 * LEVEL  # a larger error counts as this one
 PRICE = 0.1 * LEVEL  # of a difference from this program
 PRIOR = 1e-6  # how much a factor that the picture does not tell is drawn to that of this program
 HELD = 1e9  # times the prior, for a factor that is fixed
-SLACK = 0.08  # by which a factor may differ from 1 without a word
+SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a word; that of lamps that fade
 ROUNDS = 4  # of least squares, each without what the one before did not explain
 PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
 
@@ -34,6 +34,7 @@ class Fit(NamedTuple):
     diffuse: Floats  # (lamps,)
     specular: float
     background: Floats
+    odd: int  # factors, of ambient light and of lamps, that are not those of this program
 
 
 def plain_shapes(scene: Scene) -> NDArray[np.bool_]:
@@ -80,7 +81,8 @@ def highlights(seen: Seen, normal: Floats, form: str, exponent: Any) -> Floats:
 
 
 def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
-    """Return the terms of the light at each point, (n, 3, 1 + lamps + 1): ambient, each lamp's, highlights."""
+    """Return the terms of the light at each point, (n, 3, 2 + lamps + 1): ambient, a share of the object's own colour,
+    each lamp's, highlights."""
     shapes = scene.shapes
     colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
     if guess["colours"] == "object ignored":
@@ -98,7 +100,9 @@ def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
     ambient = forms.get(guess["ambient"], 0 * colours)
     if not guess["ambient_in_shadow"]:
         ambient = ambient * (light > 0).any(axis=0)[:, None]
-    terms = [ambient]
+    terms = [ambient, 0 * colours]
+    if guess["ambient"] == "light plus object":
+        terms = [tint + 0 * colours, colours]
     glint = np.zeros_like(colours)
     materials = [getattr(shape, "specular", None) for shape in shapes]
     for i, lamp in enumerate(scene.lights):
@@ -137,13 +141,14 @@ def fit(
     usable = (theirs > DARKEST) & (theirs < BRIGHTEST) & (there & judged)[:, None]
     slope = gamma * np.maximum(theirs, DARKEST) ** (gamma - 1)
     usual = np.ones(terms.shape[-1])
+    usual[1] = 0.0
     has_materials = any(getattr(shape, "specular", None) for shape in scene.shapes)
     usual[-1] = 1.0 if has_materials and not guess["specular"] else 0.0
     factors, kept = usual, usable
     for _ in range(ROUNDS):
         rows, values = terms[kept] / slope[kept][:, None], target[kept] / slope[kept]
         weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
-        held = {"ambient": slice(1), "diffuse": slice(1, -1)}.get(fixed, slice(0))
+        held = {"ambient": slice(1), "diffuse": slice(2, -1)}.get(fixed, slice(0))
         weight[held, held] *= HELD
         factors = np.linalg.solve(rows.T @ rows + weight, rows.T @ values + weight @ usual)
         factors = np.maximum(factors, 0)
@@ -158,21 +163,20 @@ def fit(
     shown[~there] = sky
     error = np.abs(shown - theirs).max(axis=-1)
     if guess["acne"]:
-        dark = shown_levels(terms[..., :1] @ factors[:1], guess)
+        dark = shown_levels(terms[..., :2] @ factors[:2], guess)
         error = np.minimum(error, np.where(there, np.abs(dark - theirs).max(axis=-1), 1))
-    diffuse = factors[1:-1] * usual_distance(seen) ** guess["fading"]
+    diffuse = factors[2:-1] * usual_distance(seen) ** guess["fading"]
     differences = sum(guess[name] != value for name, value in OURS.items())
     predicted = shown[:, ::-1] if guess["colours"] == "swapped" else shown
-    found = Fit(WORST, error, predicted, float(factors[0]), diffuse, float(factors[-1]), sky)
-    if not judged.any():
-        return found
-    price = PRICE * (differences + odd_factors(found))
-    return found._replace(score=float(np.minimum(error[judged], WORST).mean()) + price)
+    odd = differs(float(factors[0])) + differs(middle(diffuse), slack(guess))
+    score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
+    score += PRICE * (differences + odd)
+    return Fit(score, error, predicted, float(factors[0]), diffuse, float(factors[-1]), sky, odd)
 
 
-def odd_factors(fit: Fit) -> int:
-    """The number of factors, of ambient light and of lamps, that are not those of this program."""
-    return sum(map(differs, (fit.ambient, middle(fit.diffuse))))
+def slack(guess: Guess) -> float:
+    """By how much the factor of the lamps may differ from 1: more where light fades, in a unit of their own."""
+    return FADING_SLACK if guess["fading"] else SLACK
 
 
 def middle(factors: Floats) -> float:
@@ -180,9 +184,9 @@ def middle(factors: Floats) -> float:
     return float(np.median(factors)) if len(factors) else 1.0
 
 
-def differs(factor: float) -> bool:
+def differs(factor: float, slack: float = SLACK) -> bool:
     """Whether a factor is not the one of this program."""
-    return abs(factor - 1) > SLACK
+    return abs(factor - 1) > slack
 
 
 def shown_levels(light: Floats, guess: Guess) -> Floats:

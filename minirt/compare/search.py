@@ -19,7 +19,7 @@ from minirt.compare.lighting import Fit
 from minirt.compare.table import GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
 
-COARSE, FINE = 900, 2600  # pixels of the samples
+COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
 UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
 FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too near"
 SCALES = tuple(np.geomspace(0.35, 2.8, 19))
@@ -52,14 +52,14 @@ class Case:
         y = np.concatenate([np.full(len(along), float(int(row))) for along, row in places])
         return x, y, self.picture[y.astype(int), x.astype(int)]
 
-    def see(self, guess: Guess, count: int, lit: bool = True) -> Seen:
+    def see(self, guess: Guess, count: int) -> Seen:
         """What the pixels of a sample show under a guess; the last ones are kept."""
-        key = count, lit, *(guess[name] for name in GEOMETRIC)
+        key = count, *(guess[name] for name in GEOMETRIC)
         if key not in self.kept:
             if len(self.kept) > 400:
                 self.kept.clear()
             x, y, _ = self.sample(count)
-            self.kept[key] = see(self.scene, (self.width, self.height), x, y, guess, lit)
+            self.kept[key] = see(self.scene, (self.width, self.height), x, y, guess)
         return self.kept[key]
 
     def fit(self, guess: Guess, count: int = FINE) -> Fit:
@@ -103,7 +103,7 @@ def search(case: Case) -> Guess:
     lit.append(descend(case, OURS, LIGHT, 1))
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
     found = [simplify(case, descend(case, each, TABLE, 3)) for each in best]
-    return min(found, key=lambda each: case.fit(each).score)
+    return descend(case, min(found, key=lambda each: case.fit(each).score), LIGHT, 1, LARGE)
 
 
 def used(scene: Scene, name: str) -> bool:
@@ -158,14 +158,14 @@ def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
     return found
 
 
-def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int) -> Guess:
+def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
     """Improve a guess, one parameter after the other, until no step explains the picture clearly better."""
-    best = case.fit(guess).score
+    best = case.fit(guess, count).score
     for _ in range(rounds):
         before = best
         for name in steps(guess, rows):
             for each in steps(guess, rows).get(name, ()):
-                score = case.fit(each).score
+                score = case.fit(each, count).score
                 if score < best * BETTER:
                     guess, best = each, score
         if best == before:
@@ -187,9 +187,8 @@ def simplify(case: Case, guess: Guess) -> Guess:
     for each in simpler:
         if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR and case.fit(each).score < limit:
             return each
-    if lighting.differs(lighting.middle(case.fit(guess).diffuse)):
-        for fading in (1, 2):
-            faded = case.fit(guess | {"fading": fading})
-            if faded.score < limit and not lighting.differs(lighting.middle(faded.diffuse)):
-                return guess | {"fading": fading}
+    for fading in (1, 2):
+        faded = case.fit(guess | {"fading": fading})
+        if faded.odd < case.fit(guess).odd and faded.score < limit:
+            return guess | {"fading": fading}
     return guess

@@ -106,6 +106,8 @@ EXPONENTS = 2, 4, 8, 16, 20, 32, 50, 64, 100, 128, 200, 256, 512, 1000
 LIGHT = (
     Hypothesis("ambient", "light alone", {"ambient": "light alone"},
                "the ambient light is added as it is: multiply it by the colour of the object"),
+    Hypothesis("ambient", "light plus object", {"ambient": "light plus object"},
+               "the ambient light and a share of the object's colour are added: multiply one by the other instead"),
     Hypothesis("ambient", "object alone", {"ambient": "object alone"},
                "the colour of the ambient light is ignored: multiply it by the colour of the object"),
     Hypothesis("ambient", "none", {"ambient": "none"}, "there is no ambient light"),
