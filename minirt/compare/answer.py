@@ -15,7 +15,7 @@ from minirt.compare.search import Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
-LEAST_GAIN = 0.003  # of inner pixels that a cause explains
+LEAST_GAIN = 0.001  # of inner pixels that a cause explains
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
 MOST_PIXELS, MOST_EDGES = 2_000_000, 5000  # of a picture, in which pixels at edges are looked for
 LEAST_EDGES = 50

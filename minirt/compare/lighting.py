@@ -16,10 +16,11 @@ from minirt.scene import Scene
 LEVEL = 1 / 255
 DARKEST, BRIGHTEST = 3 * LEVEL, 252 * LEVEL  # levels that are neither clamped nor rounded to nothing
 WORST = 20 * LEVEL  # a larger error counts as this one
-PRICE = 0.1 * LEVEL  # of a difference from this program
+PRICE = 0.02 * LEVEL  # of a difference from this program
 PRIOR = 1e-6  # how much a factor that the picture does not tell is drawn to that of this program
 HELD = 1e9  # times the prior, for a factor that is fixed
 SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a word; that of lamps that fade
+MOST_ROWS = 4000  # of least squares
 ROUNDS = 4  # of least squares, each without what the one before did not explain
 PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
 
@@ -108,8 +109,9 @@ def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
     for i, lamp in enumerate(scene.lights):
         terms.append(colours * lamp_colours[i] * lamp.brightness * light[i][:, None])
         if guess["specular"]:
-            shine = highlights(seen, normal, *guess["specular"])[i] * arrived[i] * (cosine[i] > 0)
-            glint += shine[:, None] * lamp_colours[i] * lamp.brightness
+            form, exponent, of_object = guess["specular"]
+            shine = highlights(seen, normal, form, exponent)[i] * arrived[i] * (cosine[i] > 0)
+            glint += shine[:, None] * (colours if of_object else 1) * lamp_colours[i] * lamp.brightness
     for number, material in enumerate(materials):
         if material:
             form = "blinn" if material.blinn else "phong"
@@ -144,17 +146,19 @@ def fit(
     usual[1] = 0.0
     has_materials = any(getattr(shape, "specular", None) for shape in scene.shapes)
     usual[-1] = 1.0 if has_materials and not guess["specular"] else 0.0
-    factors, kept = usual, usable
+    rows, values = terms[usable] / slope[usable][:, None], target[usable] / slope[usable]
+    step = len(values) // MOST_ROWS + 1
+    rows, values = rows[::step], values[::step]
+    weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
+    held = {"ambient": slice(1), "diffuse": slice(2, -1)}.get(fixed, slice(0))
+    weight[held, held] *= HELD
+    factors, kept = usual, np.ones(len(values), bool)
     for _ in range(ROUNDS):
-        rows, values = terms[kept] / slope[kept][:, None], target[kept] / slope[kept]
-        weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
-        held = {"ambient": slice(1), "diffuse": slice(2, -1)}.get(fixed, slice(0))
-        weight[held, held] *= HELD
-        factors = np.linalg.solve(rows.T @ rows + weight, rows.T @ values + weight @ usual)
+        chosen, aims = rows[kept], values[kept]
+        factors = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
         factors = np.maximum(factors, 0)
-        off = np.abs(terms @ factors - target) / slope
-        typical = np.median(off[usable]) if usable.any() else 0.0
-        kept = usable & (off < max(2 * typical, 3 * LEVEL))
+        off = np.abs(rows @ factors - values)
+        kept = off < max(2 * np.median(off), 3 * LEVEL) if len(off) else kept
     light = terms @ factors
     shown = shown_levels(light, guess)
     sky = background(scene)

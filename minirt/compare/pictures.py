@@ -20,24 +20,41 @@ EXACT, CLOSE = 1, 4  # levels
 EXACT_LOSSY, CLOSE_LOSSY = 8, 12
 EDGE = 8  # levels between neighbours
 STRAY = 1e-4  # share of pixels that may be off beside edges
+LARGEST_BLOCK = 16  # pixels
 GAP = 4  # pixels between panels
 BRIGHTER = 4  # times the difference, in its panel
 
 
 def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
-    """Return a picture without its border, what is to be told about that, and whether its format is lossy."""
-    levels = picture(path)
+    """Return a picture without its border and with single pixels in place of blocks, what is to be told about that,
+    and whether its format is lossy."""
+    levels, notices = picture(path), []
     left, above, right, below = border(levels)
-    is_lossy = path.suffix.lower() in LOSSY
-    if not (left and above and right and below):
-        return levels, (), is_lossy
+    if left and above and right and below:
+        height, width, _ = levels.shape
+        levels = levels[above : height - below, left : width - right]
+        sides = f"{left}, {above}, {right} and {below} pixels at the left, top, right and bottom"
+        notices.append(f"A border of one colour ({sides}) is cut off: {size_text(levels)} pixels are compared.")
+    side = block(levels)
+    if side > 1:
+        levels = levels[::side, ::side]
+        notices.append(f"Blocks of {side}x{side} pixels have one colour: {size_text(levels)} of them are compared.")
+    return np.ascontiguousarray(levels), tuple(notices), path.suffix.lower() in LOSSY
+
+
+def size_text(levels: Levels) -> str:
+    """Return the size of a picture: `640x480`."""
     height, width, _ = levels.shape
-    inside = np.ascontiguousarray(levels[above : height - below, left : width - right])
-    notice = (
-        f"The picture has a border of one colour ({left}, {above}, {right} and {below} pixels at the left, top, right "
-        f"and bottom): the {inside.shape[1]}x{inside.shape[0]} pixels inside are compared."
-    )
-    return inside, (notice,), is_lossy
+    return f"{width}x{height}"
+
+
+def block(levels: Levels) -> int:
+    """Return the side of the blocks of one colour of which a picture consists; 1 if it has none."""
+    height, width, _ = levels.shape
+    across, down = ((levels[:, 1:] != levels[:, :-1]).any(axis=(0, 2)), (levels[1:] != levels[:-1]).any(axis=(1, 2)))
+    columns, rows = np.flatnonzero(across) + 1, np.flatnonzero(down) + 1
+    side = int(np.gcd.reduce([*columns, *rows, width, height]))
+    return side if side <= LARGEST_BLOCK and len(columns) and len(rows) else 1
 
 
 def border(levels: Levels) -> tuple[int, int, int, int]:

@@ -28,8 +28,9 @@ ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
 STEADY = 0.1  # a residual of a region that is larger counts as this one
 BEGINNINGS, FINALISTS = 8, 3
 ALIKE = 1.05  # scores up to this times another are as good
+NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
-BETTER = 0.97  # a step is taken where the score falls to this share
+BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SOURCES = "cylinder", "radius", "cone"
 
 
@@ -41,16 +42,20 @@ class Case:
         self.height, self.width = picture.shape[:2]
         self.judged = lighting.plain_shapes(scene)
         self.kept: dict[Any, Seen] = {}
+        self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
 
     def sample(self, count: int) -> tuple[Floats, Floats, Floats]:
         """Return x, y and colours of about that many pixels, on a slanted grid."""
+        if count in self.samples:
+            return self.samples[count]
         step = max(1.0, (self.width * self.height / count) ** 0.5)
         rows = np.arange(step / 2, self.height, step)
         places = [((np.arange(0, self.width, step) + shift * step) % self.width, row)
                   for shift, row in zip((0.618034 * np.arange(len(rows))) % 1, rows, strict=True)]  # fmt: skip
         x = np.concatenate([np.floor(along) for along, _ in places])
         y = np.concatenate([np.full(len(along), float(int(row))) for along, row in places])
-        return x, y, self.picture[y.astype(int), x.astype(int)]
+        self.samples[count] = x, y, self.picture[y.astype(int), x.astype(int)]
+        return self.samples[count]
 
     def see(self, guess: Guess, count: int) -> Seen:
         """What the pixels of a sample show under a guess; the last ones are kept."""
@@ -166,7 +171,7 @@ def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, c
         for name in steps(guess, rows):
             for each in steps(guess, rows).get(name, ()):
                 score = case.fit(each, count).score
-                if score < best * BETTER:
+                if score < best * (BETTER if count == FINE else BETTER_YET):
                     guess, best = each, score
         if best == before:
             break
@@ -175,7 +180,7 @@ def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, c
 
 def simplify(case: Case, guess: Guess) -> Guess:
     """Return the simplest guess that explains the picture as well: with a named camera in place of free numbers."""
-    limit = case.fit(guess).score * ALIKE
+    limit = case.fit(guess).score * ALIKE + NEAR_SCORE
     plain = {"roll": 0.0, "scale": 1.0, "fov": "horizontal", "up": "y", "mirrored": False, "flipped": False}
     named = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS]
     named += [each | {"roll": 0.0, "up": up} for each in (guess, *named) for up in UPS]

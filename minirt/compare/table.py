@@ -32,7 +32,7 @@ OURS: Guess = {
     "normals": "facing",
     "fading": 0,
     "colours": "as given",
-    "specular": None,  # or the form and the exponent
+    "specular": None,  # or the form, the exponent, and whose colour
     "gamma": 1.0,
     "overflow": "clamped",
     "background": "as given",
@@ -102,7 +102,7 @@ GEOMETRY = (
                "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
 )  # fmt: skip
 
-EXPONENTS = 2, 4, 8, 16, 20, 32, 50, 64, 100, 128, 200, 256, 512, 1000
+EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 512
 LIGHT = (
     Hypothesis("ambient", "light alone", {"ambient": "light alone"},
                "the ambient light is added as it is: multiply it by the colour of the object"),
@@ -134,9 +134,9 @@ LIGHT = (
     Hypothesis("gamma", 0.5, {"gamma": 0.5}, "levels are the square of light: the reference writes light itself"),
     Hypothesis("overflow", "wrapped", {"overflow": "wrapped"},
                "bright levels wrap around at 256: clamp them to 255 before they become bytes"),
-    *(Hypothesis("specular", f"{form} {exponent}", {"specular": (form, exponent)},
-                 f"there are specular highlights ({form}, exponent about {exponent}), which the scene does not ask for")
-      for form in ("phong", "blinn") for exponent in EXPONENTS),
+    *(Hypothesis("specular", f"{form} {exponent}{of}", {"specular": (form, exponent, of)},
+                 f"there are specular highlights{of} ({form}, exponent about {exponent}), for which the scene does not ask")
+      for form in ("phong", "blinn") for of in ("", " in the object's colour") for exponent in EXPONENTS),
     Hypothesis("background", "own", {"background": "own"}, "the background is {colour}: here it is {ours}"),
     Hypothesis("acne", True, {"acne": True},
                "lit surfaces have dark specks: start shadow rays a little (0.0001) above the surface"),
