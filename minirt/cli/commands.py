@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say
+from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say, tell
 from minirt.errors import MlxError, SceneError, counted
 from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
@@ -24,7 +24,7 @@ Command = Callable[["Scene", argparse.Namespace], int]
 
 def command_for(options: argparse.Namespace) -> Command:
     """Return the command that the options select; showing a window is the default."""
-    commands = {"check": check, "bench": bench, "report": report, "replay": replay, "output": render}
+    commands = {"check": check, "bench": bench, "report": report, "compare": compare, "replay": replay, "output": render}
     return next((command for name, command in commands.items() if getattr(options, name)), show)
 
 
@@ -83,6 +83,25 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     size = options.size or size_of(scene)
     how = options.threads, options.quick, options.ablation
     say(write_report(scene, options.scene[0], options.report, size, *how))
+    return OK
+
+
+def compare(scene: Scene, options: argparse.Namespace) -> int:
+    """Compare another program's picture with the scene's, print what differs, and write it as a picture if asked."""
+    import json
+
+    from minirt.cli.files import check_output, format_name, write
+    from minirt.compare import compare as compare_with
+    from minirt.rendering.image import Image
+
+    with progress(lambda: State(f"comparing {options.compare}")):
+        found = compare_with(scene, options.compare)
+    tell_answer = tell if options.output == "-" else say  # standard output is the picture's
+    tell_answer(json.dumps(found.json()) if options.json else str(found))
+    if options.output:
+        panels = found.panels()
+        check_output(options.output, panels.shape[1], panels.shape[0])
+        write(Image(panels).encode(format_name(options.output)), options.output)
     return OK
 
 

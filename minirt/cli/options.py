@@ -25,26 +25,28 @@ CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "
 IN_WINDOWS_TOO = ("size", "depth", "precision", "camera", "left_handed")
 # Options that choose a command, the first of which counts, and the commands with which each option has an effect, where
 # that is not all of them. Without such an option there is a window.
-COMMANDS = {"check": "--check", "bench": "--bench", "report": "--report", "replay": "--replay", "output": "-o"}
+COMMANDS = {"check": "--check", "bench": "--bench", "report": "--report", "compare": "--compare", "replay": "--replay"}
+COMMANDS["output"] = "-o"
 EFFECTS = {
     name: set(commands.split())
     for names, commands in (
         ("region turntable frames resume error time strict cluster verbose", "output"),
-        ("output bits quality metadata", "replay output"),
+        ("output", "compare replay output"),
+        ("bits quality metadata", "replay output"),
         ("samples depth dither", "replay output window"),
         ("precision", "bench replay output window"),
         ("size threads tone exposure", "bench report replay output window"),
         ("keys", "replay window"),
         ("fallback text_scale watch", "window"),
         ("quick ablation", "report"),
-        ("json", "check bench"),
-        *((command, command) for command in ("check", "bench", "report", "replay")),
+        ("json", "check bench compare"),
+        *((command, command) for command in ("check", "bench", "report", "compare", "replay")),
     )
     for name in names.split()
 }
 LARGEST = 2**16  # bytes of a configuration file
 ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
-FILES = {"output", "fallback", "replay", "report", "config"}  # options whose value is a path
+FILES = {"output", "fallback", "replay", "report", "compare", "config"}  # options whose value is a path
 FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,7 +58,8 @@ class Comparison(NamedTuple):
         if self.equal:
             return "The pictures are equal."
         if self.explained < KNOWN:
-            return f"The pictures differ, and why is not known: {self.explained:.0%} of the inner pixels are explained."
+            known = ", but shapes are where they should be, if" if self.causes else ""
+            return f"The light is not known: {self.explained:.0%} of the inner pixels are explained{known}:"
         what = "this explains" if len(self.causes) == 1 else "these explain together"
         if not self.causes:
             return f"The pictures differ in parts: {self.explained:.1%} of the inner pixels are equal."
@@ -84,10 +87,22 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
     judge = answer.at_edges(answer.needed(case, OURS if is_alike else search(case), tolerance))
-    found, explained = tuple(answer.causes(judge)), 1 - judge.left(judge.fit)
+    explained = 1 - judge.left(judge.fit)
+    is_known = explained >= KNOWN
+    guess = judge.guess if is_known else answer.shapes_alone(judge)
+    found = answer.causes(judge, guess) + (answer.factors(judge) if is_known else [])
     if is_alike and not found:
         notices += ("They differ at edges alone.",)
         return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
-    if explained < KNOWN:
-        found = ()
-    return Comparison(False, explained, found, tuple(answer.rest(judge)), notices, scene, theirs, judge.guess)
+    return Comparison(False, explained, tuple(found), tuple(answer.rest(judge)), notices, scene, theirs, guess)
+
+
+class CallableModule(ModuleType):
+    """This package as the function of the same name: `minirt.compare(scene, picture)`, whatever was imported before."""
+
+    def __call__(self, scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
+        """Compare, as the function `compare` does."""
+        return compare(scene, picture)
+
+
+sys.modules[__name__].__class__ = CallableModule

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from minirt.compare import lighting
 from minirt.compare.geometry import Floats, Seen, changed_scene, on_cap, owners, see, slopes
 from minirt.compare.lighting import LEVEL, Fit
-from minirt.compare.search import Case
+from minirt.compare.search import GEOMETRIC, Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.001  # of inner pixels that a cause explains
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
 MOST_PIXELS, MOST_EDGES = 2_000_000, 5000  # of a picture, in which pixels at edges are looked for
+IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
 LEAST_EDGES = 50
 EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
@@ -76,15 +77,25 @@ class Judge:
         seen = self.seen if guess == self.guess else self.look(guess)
         return lighting.fit(self.case.scene, seen, self.colours, guess, self.inner, fixed)
 
+    def even(self, guess: Guess) -> NDArray[np.bool_]:
+        """Whether inner pixels fit to the others of their shapes, whatever their light."""
+        seen = self.look(guess)
+        residual: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess) < (lighting.STEADY / 2) ** 2
+        return residual[self.inner]
+
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""
         return float((fit.error[self.inner] > self.tolerance).mean()) if self.inner.any() else 1.0
 
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
-        explained, before = self.fit.error[self.inner] <= self.tolerance, without.error[self.inner] <= self.tolerance
-        won, lost = float((explained & ~before).mean()), float((before & ~explained).mean())
-        return won - lost if won > CLEARLY * lost else 0.0
+        return gain(*(fit.error[self.inner] <= self.tolerance for fit in (self.fit, without)))
+
+
+def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:
+    """The share of pixels that are explained only now; 0 if nearly as many were so only before."""
+    won, lost = float((explained & ~before).mean()), float((before & ~explained).mean())
+    return won - lost if won > CLEARLY * lost else 0.0
 
 
 def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
@@ -103,6 +114,20 @@ def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
 def is_simpler(one: Fit, other: Fit) -> bool:
     """Whether a fit, which has a difference less than another, has no factor more that is not this program's."""
     return one.odd <= other.odd
+
+
+def shapes_alone(judge: Judge) -> Guess:
+    """Return what a guess says of camera and shapes, if that puts the shapes into their places; else nothing."""
+    even = judge.even(judge.guess)
+    told = dict(OURS)
+    if even.mean() < IN_PLACE:
+        return told
+    for name in GEOMETRIC:
+        if judge.guess[name] != OURS[name]:
+            plainer = judge.guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))}
+            if gain(even, judge.even(plainer)) > LEAST_IN_PLACE:
+                told[name] = judge.guess[name]
+    return told
 
 
 def at_edges(judge: Judge) -> Judge:
@@ -132,9 +157,9 @@ def at_edges(judge: Judge) -> Judge:
     return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
 
 
-def causes(judge: Judge) -> list[Cause]:
+def causes(judge: Judge, guess: Guess) -> list[Cause]:
     """Return what a guess says, as sentences."""
-    guess, fit, scene = judge.guess, judge.fit, judge.case.scene
+    fit, scene = judge.fit, judge.case.scene
     found = []
     for row in TABLE:
         (name, value), *_ = row.changes.items()
@@ -153,7 +178,7 @@ def causes(judge: Judge) -> list[Cause]:
         found.append(Cause("fov", across, FREE["scale"].format(value=across, ours=scene.camera.fov)))
     if guess["roll"]:
         found.append(Cause("roll", guess["roll"], FREE["roll"].format(value=guess["roll"])))
-    return found + factors(judge)
+    return found
 
 
 def factors(judge: Judge) -> list[Cause]:

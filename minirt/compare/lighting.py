@@ -20,6 +20,7 @@ PRICE = 0.02 * LEVEL  # of a difference from this program
 PRIOR = 1e-6  # how much a factor that the picture does not tell is drawn to that of this program
 HELD = 1e9  # times the prior, for a factor that is fixed
 SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a word; that of lamps that fade
+STEADY = 0.1  # a difference within a shape that is larger counts as this one
 MOST_ROWS = 4000  # of least squares
 ROUNDS = 4  # of least squares, each without what the one before did not explain
 PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
@@ -120,6 +121,22 @@ def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
                 own = (seen.owner == number) * shine[i]
                 glint += own[:, None] * lamp_colours[i] * lamp.brightness
     return np.stack([*terms, glint], axis=-1)
+
+
+def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
+    """Return by how much each pixel differs from its shape's, if that has one colour in one light; squares, (n,)."""
+    _, cosine = cosines(seen, guess)
+    light = (cosine * arriving(seen, guess)).sum(axis=0)
+    region = seen.owner + 1
+    count = np.maximum(np.bincount(region), 1)
+    off = light - (np.bincount(region, light) / count)[region]
+    variance = np.bincount(region, off * off) + 1e-6
+    residual = np.zeros(len(region))
+    for channel in colours.T:
+        apart = channel - (np.bincount(region, channel) / count)[region]
+        slope = np.bincount(region, apart * off) / variance
+        residual += (apart - slope[region] * off) ** 2
+    return residual
 
 
 def usual_distance(seen: Seen) -> float:

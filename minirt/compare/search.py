@@ -25,7 +25,6 @@ FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too 
 SCALES = tuple(np.geomspace(0.35, 2.8, 19))
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
-STEADY = 0.1  # a residual of a region that is larger counts as this one
 BEGINNINGS, FINALISTS = 8, 3
 ALIKE = 1.05  # scores up to this times another are as good
 NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
@@ -75,19 +74,8 @@ class Case:
     def unevenness(self, guess: Guess) -> float:
         """How far the regions of a guess are from being one colour in one light each."""
         seen = self.see(guess, COARSE)
-        _, cosine = lighting.cosines(seen, guess)
-        light = (cosine * lighting.arriving(seen, guess)).sum(axis=0)
-        colours, region = self.sample(COARSE)[2], seen.owner + 1
-        count = np.bincount(region)
-        means = [np.bincount(region, each) / np.maximum(count, 1) for each in (light, *colours.T)]
-        off = light - means[0][region]
-        variance = np.bincount(region, off * off) + 1e-6
-        residual = np.zeros(len(region))
-        for channel, mean in zip(colours.T, means[1:], strict=True):
-            apart = channel - mean[region]
-            slope = np.bincount(region, apart * off) / variance
-            residual += (apart - slope[region] * off) ** 2
-        return float(np.minimum(residual, STEADY**2).mean())
+        residual = lighting.unevenness(seen, self.sample(COARSE)[2], guess)
+        return float(np.minimum(residual, lighting.STEADY**2).mean())
 
 
 GEOMETRIC = tuple(dict.fromkeys(name for row in GEOMETRY for name in row.changes)) + ("scale", "roll")
@@ -107,7 +95,7 @@ def search(case: Case) -> Guess:
     lit = [descend(case, each, LIGHT, 1) for _, _, each in ranked[:BEGINNINGS]]
     lit.append(descend(case, OURS, LIGHT, 1))
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
-    found = [simplify(case, descend(case, each, TABLE, 3)) for each in best]
+    found = [with_simplest_light(case, simplify(case, descend(case, each, TABLE, 3))) for each in best]
     return descend(case, min(found, key=lambda each: case.fit(each).score), LIGHT, 1, LARGE)
 
 
@@ -140,7 +128,7 @@ def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
 
 def differences(guess: Guess) -> int:
     """The number of parameters in which a guess differs from this program; free numbers count twice."""
-    free = (guess["scale"] != 1.0) + (guess["roll"] != 0.0)
+    free = (guess["scale"] != 1.0) + (guess["roll"] != 0.0) + (guess["ambient"] == "light plus object")
     return sum(guess[name] != value for name, value in OURS.items()) + free
 
 
@@ -192,8 +180,14 @@ def simplify(case: Case, guess: Guess) -> Guess:
     for each in simpler:
         if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR and case.fit(each).score < limit:
             return each
-    for fading in (1, 2):
-        faded = case.fit(guess | {"fading": fading})
-        if faded.odd < case.fit(guess).odd and faded.score < limit:
-            return guess | {"fading": fading}
     return guess
+
+
+def with_simplest_light(case: Case, guess: Guess) -> Guess:
+    """Return the guess with the ambient light and the fading of fewest differences that explain as much."""
+    limit = case.fit(guess).score * ALIKE + NEAR_SCORE
+    forms = ["object x light", *(row.changes["ambient"] for row in LIGHT if "ambient" in row.changes)]
+    others = [guess | {"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
+    fits = [(each, case.fit(each)) for each in [guess, *others]]
+    alike = [(differences(each) + fit.odd, number) for number, (each, fit) in enumerate(fits) if fit.score <= limit]
+    return fits[min(alike)[1]][0]
