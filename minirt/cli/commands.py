@@ -24,7 +24,8 @@ Command = Callable[["Scene", argparse.Namespace], int]
 
 def command_for(options: argparse.Namespace) -> Command:
     """Return the command that the options select; showing a window is the default."""
-    commands = {"check": check, "bench": bench, "report": report, "compare": compare, "replay": replay, "output": render}
+    commands = {"check": check, "bench": bench, "report": report, "compare": compare, "replay": replay}
+    commands["output"] = render
     return next((command for name, command in commands.items() if getattr(options, name)), show)
 
 

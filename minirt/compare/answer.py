@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Floats, Seen, changed_scene, on_cap, owners, see, slopes
+from minirt.compare.geometry import Seen, changed_scene, on_cap, owners, see, slopes
 from minirt.compare.lighting import LEVEL, Fit
 from minirt.compare.search import GEOMETRIC, Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
@@ -188,10 +188,11 @@ def factors(judge: Judge) -> list[Cause]:
     if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
         diffuse = diffuse[:1]
     told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
+    if guess["fading"]:
+        del told["diffuse"]  # whose unit is a free choice of the other program
     found = []
     for name, values in told.items():
-        slack = lighting.slack(guess) if name == "diffuse" else lighting.SLACK
-        if any(lighting.differs(each, slack) for each in values) and judge.gain(judge.fitted(guess, name)) > LEAST_GAIN:
+        if any(map(lighting.differs, values)) and judge.gain(judge.fitted(guess, name)) > LEAST_GAIN:
             value = values[0] if len(values) == 1 else values
             spelled = ", ".join(map(str, values))
             found.append(Cause(name, value, FREE[name].format(value=spelled)))

@@ -42,6 +42,12 @@ def unit(v: Floats) -> Floats:
     return result
 
 
+def dots(one: Floats, other: Floats) -> Floats:
+    """Scalar products of vectors, 0 for those that are not known."""
+    result: Floats = np.einsum("...ij,...ij->...i", np.nan_to_num(one), other)
+    return result
+
+
 def frame(camera: Camera, guess: Guess) -> Floats:
     """Return right, up and forward of a picture, (3, 3)."""
     forward = np.array(camera.direction)
@@ -142,8 +148,7 @@ def cylinder_changes(shape: Cylinder, radius: str, cylinder: str, axis: str) -> 
 def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np.bool_]:
     """Whether hits lie on caps of cylinders and cones."""
     axes = np.array([shape.axis if isinstance(shape, Capped) else (0, 0, 0) for shape in scene.shapes] + [(0, 0, 0)])
-    cosine = np.einsum("ij,ij->i", axes[owner], np.nan_to_num(normal))
-    result: NDArray[np.bool_] = np.abs(cosine) > ON_CAP
+    result: NDArray[np.bool_] = np.abs(dots(normal, axes[owner])) > ON_CAP
     return result
 
 
@@ -160,14 +165,14 @@ def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any
     found = trace(scene, origins, ways, threads=1)
     if guess["caps"] and guess["inside"]:
         return tuple(found)
-    distance, owner, point, normal = (np.array(each) for each in found)
+    distance, owner, point, normal = found
     for _ in range(MOST_LAYERS):
         passed = np.zeros(len(owner), bool)
         if not guess["caps"]:
             passed |= on_cap(scene, owner, normal)
         if not guess["inside"]:
             closed = np.array([shape.solid for shape in scene.shapes] + [False])[owner]
-            passed |= closed & (np.einsum("ij,ij->i", np.nan_to_num(normal), ways) > 0)
+            passed |= closed & (dots(normal, ways) > 0)
         if not passed.any():
             break
         further = trace(scene, point[passed], ways[passed], threads=1)

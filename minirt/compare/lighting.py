@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.compare.geometry import Floats, Seen, unit
+from minirt.compare.geometry import Floats, Seen, dots, unit
 from minirt.compare.table import OURS, Guess
 from minirt.element import fields_of
 from minirt.materials import Attributes
@@ -58,9 +58,9 @@ def cosines(seen: Seen, guess: Guess) -> tuple[Floats, Floats]:
     """Return the normals that light falls onto, and the cosine for each lamp, (lamps, n), 0 on the other side."""
     normal = np.nan_to_num(seen.normal)
     if guess["normals"] != "outward":
-        away = np.einsum("ij,ij->i", normal, seen.direction) > 0
+        away = dots(normal, seen.direction) > 0
         normal = np.where(away[:, None], -normal, normal)
-    cosine = np.einsum("lij,ij->li", seen.to_light, normal)
+    cosine = dots(seen.to_light, normal)
     return normal, np.abs(cosine) if guess["normals"] == "both sides" else np.maximum(cosine, 0)
 
 
@@ -74,10 +74,10 @@ def arriving(seen: Seen, guess: Guess) -> Floats:
 def highlights(seen: Seen, normal: Floats, form: str, exponent: Any) -> Floats:
     """Return the highlights of each lamp, (lamps, n), without its colour."""
     if form == "blinn":
-        base = np.einsum("lij,ij->li", unit(seen.to_light - seen.direction), normal)
+        base = dots(unit(seen.to_light - seen.direction), normal)
     else:
-        along = np.einsum("lij,ij->li", seen.to_light, normal) * np.einsum("ij,ij->i", normal, -seen.direction)
-        base = 2 * along + np.einsum("lij,ij->li", seen.to_light, seen.direction)
+        along = dots(seen.to_light, normal) * dots(normal, -seen.direction)
+        base = 2 * along + dots(seen.to_light, seen.direction)
     result: Floats = np.clip(base, 0, 1) ** exponent
     return result
 
@@ -101,7 +101,8 @@ def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
     forms = {"object x light": colours * tint, "light alone": tint + 0 * colours, "object alone": colours * grey}
     ambient = forms.get(guess["ambient"], 0 * colours)
     if not guess["ambient_in_shadow"]:
-        ambient = ambient * (light > 0).any(axis=0)[:, None]
+        lit: NDArray[np.bool_] = np.any(light > 0, axis=0)
+        ambient = ambient * lit[:, None]
     terms = [ambient, 0 * colours]
     if guess["ambient"] == "light plus object":
         terms = [tint + 0 * colours, colours]
@@ -145,9 +146,7 @@ def usual_distance(seen: Seen) -> float:
     return float(np.median(known)) if len(known) else 1.0
 
 
-def fit(
-    scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = ""
-) -> Fit:
+def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = "") -> Fit:
     """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
 
     `judged` are the pixels that count; the factor of the `fixed` term, ambient or diffuse, is that of this program.

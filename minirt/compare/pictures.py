@@ -103,7 +103,8 @@ def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
     judged = lighting.plain_shapes(scene)[seen.owner]
     fit = lighting.fit(scene, seen, theirs.reshape(-1, 3) / 255, guess, judged)
     shown = np.where(judged[:, None], fit.predicted, 0)
-    return np.rint(255 * shown).astype(np.uint8).reshape(theirs.shape)
+    under: Levels = np.rint(255 * shown).astype(np.uint8).reshape(theirs.shape)
+    return under
 
 
 def panels(scene: Scene, theirs: Levels, guess: Guess) -> Levels:

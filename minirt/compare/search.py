@@ -11,7 +11,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from minirt.compare import lighting
 from minirt.compare.geometry import Floats, Seen, frame, see, slopes
@@ -78,7 +77,7 @@ class Case:
         return float(np.minimum(residual, lighting.STEADY**2).mean())
 
 
-GEOMETRIC = tuple(dict.fromkeys(name for row in GEOMETRY for name in row.changes)) + ("scale", "roll")
+GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "scale", "roll"
 
 
 def search(case: Case) -> Guess:
@@ -92,8 +91,8 @@ def search(case: Case) -> Guess:
         for _, _, each in guesses[:BEGINNINGS]
     ]
     ranked = sorted((case.unevenness(each), number, each) for number, each in enumerate(variants))
-    lit = [descend(case, each, LIGHT, 1) for _, _, each in ranked[:BEGINNINGS]]
-    lit.append(descend(case, OURS, LIGHT, 1))
+    matt = [row for row in LIGHT if row.name != "specular"]
+    lit = [steepest(case, each, matt) for each in [OURS, *(each for _, _, each in ranked[:BEGINNINGS])]]
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
     found = [with_simplest_light(case, simplify(case, descend(case, each, TABLE, 3))) for each in best]
     return descend(case, min(found, key=lambda each: case.fit(each).score), LIGHT, 1, LARGE)
@@ -127,9 +126,9 @@ def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
 
 
 def differences(guess: Guess) -> int:
-    """The number of parameters in which a guess differs from this program; free numbers count twice."""
-    free = (guess["scale"] != 1.0) + (guess["roll"] != 0.0) + (guess["ambient"] == "light plus object")
-    return sum(guess[name] != value for name, value in OURS.items()) + free
+    """The number of parameters in which a guess differs from this program; those with a free number count twice."""
+    costly = [guess["scale"] != 1.0, guess["roll"] != 0.0, guess["ambient"] == "light plus object"]
+    return [*(guess[name] != value for name, value in OURS.items()), *costly].count(True)
 
 
 def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
@@ -139,10 +138,10 @@ def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
         (name, value), *_ = row.changes.items()
         if guess[name] != value:
             found.setdefault(name, []).append(guess | row.changes)
-    for name in found:
+    for name, near in found.items():
         if guess[name] != OURS[name]:
-            found[name].append(guess | {name: OURS[name]})
-    if "fov" in found:
+            near.append(guess | {name: OURS[name]})
+    if "fov" in found:  # rows of the camera
         scales = [guess["scale"] * factor for factor in FINER] + [1.0]
         found["fov"] += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS if guess["scale"] != 1.0]
         found["scale"] = [guess | {"scale": scale} for scale in scales]
@@ -164,6 +163,17 @@ def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, c
         if best == before:
             break
     return guess
+
+
+def steepest(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> Guess:
+    """Take the step that explains the picture best, again and again, until none explains it clearly better."""
+    best = case.fit(guess).score
+    while True:
+        scored = [(case.fit(each).score, each) for near in steps(guess, rows).values() for each in near]
+        score, near = min(scored, key=lambda each: each[0])
+        if score >= best * BETTER:
+            return guess
+        guess, best = near, score
 
 
 def simplify(case: Case, guess: Guess) -> Guess:

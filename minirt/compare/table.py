@@ -72,8 +72,8 @@ GEOMETRY = (
     Hypothesis("fov", "not normalised", {"fov": "not normalised"},
                "right and up are too short where the camera looks up or down: normalise the product direction x up"),
     Hypothesis("fov", "too near", {"fov": "too near"},
-               "the picture plane is too near where the camera looks up or down: its distance is 1 along the direction, "
-               "not along the ground"),
+               "the picture plane is too near where the camera looks up or down: put it at distance 1 along the "
+               "direction, not along the ground"),
     Hypothesis("pixel", "corner", {"pixel": "corner"},
                "rays go through the corners of pixels: add 0.5 to x and y to hit their centres"),
     Hypothesis("radius", "spheres", {"radius": "spheres"},
@@ -135,7 +135,7 @@ LIGHT = (
     Hypothesis("overflow", "wrapped", {"overflow": "wrapped"},
                "bright levels wrap around at 256: clamp them to 255 before they become bytes"),
     *(Hypothesis("specular", f"{form} {exponent}{of}", {"specular": (form, exponent, of)},
-                 f"there are specular highlights{of} ({form}, exponent about {exponent}), for which the scene does not ask")
+                 f"there are highlights{of} ({form}, exponent about {exponent}), for which the scene does not ask")
       for form in ("phong", "blinn") for of in ("", " in the object's colour") for exponent in EXPONENTS),
     Hypothesis("background", "own", {"background": "own"}, "the background is {colour}: here it is {ours}"),
     Hypothesis("acne", True, {"acne": True},
@@ -146,7 +146,7 @@ FREE = {
     "roll": "the camera is rolled by {value} degrees",
     "scale": "the field of view is {value} degrees across where the scene says {ours}",
     "ambient": "the ambient light is {value} times that of the scene",
-    "diffuse": "the light of the lamps is {value} times that of the scene: brightness x colour x cosine, no more factors",
+    "diffuse": "the light of the lamps is {value} times that of the scene: no factor but brightness, colour and cosine",
     "specular": "{sentence}; their share is {value}",
 }
 TABLE = GEOMETRY + LIGHT
