@@ -58,8 +58,10 @@ class Comparison(NamedTuple):
         if self.equal:
             return "The pictures are equal."
         if self.explained < KNOWN:
-            known = ", but shapes are where they should be, if" if self.causes else ""
-            return f"The light is not known: {self.explained:.0%} of the inner pixels are explained{known}:"
+            share = f"{self.explained:.0%} of the inner pixels are explained"
+            if self.causes:
+                return f"The pictures differ. The light is not known ({share}), but shapes are in their places by these:"
+            return f"The pictures differ, and it is not known why: {share}."
         what = "this explains" if len(self.causes) == 1 else "these explain together"
         if not self.causes:
             return f"The pictures differ in parts: {self.explained:.1%} of the inner pixels are equal."
@@ -83,6 +85,8 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     reference = render(scene, width, height).array
     if pictures.are_equal(theirs, reference, is_lossy):
         return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
+    if int(np.ptp(theirs, axis=(0, 1)).max()) <= pictures.EDGE:
+        return Comparison(False, 0.0, (), (), (*notices, "The picture has one colour alone."), scene, theirs, OURS)
     tolerance = answer.tolerance_of(is_lossy)
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
@@ -90,6 +94,8 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     explained = 1 - judge.left(judge.fit)
     is_known = explained >= KNOWN
     guess = judge.guess if is_known else answer.shapes_alone(judge)
+    if not is_known:
+        judge = answer.Judge(case, guess, tolerance)
     found = answer.causes(judge, guess) + (answer.factors(judge) if is_known else [])
     if is_alike and not found:
         notices += ("They differ at edges alone.",)

@@ -54,6 +54,9 @@ class Judge:
         self.judged = case.judged[self.seen.owner]
         self.inner = self.judged & self.is_inner()
         self.fit = self.fitted(guess)
+        sky = lighting.background(case.scene)
+        shown = (np.abs(self.colours - sky).max(axis=-1) > tolerance) | (self.seen.owner >= 0)
+        self.counted = self.inner & shown  # background where the guess expects it is no evidence
 
     def look(self, guess: Guess, across: int = 0, down: int = 0) -> Seen:
         """Trace the sample, or the pixels beside it."""
@@ -81,15 +84,15 @@ class Judge:
         """Whether inner pixels fit to the others of their shapes, whatever their light."""
         seen = self.look(guess)
         residual: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess) < (lighting.STEADY / 2) ** 2
-        return residual[self.inner]
+        return residual[self.counted]
 
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""
-        return float((fit.error[self.inner] > self.tolerance).mean()) if self.inner.any() else 1.0
+        return float((fit.error[self.counted] > self.tolerance).mean()) if self.counted.any() else 1.0
 
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
-        return gain(*(fit.error[self.inner] <= self.tolerance for fit in (self.fit, without)))
+        return gain(*(fit.error[self.counted] <= self.tolerance for fit in (self.fit, without)))
 
 
 def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:

@@ -22,6 +22,7 @@ HELD = 1e9  # times the prior, for a factor that is fixed
 SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a word; that of lamps that fade
 STEADY = 0.1  # a difference within a shape that is larger counts as this one
 MOST_ROWS = 4000  # of least squares
+MOST_SPECKS = 0.6  # of the pixels of shapes: more dark ones are no acne
 ROUNDS = 4  # of least squares, each without what the one before did not explain
 PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
 
@@ -184,7 +185,9 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
     error = np.abs(shown - theirs).max(axis=-1)
     if guess["acne"]:
         dark = shown_levels(terms[..., :2] @ factors[:2], guess)
-        error = np.minimum(error, np.where(there, np.abs(dark - theirs).max(axis=-1), 1))
+        specks = np.abs(dark - theirs).max(axis=-1) < error - WORST
+        if (specks & judged)[there & judged].mean() < MOST_SPECKS:
+            error = np.where(specks & there, np.abs(dark - theirs).max(axis=-1), error)
     diffuse = factors[2:-1] * usual_distance(seen) ** guess["fading"]
     differences = sum(guess[name] != value for name, value in OURS.items())
     predicted = shown[:, ::-1] if guess["colours"] == "swapped" else shown

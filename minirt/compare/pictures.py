@@ -20,6 +20,7 @@ EXACT, CLOSE = 1, 4  # levels
 EXACT_LOSSY, CLOSE_LOSSY = 8, 12
 EDGE = 8  # levels between neighbours
 STRAY = 1e-4  # share of pixels that may be off beside edges
+BLOCK = 16  # pixels, of JPEG with half of the colours
 LARGEST_BLOCK = 16  # pixels
 GAP = 4  # pixels between panels
 BRIGHTER = 4  # times the difference, in its panel
@@ -82,8 +83,18 @@ def are_equal(one: Levels, other: Levels, is_lossy: bool) -> bool:
 
 def are_alike(one: Levels, other: Levels, is_lossy: bool) -> bool:
     """Whether pixels differ by a few levels at most, but at edges."""
+    near = edges(other)
+    if is_lossy:  # whose blocks spread an edge
+        near = np.kron(blocks_with(near), np.ones((BLOCK, BLOCK), bool))[: near.shape[0], : near.shape[1]]
     off = distance(one, other) > (CLOSE_LOSSY if is_lossy else CLOSE)
-    return bool((off & ~edges(other)).mean() < STRAY)
+    return bool((off & ~near).mean() < STRAY)
+
+
+def blocks_with(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether any pixel of each block of a lossy picture is in a mask; the last blocks may be cut."""
+    rows = np.logical_or.reduceat(mask, np.arange(0, mask.shape[0], BLOCK), axis=0)
+    found: NDArray[np.bool_] = np.logical_or.reduceat(rows, np.arange(0, mask.shape[1], BLOCK), axis=1)
+    return found
 
 
 def edges(levels: Levels) -> NDArray[np.bool_]:
