@@ -45,6 +45,8 @@ class Comparison(NamedTuple):
 
     def __str__(self) -> str:
         lines = [*self.notices, self.verdict()]
+        if self.equal:
+            return "\n".join(lines)
         lines += [f"- {each.name}: {each.sentence}" for each in self.causes]
         if self.rest:
             lines.append("What is left:" if self.causes else "Where they differ:")
@@ -56,11 +58,11 @@ class Comparison(NamedTuple):
     def verdict(self) -> str:
         """Return the first sentence of the answer."""
         if self.equal:
-            return "The pictures are equal."
+            return "The pictures are equal, but at edges." if self.rest else "The pictures are equal."
         if self.explained < KNOWN:
             share = f"{self.explained:.0%} of the inner pixels are explained"
             if self.causes:
-                return f"The pictures differ. The light is not known ({share}), but shapes are in their places by these:"
+                return f"The pictures differ. The light is not known ({share}), but these put shapes into their places:"
             return f"The pictures differ, and it is not known why: {share}."
         what = "this explains" if len(self.causes) == 1 else "these explain together"
         if not self.causes:
@@ -98,9 +100,8 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
         judge = answer.Judge(case, guess, tolerance)
     found = answer.causes(judge, guess) + (answer.factors(judge) if is_known else [])
     if is_alike and not found:
-        notices += ("They differ at edges alone.",)
-        return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
-    return Comparison(False, explained, tuple(found), tuple(answer.rest(judge)), notices, scene, theirs, guess)
+        return Comparison(True, 1.0, (), answer.rest(judge), notices, scene, theirs, OURS)
+    return Comparison(False, explained, tuple(found), answer.rest(judge), notices, scene, theirs, guess)
 
 
 class CallableModule(ModuleType):

@@ -202,7 +202,7 @@ def factors(judge: Judge) -> list[Cause]:
     return found
 
 
-def rest(judge: Judge) -> list[Rest]:
+def rest(judge: Judge) -> tuple[Rest, ...]:
     """Return where the pixels lie that a guess does not explain, the largest part first."""
     seen, scene = judge.seen, changed_scene(judge.case.scene, judge.guess)
     wrong = judge.judged & (judge.fit.error > judge.tolerance)
@@ -220,7 +220,7 @@ def rest(judge: Judge) -> list[Rest]:
             found.append(Rest(shape_name(judge.case, int(owner)), part, len(here) / len(wrong), place))
         wrong &= ~mask
     large = [each for each in found if each.share >= LEAST_REST]
-    return sorted(large, key=lambda each: -each.share)[:MOST_REST]
+    return tuple(sorted(large, key=lambda each: -each.share)[:MOST_REST])
 
 
 def shape_name(case: Case, owner: int) -> str:

@@ -185,9 +185,10 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
     error = np.abs(shown - theirs).max(axis=-1)
     if guess["acne"]:
         dark = shown_levels(terms[..., :2] @ factors[:2], guess)
-        specks = np.abs(dark - theirs).max(axis=-1) < error - WORST
-        if (specks & judged)[there & judged].mean() < MOST_SPECKS:
-            error = np.where(specks & there, np.abs(dark - theirs).max(axis=-1), error)
+        own = there & judged
+        specks = (np.abs(dark - theirs).max(axis=-1) < error - WORST) & own
+        if specks.sum() < MOST_SPECKS * own.sum():
+            error = np.where(specks, np.abs(dark - theirs).max(axis=-1), error)
     diffuse = factors[2:-1] * usual_distance(seen) ** guess["fading"]
     differences = sum(guess[name] != value for name, value in OURS.items())
     predicted = shown[:, ::-1] if guess["colours"] == "swapped" else shown
