@@ -24,14 +24,14 @@ KNOWN = 0.8  # share of the inner pixels; what explains less is not told
 class Comparison(NamedTuple):
     """What is found about a picture. `str()` of it is the answer in words, `.json()` the same for programs."""
 
-    equal: bool
-    explained: float  # share of the inner pixels
-    causes: tuple[Cause, ...]
-    rest: tuple[Rest, ...]
-    notices: tuple[str, ...]
+    equal: bool  # within a level, or within four but at edges
+    explained: float  # share of the inner pixels that are equal, or are so under the causes
+    causes: tuple[Cause, ...]  # what the other program does in another way: name, value, sentence
+    rest: tuple[Rest, ...]  # where other pixels lie: shape, part, share of all pixels, one pixel
+    notices: tuple[str, ...]  # about the picture, such as a border that is cut off
     scene: Scene
-    picture: NDArray[np.uint8]  # (h, w, 3), without a border
-    guess: Guess
+    picture: NDArray[np.uint8]  # (h, w, 3) theirs, without a border
+    guess: Guess  # all parameters of the table of hypotheses
 
     def json(self) -> dict[str, Any]:
         """Return the answer as what `json.dumps` takes: equal, explained, causes, rest and notices."""

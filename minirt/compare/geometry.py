@@ -201,8 +201,8 @@ def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess)
             to_light[i, there] = offset / np.maximum(distance[i, there], 1e-30)[:, None]
             if edge > -2.0 or lamp.fading():
                 rim = np.clip((-(to_light[i] @ axis) - edge) * steepness, 0, 1)
-                faded = np.where(there, np.maximum(1 - distance[i] * lamp.fading(), 0), 0)
-                strength[i] = rim * rim * (3 - 2 * rim) * faded
+                faded = np.maximum(1 - distance[i, there] * lamp.fading(), 0)
+                strength[i, there] = (rim * rim * (3 - 2 * rim))[there] * faded
         occluder = hits(scene, point[there], to_light[i, there], guess)[0]
         open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)
         open_beyond[i, there] = np.isinf(occluder)

@@ -96,7 +96,9 @@ def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
     arrived = arriving(seen, guess)
     light = cosine * arrived
     if guess["fading"]:
-        light = light / np.maximum(seen.distance / usual_distance(seen), 1e-3) ** guess["fading"]
+        usual = usual_distance(seen)
+        reach = np.where(np.isfinite(seen.distance), seen.distance, usual)  # parallel light does not fade
+        light = light / np.maximum(reach / usual, 1e-3) ** guess["fading"]
     tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
     forms = {"object x light": colours * tint, "light alone": tint + 0 * colours, "object alone": colours * grey}

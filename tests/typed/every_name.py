@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import assert_type
+from typing import Any, assert_type
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,9 @@ table: dict[str, NDArray[np.float64] | NDArray[np.int64]] = hits.columns()
 buffers: minirt.Buffers = minirt.buffers(scene, 8, 6)
 depth: NDArray[np.float64] = buffers.depth
 albedo: NDArray[np.float64] = buffers.albedo
+comparison: minirt.Comparison = minirt.compare(scene, FOLDER / "picture.png")
+answer: dict[str, Any] = comparison.json()
+panels: NDArray[np.uint8] = comparison.panels()
 
 renderer: minirt.Renderer = minirt.renderer(None)
 frame = np.zeros((6, 8, 4), np.uint8)
