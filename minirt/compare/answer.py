@@ -83,8 +83,9 @@ class Judge:
     def even(self, guess: Guess) -> NDArray[np.bool_]:
         """Whether inner pixels fit to the others of their shapes, whatever their light."""
         seen = self.look(guess)
-        residual: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess) < (lighting.STEADY / 2) ** 2
-        return residual[self.counted]
+        residual = lighting.unevenness(seen, self.colours, guess)[self.counted]
+        even: NDArray[np.bool_] = residual < (lighting.STEADY / 2) ** 2
+        return even
 
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""

@@ -29,6 +29,7 @@ ALIKE = 1.05  # scores up to this times another are as good
 NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
+SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
 SOURCES = "cylinder", "radius", "cone"
 
 
@@ -39,6 +40,9 @@ class Case:
         self.scene, self.picture = scene, picture
         self.height, self.width = picture.shape[:2]
         self.judged = lighting.plain_shapes(scene)
+        has_specks = speck_share(picture) > SPECKLED
+        self.table = [row for row in TABLE if row.name != "acne" or has_specks]
+        self.light = [row for row in self.table if row in LIGHT]
         self.kept: dict[Any, Seen] = {}
         self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
 
@@ -91,11 +95,18 @@ def search(case: Case) -> Guess:
         for _, _, each in guesses[:BEGINNINGS]
     ]
     ranked = sorted((case.unevenness(each), number, each) for number, each in enumerate(variants))
-    matt = [row for row in LIGHT if row.name != "specular"]
+    matt = [row for row in case.light if row.name != "specular"]
     lit = [steepest(case, each, matt) for each in [OURS, *(each for _, _, each in ranked[:BEGINNINGS])]]
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
-    found = [with_simplest_light(case, simplify(case, descend(case, each, TABLE, 3))) for each in best]
-    return descend(case, min(found, key=lambda each: case.fit(each).score), LIGHT, 1, LARGE)
+    found = [with_simplest_light(case, simplify(case, descend(case, each, case.table, 3))) for each in best]
+    return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
+
+
+def speck_share(picture: Floats) -> float:
+    """The share of pixels that are clearly darker than both of their neighbours at the sides."""
+    light = picture.sum(axis=-1)
+    beside = np.minimum(light[:, :-2], light[:, 2:])
+    return float((beside - light[:, 1:-1] > SPECK).mean())
 
 
 def used(scene: Scene, name: str) -> bool:
