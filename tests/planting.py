@@ -21,6 +21,7 @@ from PIL import Image
 import minirt
 from minirt.compare import Comparison, compare, lighting
 from minirt.compare.geometry import see
+from minirt.compare.pictures import EDGE
 from minirt.compare.table import OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
 
@@ -78,13 +79,12 @@ def draw(scene: Scene, guess: Guess, size: tuple[int, int] = SIZE, seed: int = 0
     terms = lighting.columns(scene, seen, guess)
     factors = np.ones(terms.shape[-1])
     factors[1], factors[-1] = 0.1, 0.5
-    factors[2:-1] = (8 / lighting.usual_distance(seen)) ** guess["fading"]
-    shown = lighting.shown_levels(terms @ factors, guess)
-    if guess["acne"]:
-        specks = np.random.default_rng(seed).random(len(x)) < SPECKS
-        shown[specks] = lighting.shown_levels(terms[specks, :, :1] @ factors[:1], guess)
+    factors[2:-1] = (8 / seen.reach) ** guess["fading"]
     own = guess["background"] == "own"
-    shown[seen.owner < 0] = lighting.numbers(SKY) if own else lighting.background(scene)
+    shown = lighting.drawn(terms, seen, guess, factors, lighting.numbers(SKY) if own else lighting.background(scene))
+    if guess["acne"]:
+        specks = (np.random.default_rng(seed).random(len(x)) < SPECKS) & (seen.owner >= 0)
+        shown[specks] = lighting.shown_levels(terms[specks, :, :1] @ factors[:1], guess)
     if guess["colours"] == "swapped":
         shown = shown[:, ::-1]
     levels: Bytes = np.rint(255 * shown).astype(np.uint8).reshape(height, width, 3)
@@ -98,8 +98,10 @@ def compared(scene: Scene, levels: Bytes, folder: Path) -> Comparison:
 
 
 def are_visible(scene: Scene, rows: Sequence[Hypothesis]) -> bool:
-    """Whether each of some hypotheses changes the picture beside the others."""
+    """Whether each of some hypotheses changes the picture beside the others, and it shows anything."""
     together = draw(scene, merged(rows))
+    if np.ptp(together, axis=(0, 1)).max() <= EDGE:
+        return False
     for row in rows:
         without = draw(scene, merged([each for each in rows if each is not row]))
         changed = (np.abs(together.astype(int) - without).max(axis=-1) > LEVELS).mean()

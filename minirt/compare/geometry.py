@@ -34,6 +34,7 @@ class Seen(NamedTuple):
     strength: Floats  # (lamps, n) of spots and lamps that fade
     open_to: NDArray[np.bool_]  # (lamps, n) whether nothing lies between the point and the lamp
     open_beyond: NDArray[np.bool_]  # (lamps, n) nor behind the lamp
+    reach: float  # median distance of points from lamps, the unit in which light fades
 
 
 def unit(v: Floats) -> Floats:
@@ -206,4 +207,6 @@ def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess)
         occluder = hits(scene, point[there], to_light[i, there], guess)[0]
         open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)
         open_beyond[i, there] = np.isinf(occluder)
-    return Seen(owner, point, normal, ways, to_light, distance, strength, open_to, open_beyond)
+    known = distance[np.isfinite(distance)]
+    reach = float(np.median(known)) if len(known) else 1.0
+    return Seen(owner, point, normal, ways, to_light, distance, strength, open_to, open_beyond, reach)

@@ -32,7 +32,7 @@ class Fit(NamedTuple):
 
     score: float  # mean error plus the price of the guess
     error: Floats  # (n,) of the worst channel, from 0 to 1
-    predicted: Floats  # (n, 3)
+    factors: Floats  # of all terms of light
     ambient: float  # factors; 1 in this program
     diffuse: Floats  # (lamps,)
     specular: float
@@ -96,9 +96,8 @@ def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
     arrived = arriving(seen, guess)
     light = cosine * arrived
     if guess["fading"]:
-        usual = usual_distance(seen)
-        reach = np.where(np.isfinite(seen.distance), seen.distance, usual)  # parallel light does not fade
-        light = light / np.maximum(reach / usual, 1e-3) ** guess["fading"]
+        distance = np.where(np.isfinite(seen.distance), seen.distance, seen.reach)  # parallel light does not fade
+        light = light / np.maximum(distance / seen.reach, 1e-3) ** guess["fading"]
     tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
     forms = {"object x light": colours * tint, "light alone": tint + 0 * colours, "object alone": colours * grey}
@@ -143,12 +142,6 @@ def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
     return residual
 
 
-def usual_distance(seen: Seen) -> float:
-    """The median distance of points from lamps."""
-    known = seen.distance[np.isfinite(seen.distance)]
-    return float(np.median(known)) if len(known) else 1.0
-
-
 def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = "") -> Fit:
     """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
 
@@ -156,16 +149,38 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
     """
     theirs = colours[:, ::-1] if guess["colours"] == "swapped" else colours
     terms = columns(scene, seen, guess)
-    there = seen.owner >= 0
-    gamma = guess["gamma"]
-    target = theirs**gamma
-    usable = (theirs > DARKEST) & (theirs < BRIGHTEST) & (there & judged)[:, None]
-    slope = gamma * np.maximum(theirs, DARKEST) ** (gamma - 1)
-    usual = np.ones(terms.shape[-1])
-    usual[1] = 0.0
+    own, beyond = judged & (seen.owner >= 0), judged & (seen.owner < 0)
+    factors = least_squares(terms[own], theirs[own], guess["gamma"], usual_factors(scene, guess), fixed)
+    own_sky = guess["background"] == "own" and beyond.any()
+    sky = np.median(theirs[beyond], axis=0) if own_sky else background(scene)
+    error = np.abs(drawn(terms, seen, guess, factors, sky) - theirs).max(axis=-1)
+    if guess["acne"]:
+        dark = np.abs(drawn(terms[..., :2], seen, guess, factors[:2], sky) - theirs).max(axis=-1)
+        specks = (dark < error - WORST) & own
+        if specks.sum() < MOST_SPECKS * own.sum():
+            error = np.where(specks, dark, error)
+    diffuse = factors[2:-1] * seen.reach ** guess["fading"]
+    odd = differs(float(factors[0])) + differs(middle(diffuse), slack(guess))
+    differences = [guess[name] != value for name, value in OURS.items()].count(True)
+    score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
+    score += PRICE * (differences + odd)
+    return Fit(score, error, factors, float(factors[0]), diffuse, float(factors[-1]), sky, odd)
+
+
+def usual_factors(scene: Scene, guess: Guess) -> Floats:
+    """The factors of this program: one, but for a share of the object's colour and highlights that no material has."""
     has_materials = any(getattr(shape, "specular", None) for shape in scene.shapes)
-    usual[-1] = 1.0 if has_materials and not guess["specular"] else 0.0
-    rows, values = terms[usable] / slope[usable][:, None], target[usable] / slope[usable]
+    factors = np.ones(len(scene.lights) + 3)
+    factors[1] = 0.0
+    factors[-1] = 1.0 if has_materials and not guess["specular"] else 0.0
+    return factors
+
+
+def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fixed: str) -> Floats:
+    """Return the factors of terms, (n, 3, k), whose sum is nearest to colours, in their levels, without outliers."""
+    usable = (theirs > DARKEST) & (theirs < BRIGHTEST)
+    slope = gamma * theirs[usable] ** (gamma - 1)
+    rows, values = terms[usable] / slope[:, None], theirs[usable] ** gamma / slope
     step = len(values) // MOST_ROWS + 1
     rows, values = rows[::step], values[::step]
     weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
@@ -174,30 +189,18 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
     factors, kept = usual, np.ones(len(values), bool)
     for _ in range(ROUNDS):
         chosen, aims = rows[kept], values[kept]
-        factors = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
-        factors = np.maximum(factors, 0)
+        found = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
+        factors = np.maximum(found, 0).astype(np.float64)
         off = np.abs(rows @ factors - values)
         kept = off < max(2 * np.median(off), 3 * LEVEL) if len(off) else kept
-    light = terms @ factors
-    shown = shown_levels(light, guess)
-    sky = background(scene)
-    if guess["background"] == "own" and (judged & ~there).any():
-        sky = np.median(theirs[judged & ~there], axis=0)
-    shown[~there] = sky
-    error = np.abs(shown - theirs).max(axis=-1)
-    if guess["acne"]:
-        dark = shown_levels(terms[..., :2] @ factors[:2], guess)
-        own = there & judged
-        specks = (np.abs(dark - theirs).max(axis=-1) < error - WORST) & own
-        if specks.sum() < MOST_SPECKS * own.sum():
-            error = np.where(specks, np.abs(dark - theirs).max(axis=-1), error)
-    diffuse = factors[2:-1] * usual_distance(seen) ** guess["fading"]
-    differences = sum(guess[name] != value for name, value in OURS.items())
-    predicted = shown[:, ::-1] if guess["colours"] == "swapped" else shown
-    odd = differs(float(factors[0])) + differs(middle(diffuse), slack(guess))
-    score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
-    score += PRICE * (differences + odd)
-    return Fit(score, error, predicted, float(factors[0]), diffuse, float(factors[-1]), sky, odd)
+    return factors
+
+
+def drawn(terms: Floats, seen: Seen, guess: Guess, factors: Floats, sky: Floats) -> Floats:
+    """Return the levels of pixels, (n, 3) from 0 to 1, in the order of the scene's colours."""
+    shown = shown_levels(terms @ factors, guess)
+    shown[seen.owner < 0] = sky
+    return shown
 
 
 def slack(guess: Guess) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from minirt.compare import lighting
 from minirt.compare.geometry import see
+from minirt.compare.search import LARGE, Case
 from minirt.compare.table import Guess
 from minirt.materials.pictures import picture
 from minirt.rendering.settings import render
@@ -22,6 +24,7 @@ EDGE = 8  # levels between neighbours
 STRAY = 1e-4  # share of pixels that may be off beside edges
 BLOCK = 16  # pixels, of JPEG with half of the colours
 LARGEST_BLOCK = 16  # pixels
+BAND = 250_000  # pixels that are drawn at once
 GAP = 4  # pixels between panels
 BRIGHTER = 4  # times the difference, in its panel
 
@@ -99,22 +102,31 @@ def blocks_with(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def edges(levels: Levels) -> NDArray[np.bool_]:
     """Whether pixels are near an edge: their neighbourhoods have different colours."""
-    padded = np.pad(levels.astype(int), ((1, 1), (1, 1), (0, 0)), mode="edge")
+    padded = np.pad(levels, ((1, 1), (1, 1), (0, 0)), mode="edge")
     height, width, _ = levels.shape
-    around = [padded[i : i + height, j : j + width] for i in range(3) for j in range(3)]
-    result: NDArray[np.bool_] = np.ptp(np.array(around), axis=0).max(axis=-1) > EDGE
+    low, high = levels.copy(), levels.copy()
+    for i, j in product(range(3), range(3)):
+        near = padded[i : i + height, j : j + width]
+        np.minimum(low, near, out=low)
+        np.maximum(high, near, out=high)
+    result: NDArray[np.bool_] = (high - low).max(axis=-1) > EDGE
     return result
 
 
 def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
     """Return the reference under a guess; black where the light of shapes is not known."""
     height, width, _ = theirs.shape
-    y, x = np.mgrid[0:height, 0:width].reshape(2, -1).astype(float)
-    seen = see(scene, (width, height), x, y, guess)
-    judged = lighting.plain_shapes(scene)[seen.owner]
-    fit = lighting.fit(scene, seen, theirs.reshape(-1, 3) / 255, guess, judged)
-    shown = np.where(judged[:, None], fit.predicted, 0)
-    under: Levels = np.rint(255 * shown).astype(np.uint8).reshape(theirs.shape)
+    case = Case(scene, theirs / 255)
+    fit, reach = case.fit(guess, LARGE), case.see(guess, LARGE).reach
+    under = np.zeros_like(theirs)
+    rows = max(BAND // width, 1)
+    for start in range(0, height, rows):
+        y, x = np.mgrid[start : min(start + rows, height), 0:width].reshape(2, -1).astype(float)
+        seen = see(scene, (width, height), x, y, guess)._replace(reach=reach)
+        shown = lighting.drawn(lighting.columns(scene, seen, guess), seen, guess, fit.factors, fit.background)
+        shown = shown[:, ::-1] if guess["colours"] == "swapped" else shown
+        shown[~case.judged[seen.owner]] = 0
+        under[start : start + rows] = np.rint(255 * shown).reshape(-1, width, 3)
     return under
 
 

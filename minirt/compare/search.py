@@ -24,6 +24,8 @@ FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too 
 SCALES = tuple(np.geomspace(0.35, 2.8, 19))
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
+EVEN = 0.001  # unevenness of a camera and of sizes that may be right
+NAMED, FREE = 7, 3  # cameras of the table, and those with another field of view, from which shapes are tried
 BEGINNINGS, FINALISTS = 8, 3
 ALIKE = 1.05  # scores up to this times another are as good
 NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
@@ -86,20 +88,31 @@ GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "s
 
 def search(case: Case) -> Guess:
     """Find the guess that explains the picture best."""
-    guesses = sorted((case.unevenness(each), number, each) for number, each in enumerate(cameras(case)))
+    seen_from = ranked(case, cameras(case))
+    if case.unevenness(seen_from[0]) > EVEN:  # sizes may hide the camera
+        radii = [row.changes for row in GEOMETRY if row.name == "radius"]
+        named = [each for each in seen_from if each["scale"] == 1.0]
+        seen_from = ranked(case, [*seen_from, *(each | changes for each in named for changes in radii)])
+    free = [each for each in seen_from if each["scale"] != 1.0]
+    seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
     names = [name for name in SOURCES if used(case.scene, name)]
     shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
     variants = [
         each | dict(zip(names, values, strict=True))
         for values in product(*shaped)
-        for _, _, each in guesses[:BEGINNINGS]
+        for each in seen_from
     ]
-    ranked = sorted((case.unevenness(each), number, each) for number, each in enumerate(variants))
+    variants = ranked(case, variants)
     matt = [row for row in case.light if row.name != "specular"]
-    lit = [steepest(case, each, matt) for each in [OURS, *(each for _, _, each in ranked[:BEGINNINGS])]]
+    lit = [steepest(case, each, matt) for each in [OURS, *variants[:BEGINNINGS]]]
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
     found = [with_simplest_light(case, simplify(case, descend(case, each, case.table, 3))) for each in best]
     return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
+
+
+def ranked(case: Case, guesses: Iterable[Guess]) -> list[Guess]:
+    """Sort guesses by how even they make the shapes."""
+    return sorted(guesses, key=case.unevenness)
 
 
 def speck_share(picture: Floats) -> float:
