@@ -18,6 +18,7 @@ import minirt
 from minirt.compare import pictures
 from minirt.compare.table import OURS, TABLE
 from minirt.scene import Scene
+from tests.paths import PACKAGE, ROOT
 from tests.planting import SIZE, Bytes, are_visible, compared, draw, judged, merged, student_scene
 from tests.skipping import skip_incomplete
 
@@ -192,3 +193,10 @@ def test_the_stub_of_minilibx_writes_the_window(tmp_path: Path) -> None:
     assert levels.shape == (2, 3, 3)
     assert levels[0, 1].tolist() == [16, 32, 48]
     assert levels.sum() == 96
+
+
+def test_the_example_of_the_page_is_what_the_program_prints() -> None:
+    found = minirt.compare(minirt.load(ROOT / "scenes/figure-v6-shadows.rt"), ROOT / "assets/compare-theirs.png")
+    page = (PACKAGE / "compare" / "README.md").read_text(encoding="utf-8")
+    assert f"```\n{found}\n```" in page
+    assert (pictures.distance(found.panels(), np.asarray(Image.open(ROOT / "assets/compare.png"))) <= 1).all()

@@ -38,7 +38,7 @@ MAY: dict[str, set[str]] = {
     "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "movie", "rendering", "scene"},
     "notebook": {"helpers", "errors", "scene", "mlx", "rendering", "viewer"},
     "report": LOW | {"__init__", "helpers", "kernel", "machine_code", "rendering", "scene"},
-    "compare": {"element", "helpers", "materials", "rendering", "scene", "shapes"},
+    "compare": {"errors", "element", "helpers", "materials", "rendering", "scene", "shapes"},
     "cli": {"__init__", "cluster", "compare", "errors", "formats", "helpers", "movie"}
     | {"rendering", "report", "scene", "viewer"},
     "__main__": {"cli", "helpers"},

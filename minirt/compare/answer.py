@@ -124,7 +124,7 @@ def shapes_alone(judge: Judge) -> Guess:
     """Return what a guess says of camera and shapes, if that puts the shapes into their places; else nothing."""
     even = judge.even(judge.guess)
     told = dict(OURS)
-    if even.mean() < IN_PLACE:
+    if not len(even) or even.mean() < IN_PLACE:
         return told
     for name in GEOMETRIC:
         if judge.guess[name] != OURS[name]:
@@ -171,7 +171,7 @@ def causes(judge: Judge, guess: Guess) -> list[Cause]:
             continue
         sentence, told = row.sentence, row.value
         if name == "specular":
-            sentence = FREE[name].format(sentence=sentence, value=round(fit.specular, 2))
+            sentence = FREE["share"].format(sentence=sentence, value=round(fit.specular, 2))
         if name == "background":
             told = [round(each * 255) for each in fit.background]
             here = [round(each * 255) for each in lighting.background(scene)]
@@ -192,6 +192,8 @@ def factors(judge: Judge) -> list[Cause]:
     if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
         diffuse = diffuse[:1]
     told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
+    if lighting.has_highlights(judge.case.scene) and not guess["specular"]:
+        told["specular"] = [round(fit.specular, 2)]
     if guess["fading"]:
         del told["diffuse"]  # whose unit is a free choice of the other program
     found = []

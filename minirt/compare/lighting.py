@@ -145,7 +145,7 @@ def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
 def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = "") -> Fit:
     """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
 
-    `judged` are the pixels that count; the factor of the `fixed` term, ambient or diffuse, is that of this program.
+    `judged` are the pixels that count; the factor of the `fixed` term (ambient, diffuse or specular) is that of this program.
     """
     theirs = colours[:, ::-1] if guess["colours"] == "swapped" else colours
     terms = columns(scene, seen, guess)
@@ -169,11 +169,15 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
 
 def usual_factors(scene: Scene, guess: Guess) -> Floats:
     """The factors of this program: one, but for a share of the object's colour and highlights that no material has."""
-    has_materials = any(getattr(shape, "specular", None) for shape in scene.shapes)
     factors = np.ones(len(scene.lights) + 3)
     factors[1] = 0.0
-    factors[-1] = 1.0 if has_materials and not guess["specular"] else 0.0
+    factors[-1] = 1.0 if has_highlights(scene) and not guess["specular"] else 0.0
     return factors
+
+
+def has_highlights(scene: Scene) -> bool:
+    """Whether a scene asks for highlights."""
+    return any(getattr(shape, "specular", None) for shape in scene.shapes)
 
 
 def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fixed: str) -> Floats:
@@ -184,7 +188,7 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
     step = len(values) // MOST_ROWS + 1
     rows, values = rows[::step], values[::step]
     weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
-    held = {"ambient": slice(1), "diffuse": slice(2, -1)}.get(fixed, slice(0))
+    held = {"ambient": slice(1), "diffuse": slice(2, -1), "specular": slice(-1, None)}.get(fixed, slice(0))
     weight[held, held] *= HELD
     factors, kept = usual, np.ones(len(values), bool)
     for _ in range(ROUNDS):

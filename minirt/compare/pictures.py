@@ -12,6 +12,7 @@ from minirt.compare import lighting
 from minirt.compare.geometry import see
 from minirt.compare.search import LARGE, Case
 from minirt.compare.table import Guess
+from minirt.errors import FileError
 from minirt.materials.pictures import picture
 from minirt.rendering.settings import render
 from minirt.scene import Scene
@@ -23,6 +24,7 @@ EXACT_LOSSY, CLOSE_LOSSY = 8, 12
 EDGE = 8  # levels between neighbours
 STRAY = 1e-4  # share of pixels that may be off beside edges
 BLOCK = 16  # pixels, of JPEG with half of the colours
+SMALLEST = 16  # pixels of a side
 LARGEST_BLOCK = 16  # pixels
 BAND = 250_000  # pixels that are drawn at once
 GAP = 4  # pixels between panels
@@ -43,6 +45,8 @@ def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
     if side > 1:
         levels = levels[::side, ::side]
         notices.append(f"Blocks of {side}x{side} pixels have one colour: {size_text(levels)} of them are compared.")
+    if min(levels.shape[:2]) < SMALLEST:
+        raise FileError(path, f"has {size_text(levels)} pixels, too few to compare: {SMALLEST}x{SMALLEST} at least")
     return np.ascontiguousarray(levels), tuple(notices), path.suffix.lower() in LOSSY
 
 

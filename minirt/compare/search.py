@@ -97,11 +97,7 @@ def search(case: Case) -> Guess:
     seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
     names = [name for name in SOURCES if used(case.scene, name)]
     shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
-    variants = [
-        each | dict(zip(names, values, strict=True))
-        for values in product(*shaped)
-        for each in seen_from
-    ]
+    variants = [each | dict(zip(names, values, strict=True)) for values in product(*shaped) for each in seen_from]
     variants = ranked(case, variants)
     matt = [row for row in case.light if row.name != "specular"]
     lit = [steepest(case, each, matt) for each in [OURS, *variants[:BEGINNINGS]]]
@@ -134,8 +130,8 @@ def cameras(case: Case) -> Iterator[Guess]:
     views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
     names = "direction", "mirrored", "flipped", "up"
     values = product(("as given", "reversed"), (False, True), (False, True), UPS)
-    frames = sorted((OURS | dict(zip(names, each, strict=True)) for each in values), key=differences)
-    for each in frames:
+    frames = [OURS | dict(zip(names, each, strict=True)) for each in values]
+    for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
         for fov, scale in views if each["direction"] == "as given" else views[:2]:
             guess = each | {"fov": fov, "scale": scale}
             if (key := drawn_by(case, guess)) not in drawn:

@@ -147,6 +147,7 @@ FREE = {
     "scale": "the field of view is {value} degrees across where the scene says {ours}",
     "ambient": "the ambient light is {value} times that of the scene",
     "diffuse": "the light of the lamps is {value} times that of the scene: no factor but brightness, colour and cosine",
-    "specular": "{sentence}; their share is {value}",
+    "specular": "highlights are {value} times as bright as those of the scene",
+    "share": "{sentence}; their share is {value}",
 }
 TABLE = GEOMETRY + LIGHT
