@@ -145,7 +145,8 @@ def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
 def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = "") -> Fit:
     """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
 
-    `judged` are the pixels that count; the factor of the `fixed` term (ambient, diffuse or specular) is that of this program.
+    `judged` are the pixels that count; the factor of the `fixed` term, ambient, diffuse or specular, is that of this
+    program.
     """
     theirs = colours[:, ::-1] if guess["colours"] == "swapped" else colours
     terms = columns(scene, seen, guess)
