@@ -128,7 +128,7 @@ def cameras(case: Case) -> Iterator[Guess]:
     """Yield guesses about the camera, simple ones first; of those that draw the same only the first."""
     drawn = set()
     views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
-    names = "direction", "mirrored", "flipped", "up"
+    names = "direction", "flipped", "mirrored", "up"  # of two that draw the same, the mirrored one is likelier
     values = product(("as given", "reversed"), (False, True), (False, True), UPS)
     frames = [OURS | dict(zip(names, each, strict=True)) for each in values]
     for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
