@@ -18,6 +18,8 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
 
     from minirt.cluster.pictures import render_all as render_all
     from minirt.cluster.pictures import render_to as render_to
+    from minirt.compare import Comparison as Comparison
+    from minirt.compare import compare as compare
     from minirt.element import Element as Element
     from minirt.errors import ElementError as ElementError
     from minirt.errors import FileError as FileError
@@ -69,6 +71,7 @@ HOMES = {
     name: module
     for module, names in {
         "minirt.cluster.pictures": "render_all render_to",
+        "minirt.compare": "Comparison compare",
         "minirt.element": "Element",
         "minirt.errors": "ElementError FileError MiniRTError MlxError Problem RenderError ReplayError SceneError",
         "minirt.fields": "MeshFile Triple",

@@ -10,14 +10,14 @@ from typing import Any
 
 import minirt
 
-RESULTS = ("Image", "Outcome", "Hits", "Buffers", "Scene")
+RESULTS = ("Image", "Outcome", "Hits", "Buffers", "Comparison", "Scene")
 FIELD = re.compile(r"^    (\w+): .*?  # (.*)$", re.MULTILINE)  # of a class, with its comment
 MEMBERS = (property, cached_property, classmethod)
 
 
 def library_reference() -> str:
     """Return the public functions with their docstrings, the results with their members, and all other names."""
-    public = {name: getattr(minirt, name) for name in minirt.public_names()}
+    public = {name: named(name) for name in minirt.public_names()}
     functions = {name: value for name, value in public.items() if inspect.isfunction(value)}
     classes = {name: value for name, value in public.items() if inspect.isclass(value) and name not in RESULTS}
     errors = {name: value for name, value in classes.items() if issubclass(value, BaseException)}
@@ -30,6 +30,12 @@ def library_reference() -> str:
             *("## Elements, materials and further classes\n", *table("class", others)),
         ]
     )
+
+
+def named(name: str) -> Any:
+    """Return what a public name stands for; a package that is called as a function is that function."""
+    value = getattr(minirt, name)
+    return getattr(value, name) if inspect.ismodule(value) else value
 
 
 def function_entry(name: str, function: Any) -> str:

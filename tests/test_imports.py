@@ -38,7 +38,8 @@ MAY: dict[str, set[str]] = {
     "viewer": LOW - {"lanes", "records"} | {"helpers", "meshes", "mlx", "movie", "rendering", "scene"},
     "notebook": {"helpers", "errors", "scene", "mlx", "rendering", "viewer"},
     "report": LOW | {"__init__", "helpers", "kernel", "machine_code", "rendering", "scene"},
-    "cli": {"__init__", "cluster", "errors", "formats", "helpers", "movie"}
+    "compare": {"errors", "element", "helpers", "materials", "rendering", "scene", "shapes"},
+    "cli": {"__init__", "cluster", "compare", "errors", "formats", "helpers", "movie"}
     | {"rendering", "report", "scene", "viewer"},
     "__main__": {"cli", "helpers"},
     "__init__": LOW | {"helpers", "scene", "rendering"},
@@ -46,7 +47,7 @@ MAY: dict[str, set[str]] = {
 COMPILER = {"numba", "llvmlite"}
 COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler, in a process of its own
 LOADER = "kernel/machine_code/library.py"  # imports, late, the part of it that loads machine code
-HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
+HEAVY = ("rendering", "viewer", "kernel", "mlx", "report", "compare")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
 

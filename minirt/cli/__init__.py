@@ -177,7 +177,8 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
     scenes, output = options.scene, options.output
     if not scenes:
         parser.error("expected a scene file, such as scene.rt, or --example")
-    is_headless = output or options.check or options.bench or options.report or options.explain
+    commands = options.check, options.bench, options.report, options.explain, options.compare
+    is_headless = output or any(commands)
     streams = [*filter(is_nameless, scenes)]
     if streams and (not is_headless or options.replay or len(streams) > len(set(streams))):
         parser.error(f"{streams[0]} is a stream, which is read once: it needs -o, --explain or --check")
@@ -185,7 +186,7 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
         return
     picture = "" if scenes[-1].endswith(".rt") else f"; did you mean -o {scenes[-1]}?"
     found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}{picture}"
-    if not output or options.bench or options.report or options.replay:
+    if not output or options.bench or options.report or options.compare or options.replay:
         parser.error(found)
     if PLACE not in output:
         parser.error(f"{found}; several need -o with {PLACE}, such as -o out/{PLACE}.png")

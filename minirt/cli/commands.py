@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say
+from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say, tell
 from minirt.errors import MlxError, RenderError, SceneError, counted
 from minirt.helpers import file_io, system
 from minirt.helpers.progress import State, progress
@@ -25,8 +25,8 @@ Command = Callable[["Scene", argparse.Namespace], int]
 
 def command_for(options: argparse.Namespace) -> Command:
     """Return the command that the options select; showing a window is the default."""
-    commands = {"check": check, "bench": bench, "report": report, "explain": explain, "replay": replay}
-    commands |= {"buffers": write_buffer, "output": render}
+    commands = {"check": check, "bench": bench, "report": report, "explain": explain, "compare": compare}
+    commands |= {"replay": replay, "buffers": write_buffer, "output": render}
     return next((command for name, command in commands.items() if getattr(options, name)), show)
 
 
@@ -119,6 +119,25 @@ def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
         seen = geometry(scene, width, height, options.threads, has_uv=options.buffers == "uv")
         picture = seen.picture(options.buffers)
     write(picture.encode(name, bits=FLOAT if FLOAT in FORMATS[name].bits else None), options.output)
+    return OK
+
+
+def compare(scene: Scene, options: argparse.Namespace) -> int:
+    """Compare another program's picture with the scene's, print what differs, and write it as a picture if asked."""
+    import json
+
+    from minirt.cli.files import check_output, format_name, write
+    from minirt.compare import compare as compare_with
+    from minirt.rendering.image import Image
+
+    with progress(lambda: State(f"comparing {options.compare}")):
+        found = compare_with(scene, options.compare)
+    tell_answer = tell if options.output == "-" else say  # standard output is the picture's
+    tell_answer(json.dumps(found.json()) if options.json else str(found))
+    if options.output:
+        panels = found.panels()
+        check_output(options.output, panels.shape[1], panels.shape[0])
+        write(Image(panels).encode(format_name(options.output)), options.output)
     return OK
 
 

@@ -26,12 +26,12 @@ IN_WINDOWS_TOO = ("size", "depth", "precision", "camera", "left_handed")
 # Options that choose a command, the first of which counts, and the commands with which each option has an effect, where
 # that is not all of them. Without such an option there is a window.
 COMMANDS = {"check": "--check", "bench": "--bench", "report": "--report", "explain": "--explain"}
-COMMANDS |= {"replay": "--replay", "buffers": "--buffers", "output": "-o"}
+COMMANDS |= {"compare": "--compare", "replay": "--replay", "buffers": "--buffers", "output": "-o"}
 EFFECTS = {
     name: set(commands.split())
     for names, commands in (
         ("region turntable frames resume error time strict cluster verbose", "output"),
-        ("output", "replay buffers output"),
+        ("output", "compare replay buffers output"),
         ("bits quality metadata", "replay output"),
         ("samples dither", "replay output window"),
         ("depth", "explain replay output window"),
@@ -42,14 +42,14 @@ EFFECTS = {
         ("keys", "replay window"),
         ("fallback text_scale watch", "window"),
         ("quick ablation", "report"),
-        ("json", "check bench explain"),
+        ("json", "check bench explain compare"),
         *((command, command) for command in COMMANDS if command != "output"),
     )
     for name in names.split()
 }
 LARGEST = 2**16  # bytes of a configuration file
 ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
-FILES = {"output", "fallback", "replay", "report", "config"}  # options whose value is a path
+FILES = {"output", "fallback", "replay", "report", "compare", "config"}  # options whose value is a path
 FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
 
 

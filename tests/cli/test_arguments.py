@@ -93,7 +93,7 @@ TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "-o x.gif --resume --replay keys.txt": RESUME,
     "--cluster local": "--cluster has no effect without -o",
     "-o x.png --cluster local --samples auto --time 1": "--cluster has no effect with --time",
-    "-o x.png --json": "--json has no effect without --check or --bench or --explain",
+    "-o x.png --json": "--json has no effect without --check or --bench or --explain or --compare",
     **{f"-o x.png {each}": f"{each} has no effect without --report" for each in ("--quick", "--ablation")},
     **{f"-o x.png --{each}": f"-o does not go with --{each}" for each in ("check", "bench")},
     "-o x.png --report x": "-o does not go with --report",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import assert_type
+from typing import Any, assert_type
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +90,9 @@ albedo: NDArray[np.float64] = buffers.albedo
 buffers.picture("normals").save(FOLDER / "normals.png")
 explanation: minirt.Explanation = minirt.explain(scene, 8, 6, 4, 3)
 assert_type(explanation.level, tuple[int, int, int])
+comparison: minirt.Comparison = minirt.compare(scene, FOLDER / "picture.png")
+answer: dict[str, Any] = comparison.json()
+panels: NDArray[np.uint8] = comparison.panels()
 
 renderer: minirt.Renderer = minirt.renderer(None)
 frame = np.zeros((6, 8, 4), np.uint8)

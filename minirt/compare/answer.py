@@ -1,0 +1,241 @@
+"""The answer: whether pictures are equal, else causes, what they explain together, and where the rest lies."""
+
+from __future__ import annotations
+
+from math import atan, degrees
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare import lighting
+from minirt.compare.geometry import Seen, changed_scene, on_cap, owners, see, slopes
+from minirt.compare.lighting import LEVEL, Fit
+from minirt.compare.search import GEOMETRIC, Case
+from minirt.compare.table import FREE, OURS, TABLE, Guess
+
+PIXELS = 40_000  # of the sample by which causes are judged
+LEAST_GAIN = 0.001  # of inner pixels that a cause explains
+CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
+MOST_PIXELS, MOST_EDGES = 2_000_000, 5000  # of a picture, in which pixels at edges are looked for
+IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
+LEAST_EDGES = 50
+EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
+TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
+LEAST_REST = 0.001  # share of pixels of a part that is worth a line
+MOST_REST = 6  # parts
+TOGETHER = {"scale": ("scale", "fov")}  # parameters that are one cause
+
+
+class Cause(NamedTuple):
+    """What the other program does in another way."""
+
+    name: str
+    value: Any
+    sentence: str
+
+
+class Rest(NamedTuple):
+    """Where pixels are not explained."""
+
+    shape: str
+    part: str  # surface, cap, shadow or edge
+    share: float  # of all pixels
+    pixel: tuple[int, int]  # column and row of one of them
+
+
+class Judge:
+    """Judges a guess by a large sample of pixels."""
+
+    def __init__(self, case: Case, guess: Guess, tolerance: float) -> None:
+        self.case, self.guess, self.tolerance = case, guess, tolerance
+        self.x, self.y, self.colours = case.sample(PIXELS)
+        self.seen = self.look(guess)
+        self.judged = case.judged[self.seen.owner]
+        self.inner = self.judged & self.is_inner()
+        self.fit = self.fitted(guess)
+        sky = lighting.background(case.scene)
+        shown = (np.abs(self.colours - sky).max(axis=-1) > tolerance) | (self.seen.owner >= 0)
+        self.counted = self.inner & shown  # background where the guess expects it is no evidence
+
+    def look(self, guess: Guess, across: int = 0, down: int = 0) -> Seen:
+        """Trace the sample, or the pixels beside it."""
+        size = self.case.width, self.case.height
+        return see(self.case.scene, size, self.x + across, self.y + down, guess)
+
+    def is_inner(self) -> NDArray[np.bool_]:
+        """Whether pixels are neither beside another face nor at the edge of a shadow."""
+        inner = np.ones(len(self.x), bool)
+        normal = np.nan_to_num(self.seen.normal)
+        for across, down in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            near = self.look(self.guess, across, down)
+            inner &= near.owner == self.seen.owner
+            inner &= (near.open_to == self.seen.open_to).all(axis=0)
+            bent = np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1)
+            inner &= bent < 0.5
+        return inner
+
+    def fitted(self, guess: Guess, fixed: str = "") -> Fit:
+        """How a guess explains the inner pixels."""
+        seen = self.seen if guess == self.guess else self.look(guess)
+        return lighting.fit(self.case.scene, seen, self.colours, guess, self.inner, fixed)
+
+    def even(self, guess: Guess) -> NDArray[np.bool_]:
+        """Whether inner pixels fit to the others of their shapes, whatever their light."""
+        seen = self.look(guess)
+        residual = lighting.unevenness(seen, self.colours, guess)[self.counted]
+        even: NDArray[np.bool_] = residual < (lighting.STEADY / 2) ** 2
+        return even
+
+    def left(self, fit: Fit) -> float:
+        """The share of inner pixels that a fit does not explain."""
+        return float((fit.error[self.counted] > self.tolerance).mean()) if self.counted.any() else 1.0
+
+    def gain(self, without: Fit) -> float:
+        """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
+        return gain(*(fit.error[self.counted] <= self.tolerance for fit in (self.fit, without)))
+
+
+def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:
+    """The share of pixels that are explained only now; 0 if nearly as many were so only before."""
+    won, lost = float((explained & ~before).mean()), float((before & ~explained).mean())
+    return won - lost if won > CLEARLY * lost else 0.0
+
+
+def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
+    """Leave out, one by one, what a guess explains nothing by; return the judge of the guess that remains."""
+    while True:
+        judge = Judge(case, guess, tolerance)
+        different = [name for name in guess if guess[name] != OURS[name] and name != "pixel"]
+        plainer = [guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))} for name in different]
+        fits = [judge.fitted(each) for each in plainer]
+        gains = [(judge.gain(fit), number) for number, fit in enumerate(fits) if is_simpler(fit, judge.fit)]
+        if not gains or min(gains)[0] > LEAST_GAIN:
+            return judge
+        guess = plainer[min(gains)[1]]
+
+
+def is_simpler(one: Fit, other: Fit) -> bool:
+    """Whether a fit, which has a difference less than another, has no factor more that is not this program's."""
+    return one.odd <= other.odd
+
+
+def shapes_alone(judge: Judge) -> Guess:
+    """Return what a guess says of camera and shapes, if that puts the shapes into their places; else nothing."""
+    even = judge.even(judge.guess)
+    told = dict(OURS)
+    if not len(even) or even.mean() < IN_PLACE:
+        return told
+    for name in GEOMETRIC:
+        if judge.guess[name] != OURS[name]:
+            plainer = judge.guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))}
+            if gain(even, judge.even(plainer)) > LEAST_IN_PLACE:
+                told[name] = judge.guess[name]
+    return told
+
+
+def at_edges(judge: Judge) -> Judge:
+    """Return the judge of the guess that explains the edges of shapes best, which tell small changes of the camera."""
+    case, guess = judge.case, judge.guess
+    rows = min(case.height, MOST_PIXELS // case.width)
+    first = (case.height - rows) // 2
+    y, x = np.mgrid[first : first + rows, 0 : case.width].astype(float)
+    size = case.width, case.height
+    owner = owners(case.scene, size, x.ravel(), y.ravel(), guess).reshape(x.shape)
+    beside = (owner[1:, 1:] != owner[1:, :-1]) | (owner[1:, 1:] != owner[:-1, 1:])
+    places = np.flatnonzero(beside)
+    places = places[:: len(places) // MOST_EDGES + 1]
+    if len(places) < LEAST_EDGES:
+        return judge
+    at = x[1:, 1:].ravel()[places], y[1:, 1:].ravel()[places]
+    colours = case.picture[at[1].astype(int), at[0].astype(int)]
+
+    def left(each: Guess) -> float:
+        seen = see(case.scene, size, *at, each)
+        fit = lighting.fit(case.scene, seen, colours, each, case.judged[seen.owner])
+        return float((fit.error > judge.tolerance).mean())
+
+    tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
+    others = [guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts]
+    best = min(others, key=left)
+    return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
+
+
+def causes(judge: Judge, guess: Guess) -> list[Cause]:
+    """Return what a guess says, as sentences."""
+    fit, scene = judge.fit, judge.case.scene
+    found = []
+    for row in TABLE:
+        (name, value), *_ = row.changes.items()
+        if guess[name] != value:
+            continue
+        sentence, told = row.sentence, row.value
+        if name == "specular":
+            sentence = FREE["share"].format(sentence=sentence, value=round(fit.specular, 2))
+        if name == "background":
+            told = [round(each * 255) for each in fit.background]
+            here = [round(each * 255) for each in lighting.background(scene)]
+            sentence = sentence.format(colour=",".join(map(str, told)), ours=",".join(map(str, here)))
+        found.append(Cause(row.name, told, sentence))
+    if guess["scale"] != 1.0:
+        across = round(2 * degrees(atan(slopes(scene.camera, judge.case.width / judge.case.height, guess)[0])), 1)
+        found.append(Cause("fov", across, FREE["scale"].format(value=across, ours=scene.camera.fov)))
+    if guess["roll"]:
+        found.append(Cause("roll", guess["roll"], FREE["roll"].format(value=guess["roll"])))
+    return found
+
+
+def factors(judge: Judge) -> list[Cause]:
+    """Return the factors of ambient light and of lamps that are not those of the scene, and that count."""
+    guess, fit = judge.guess, judge.fit
+    diffuse = [round(float(each), 2) for each in fit.diffuse]
+    if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
+        diffuse = diffuse[:1]
+    told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
+    if lighting.has_highlights(judge.case.scene) and not guess["specular"]:
+        told["specular"] = [round(fit.specular, 2)]
+    if guess["fading"]:
+        del told["diffuse"]  # whose unit is a free choice of the other program
+    found = []
+    for name, values in told.items():
+        if any(map(lighting.differs, values)) and judge.gain(judge.fitted(guess, name)) > LEAST_GAIN:
+            value = values[0] if len(values) == 1 else values
+            spelled = ", ".join(map(str, values))
+            found.append(Cause(name, value, FREE[name].format(value=spelled)))
+    return found
+
+
+def rest(judge: Judge) -> tuple[Rest, ...]:
+    """Return where the pixels lie that a guess does not explain, the largest part first."""
+    seen, scene = judge.seen, changed_scene(judge.case.scene, judge.guess)
+    wrong = judge.judged & (judge.fit.error > judge.tolerance)
+    _, cosine = lighting.cosines(seen, judge.guess)
+    shadow = (cosine > 0).any(axis=0) & ~((cosine > 0) & seen.open_to).any(axis=0)
+    masks = {"edge": ~judge.inner, "cap": on_cap(scene, seen.owner, seen.normal), "shadow": shadow}
+    masks["surface"] = np.ones(len(wrong), bool)
+    found = []
+    for part, mask in masks.items():
+        for owner in np.unique(seen.owner[wrong & mask]):
+            here = np.flatnonzero(wrong & mask & (seen.owner == owner))
+            x, y = judge.x[here], judge.y[here]
+            middle = np.argmin(np.hypot(x - np.median(x), y - np.median(y)))
+            place = int(x[middle]), int(y[middle])
+            found.append(Rest(shape_name(judge.case, int(owner)), part, len(here) / len(wrong), place))
+        wrong &= ~mask
+    large = [each for each in found if each.share >= LEAST_REST]
+    return tuple(sorted(large, key=lambda each: -each.share)[:MOST_REST])
+
+
+def shape_name(case: Case, owner: int) -> str:
+    """Return the name of a shape: `cylinder 2` is the second one of the scene."""
+    if owner < 0:
+        return "background"
+    shapes = case.scene.shapes
+    kind = type(shapes[owner])
+    number = sum(type(shape) is kind for shape in shapes[: owner + 1])
+    return f"{kind.title} {number}"
+
+
+def tolerance_of(is_lossy: bool) -> float:
+    """The error up to which a pixel is explained."""
+    return (12.5 if is_lossy else 4.5) * LEVEL

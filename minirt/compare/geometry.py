@@ -1,0 +1,212 @@
+"""What pixels show under a guess: rays of another camera, through a scene whose shapes mean something else."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import cos, hypot, radians, sin, tan
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare.table import OURS, Guess
+from minirt.rendering.queries.rays import trace
+from minirt.scene import Camera, Scene
+from minirt.shapes import Cone, Cylinder, Sphere
+from minirt.shapes.shape import Capped
+
+Floats = NDArray[np.float64]
+AXES = {"y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1), "x": (1, 0, 0), "-x": (-1, 0, 0)}
+SHAPES = "radius", "cylinder", "axis", "cone"  # parameters that change the shapes of the scene
+MOST_LAYERS = 4  # of caps or inner sides that a ray passes
+ON_CAP = 0.999  # cosine between the normal of a cap and the axis
+
+
+class Seen(NamedTuple):
+    """What n rays meet, and the way from there to each of the lamps."""
+
+    owner: NDArray[np.int64]  # index in `scene.shapes`, -1 for the background
+    point: Floats
+    normal: Floats  # outward
+    direction: Floats  # of the ray
+    to_light: Floats  # (lamps, n, 3)
+    distance: Floats  # (lamps, n) to the lamp
+    strength: Floats  # (lamps, n) of spots and lamps that fade
+    open_to: NDArray[np.bool_]  # (lamps, n) whether nothing lies between the point and the lamp
+    open_beyond: NDArray[np.bool_]  # (lamps, n) nor behind the lamp
+    reach: float  # median distance of points from lamps, the unit in which light fades
+
+
+def unit(v: Floats) -> Floats:
+    """Scale vectors to length 1."""
+    result: Floats = v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-30)
+    return result
+
+
+def dots(one: Floats, other: Floats) -> Floats:
+    """Scalar products of vectors, 0 for those that are not known."""
+    result: Floats = np.einsum("...ij,...ij->...i", np.nan_to_num(one), other)
+    return result
+
+
+def frame(camera: Camera, guess: Guess) -> Floats:
+    """Return right, up and forward of a picture, (3, 3)."""
+    forward = np.array(camera.direction)
+    if guess["direction"] == "reversed":
+        forward = -forward
+    if guess["up"].startswith("from the "):
+        right, up = shortest_rotation(np.array(AXES[guess["up"].removeprefix("from the ")], float), forward)
+    elif guess["up"] == "x first":
+        up = unit(np.cross((-1.0, 0.0, 0.0), forward))
+        up = up if up.any() else np.array([0.0, 0.0, 1.0])
+        right = np.cross(forward, up)
+    else:
+        right = np.cross(forward, AXES[guess["up"]])
+        right = unit(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0.0, 0.0])
+        up = np.cross(right, forward)
+    turn = radians(camera.roll + guess["roll"])
+    right, up = cos(turn) * right - sin(turn) * up, sin(turn) * right + cos(turn) * up
+    if guess["mirrored"] != camera.left_handed:
+        right = -right
+    return np.array([right, -up if guess["flipped"] else up, forward])
+
+
+def shortest_rotation(axis: Floats, forward: Floats) -> tuple[Floats, Floats]:
+    """Return right and up of a camera along an axis that is turned by the shortest way onto its direction."""
+    across, cosine = np.cross(axis, forward), float(axis @ forward)
+    x, y, z = across
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn = np.eye(3) + cross + cross @ cross / max(1 + cosine, 1e-12)
+    return turn @ np.cross(axis, (0.0, 1.0, 0.0)), turn @ np.array([0.0, 1.0, 0.0])
+
+
+def slopes(camera: Camera, aspect: float, guess: Guess) -> tuple[float, float]:
+    """Return the slopes, to the side and up, of the rays through the edges of the picture."""
+    angle = camera.fov if guess["fov"] == "full angle" else camera.fov / 2
+    half = tan(radians(min(max(angle, 1e-6), 89.99))) * guess["scale"]
+    level = max(hypot(camera.direction[0], camera.direction[2]), 1e-6)  # cosine of the tilt
+    half *= {"not normalised": level, "too near": 1 / level}.get(guess["fov"], 1.0)
+    if guess["fov"] == "vertical":
+        return half * aspect, half
+    return half, half if guess["fov"] == "square" else half / aspect
+
+
+def directions(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Floats:
+    """Return the directions of the rays through pixels of a picture, (n, 3)."""
+    width, height = size
+    across, upward = slopes(scene.camera, width / height, guess)
+    inset = 0.5 if guess["pixel"] == "centre" else 0.0
+    right, up, forward = frame(scene.camera, guess)
+    sideways = across * (2 * (x + inset) / width - 1)
+    above = upward * (1 - 2 * (y + inset) / height)
+    return unit(forward + sideways[:, None] * right + above[:, None] * up)
+
+
+def changed_scene(scene: Scene, guess: Guess) -> Scene:
+    """Return the scene with shapes as the guess reads their lines; the last ones are kept."""
+    if all(guess[name] == OURS[name] for name in SHAPES):
+        return scene
+    return edited(scene, *(guess[name] for name in SHAPES))
+
+
+@lru_cache(64)
+def edited(scene: Scene, radius: str, cylinder: str, axis: str, cone: str) -> Scene:
+    """Return the scene with changed spheres, cylinders and cones."""
+    for shape in scene.shapes:
+        changes: dict[str, Any] = {}
+        if isinstance(shape, Sphere) and radius in ("spheres", "all"):
+            changes["diameter"] = shape.diameter * 2
+        if isinstance(shape, Cylinder):
+            changes = cylinder_changes(shape, radius, cylinder, axis)
+        if isinstance(shape, Cone) and cone != "apex":
+            apex, way = np.array(shape.apex), np.array(shape.axis)
+            changes["axis"] = tuple(-way)
+            if cone == "base":
+                changes["apex"] = tuple(apex + way * shape.height)
+        if changes:
+            scene = scene.replace(shape, **changes)
+    return scene
+
+
+def cylinder_changes(shape: Cylinder, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
+    """Return the changed fields of a cylinder."""
+    changes: dict[str, Any] = {}
+    x, y, z = shape.axis
+    ways = {"upright": (0.0, 1.0, 0.0), "-x": (-x, y, z), "-z": (x, y, -z), "swapped": (z, y, x)}
+    way = np.array(ways.get(axis, shape.axis))
+    if axis != "as given":
+        changes["axis"] = tuple(way)
+    if radius in ("cylinders", "all"):
+        changes["diameter"] = shape.diameter * 2
+    if cylinder in ("base", "top"):
+        sign = 1 if cylinder == "base" else -1
+        changes["centre"] = tuple(np.array(shape.centre) + sign * shape.height / 2 * way)
+    if cylinder == "doubled":
+        changes["height"] = shape.height * 2
+    return changes
+
+
+def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np.bool_]:
+    """Whether hits lie on caps of cylinders and cones."""
+    axes = np.array([shape.axis if isinstance(shape, Capped) else (0, 0, 0) for shape in scene.shapes] + [(0, 0, 0)])
+    result: NDArray[np.bool_] = np.abs(dots(normal, axes[owner])) > ON_CAP
+    return result
+
+
+def owners(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> NDArray[np.int64]:
+    """Return the index of the shape that each pixel shows, -1 for the background."""
+    scene = changed_scene(scene, guess)
+    ways = directions(scene, size, x, y, guess)
+    owner: NDArray[np.int64] = hits(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)[1]
+    return owner
+
+
+def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any, ...]:
+    """Return distance, owner, point and normal of what rays meet, past the surfaces that the guess does not draw."""
+    found = trace(scene, origins, ways, threads=1)
+    if guess["caps"] and guess["inside"]:
+        return tuple(found)
+    distance, owner, point, normal = found
+    for _ in range(MOST_LAYERS):
+        passed = np.zeros(len(owner), bool)
+        if not guess["caps"]:
+            passed |= on_cap(scene, owner, normal)
+        if not guess["inside"]:
+            closed = np.array([shape.solid for shape in scene.shapes] + [False])[owner]
+            passed |= closed & (dots(normal, ways) > 0)
+        if not passed.any():
+            break
+        further = trace(scene, point[passed], ways[passed], threads=1)
+        distance[passed] += further.distance
+        owner[passed], point[passed], normal[passed] = further.owner, further.point, further.normal
+    return distance, owner, point, normal
+
+
+def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Seen:
+    """Trace pixels of a picture, and from what they show to all lamps."""
+    scene = changed_scene(scene, guess)
+    ways = directions(scene, size, x, y, guess)
+    eye = np.broadcast_to(np.array(scene.camera.position), ways.shape)
+    _, owner, point, normal = hits(scene, eye, ways, guess)
+    lamps, count = scene.lights, len(owner)
+    to_light, distance = np.zeros((len(lamps), count, 3)), np.full((len(lamps), count), np.inf)
+    strength, open_to, open_beyond = np.ones((len(lamps), count)), *np.zeros((2, len(lamps), count), bool)
+    there = owner >= 0
+    for i, lamp in enumerate(lamps):
+        *axis, edge, steepness = lamp.cone()
+        if lamp.position is None:
+            to_light[i] = -np.array(axis)
+        else:
+            offset = np.array(lamp.position) - point[there]
+            distance[i, there] = np.linalg.norm(offset, axis=-1)
+            to_light[i, there] = offset / np.maximum(distance[i, there], 1e-30)[:, None]
+            if edge > -2.0 or lamp.fading():
+                rim = np.clip((-(to_light[i] @ axis) - edge) * steepness, 0, 1)
+                faded = np.maximum(1 - distance[i, there] * lamp.fading(), 0)
+                strength[i, there] = (rim * rim * (3 - 2 * rim))[there] * faded
+        occluder = hits(scene, point[there], to_light[i, there], guess)[0]
+        open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)
+        open_beyond[i, there] = np.isinf(occluder)
+    known = distance[np.isfinite(distance)]
+    reach = float(np.median(known)) if len(known) else 1.0
+    return Seen(owner, point, normal, ways, to_light, distance, strength, open_to, open_beyond, reach)

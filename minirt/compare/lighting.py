@@ -1,0 +1,237 @@
+"""The light of another ray tracer: how bright its terms are, by least squares, under a guess about their form."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.compare.geometry import Floats, Seen, dots, unit
+from minirt.compare.table import OURS, Guess
+from minirt.element import fields_of
+from minirt.materials import Attributes
+from minirt.scene import Scene
+
+LEVEL = 1 / 255
+DARKEST, BRIGHTEST = 3 * LEVEL, 252 * LEVEL  # levels that are neither clamped nor rounded to nothing
+WORST = 20 * LEVEL  # a larger error counts as this one
+PRICE = 0.02 * LEVEL  # of a difference from this program
+PRIOR = 1e-6  # how much a factor that the picture does not tell is drawn to that of this program
+HELD = 1e9  # times the prior, for a factor that is fixed
+SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a word; that of lamps that fade
+STEADY = 0.1  # a difference within a shape that is larger counts as this one
+MOST_ROWS = 4000  # of least squares
+MOST_SPECKS = 0.6  # of the pixels of shapes: more dark ones are no acne
+ROUNDS = 4  # of least squares, each without what the one before did not explain
+PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
+
+
+class Fit(NamedTuple):
+    """How a guess explains the colours of pixels."""
+
+    score: float  # mean error plus the price of the guess
+    error: Floats  # (n,) of the worst channel, from 0 to 1
+    factors: Floats  # of all terms of light
+    ambient: float  # factors; 1 in this program
+    diffuse: Floats  # (lamps,)
+    specular: float
+    background: Floats
+    odd: int  # factors, of ambient light and of lamps, that are not those of this program
+
+
+def plain_shapes(scene: Scene) -> NDArray[np.bool_]:
+    """Whether the light of each shape is that of its colour alone, without mirrors, glass and textures; and True for
+    the background, unless it is a picture."""
+    names = [each.name for each in fields_of(Attributes) if each.name not in PLAIN]
+    shapes = [all(getattr(shape, name, None) is None for name in names) for shape in scene.shapes]
+    has_colour = [getattr(shape, "colour", None) is not None for shape in scene.shapes]
+    sky = not scene.background or not isinstance(scene.background.paint, str)
+    return np.array([is_plain and has for is_plain, has in zip(shapes, has_colour, strict=True)] + [sky])
+
+
+def numbers(colour: Any) -> Floats:
+    """A colour from 0 to 1."""
+    return np.array(colour, float) / 255
+
+
+def cosines(seen: Seen, guess: Guess) -> tuple[Floats, Floats]:
+    """Return the normals that light falls onto, and the cosine for each lamp, (lamps, n), 0 on the other side."""
+    normal = np.nan_to_num(seen.normal)
+    if guess["normals"] != "outward":
+        away = dots(normal, seen.direction) > 0
+        normal = np.where(away[:, None], -normal, normal)
+    cosine = dots(seen.to_light, normal)
+    return normal, np.abs(cosine) if guess["normals"] == "both sides" else np.maximum(cosine, 0)
+
+
+def arriving(seen: Seen, guess: Guess) -> Floats:
+    """Return the share of each lamp's light that reaches each point, (lamps, n)."""
+    if guess["shadows"] == "none":
+        return seen.strength
+    return seen.strength * (seen.open_beyond if guess["shadows"] == "behind the lamp" else seen.open_to)
+
+
+def highlights(seen: Seen, normal: Floats, form: str, exponent: Any) -> Floats:
+    """Return the highlights of each lamp, (lamps, n), without its colour."""
+    if form == "blinn":
+        base = dots(unit(seen.to_light - seen.direction), normal)
+    else:
+        along = dots(seen.to_light, normal) * dots(normal, -seen.direction)
+        base = 2 * along + dots(seen.to_light, seen.direction)
+    result: Floats = np.clip(base, 0, 1) ** exponent
+    return result
+
+
+def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
+    """Return the terms of the light at each point, (n, 3, 2 + lamps + 1): ambient, a share of the object's own colour,
+    each lamp's, highlights."""
+    shapes = scene.shapes
+    colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
+    if guess["colours"] == "object ignored":
+        colours = np.ones_like(colours)
+    lamp_colours = [numbers((255, 255, 255) if guess["colours"] == "light ignored" else lamp.colour)
+                    for lamp in scene.lights]  # fmt: skip
+    normal, cosine = cosines(seen, guess)
+    arrived = arriving(seen, guess)
+    light = cosine * arrived
+    if guess["fading"]:
+        distance = np.where(np.isfinite(seen.distance), seen.distance, seen.reach)  # parallel light does not fade
+        light = light / np.maximum(distance / seen.reach, 1e-3) ** guess["fading"]
+    tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
+    grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
+    forms = {"object x light": colours * tint, "light alone": tint + 0 * colours, "object alone": colours * grey}
+    ambient = forms.get(guess["ambient"], 0 * colours)
+    if not guess["ambient_in_shadow"]:
+        lit: NDArray[np.bool_] = np.any(light > 0, axis=0)
+        ambient = ambient * lit[:, None]
+    terms = [ambient, 0 * colours]
+    if guess["ambient"] == "light plus object":
+        terms = [tint + 0 * colours, colours]
+    glint = np.zeros_like(colours)
+    materials = [getattr(shape, "specular", None) for shape in shapes]
+    for i, lamp in enumerate(scene.lights):
+        terms.append(colours * lamp_colours[i] * lamp.brightness * light[i][:, None])
+        if guess["specular"]:
+            form, exponent, of_object = guess["specular"]
+            shine = highlights(seen, normal, form, exponent)[i] * arrived[i] * (cosine[i] > 0)
+            glint += shine[:, None] * (colours if of_object else 1) * lamp_colours[i] * lamp.brightness
+    for number, material in enumerate(materials):
+        if material:
+            form = "blinn" if material.blinn else "phong"
+            shine = material.share * highlights(seen, normal, form, material.exponent) * arrived * (cosine > 0)
+            for i, lamp in enumerate(scene.lights):
+                own = (seen.owner == number) * shine[i]
+                glint += own[:, None] * lamp_colours[i] * lamp.brightness
+    return np.stack([*terms, glint], axis=-1)
+
+
+def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
+    """Return by how much each pixel differs from its shape's, if that has one colour in one light; squares, (n,)."""
+    _, cosine = cosines(seen, guess)
+    light = (cosine * arriving(seen, guess)).sum(axis=0)
+    region = seen.owner + 1
+    count = np.maximum(np.bincount(region), 1)
+    off = light - (np.bincount(region, light) / count)[region]
+    variance = np.bincount(region, off * off) + 1e-6
+    residual = np.zeros(len(region))
+    for channel in colours.T:
+        apart = channel - (np.bincount(region, channel) / count)[region]
+        slope = np.bincount(region, apart * off) / variance
+        residual += (apart - slope[region] * off) ** 2
+    return residual
+
+
+def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = "") -> Fit:
+    """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
+
+    `judged` are the pixels that count; the factor of the `fixed` term, ambient, diffuse or specular, is that of this
+    program.
+    """
+    theirs = colours[:, ::-1] if guess["colours"] == "swapped" else colours
+    terms = columns(scene, seen, guess)
+    own, beyond = judged & (seen.owner >= 0), judged & (seen.owner < 0)
+    factors = least_squares(terms[own], theirs[own], guess["gamma"], usual_factors(scene, guess), fixed)
+    own_sky = guess["background"] == "own" and beyond.any()
+    sky = np.median(theirs[beyond], axis=0) if own_sky else background(scene)
+    error = np.abs(drawn(terms, seen, guess, factors, sky) - theirs).max(axis=-1)
+    if guess["acne"]:
+        dark = np.abs(drawn(terms[..., :2], seen, guess, factors[:2], sky) - theirs).max(axis=-1)
+        specks = (dark < error - WORST) & own
+        if specks.sum() < MOST_SPECKS * own.sum():
+            error = np.where(specks, dark, error)
+    diffuse = factors[2:-1] * seen.reach ** guess["fading"]
+    odd = differs(float(factors[0])) + differs(middle(diffuse), slack(guess))
+    differences = [guess[name] != value for name, value in OURS.items()].count(True)
+    score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
+    score += PRICE * (differences + odd)
+    return Fit(score, error, factors, float(factors[0]), diffuse, float(factors[-1]), sky, odd)
+
+
+def usual_factors(scene: Scene, guess: Guess) -> Floats:
+    """The factors of this program: one, but for a share of the object's colour and highlights that no material has."""
+    factors = np.ones(len(scene.lights) + 3)
+    factors[1] = 0.0
+    factors[-1] = 1.0 if has_highlights(scene) and not guess["specular"] else 0.0
+    return factors
+
+
+def has_highlights(scene: Scene) -> bool:
+    """Whether a scene asks for highlights."""
+    return any(getattr(shape, "specular", None) for shape in scene.shapes)
+
+
+def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fixed: str) -> Floats:
+    """Return the factors of terms, (n, 3, k), whose sum is nearest to colours, in their levels, without outliers."""
+    usable = (theirs > DARKEST) & (theirs < BRIGHTEST)
+    slope = gamma * theirs[usable] ** (gamma - 1)
+    rows, values = terms[usable] / slope[:, None], theirs[usable] ** gamma / slope
+    step = len(values) // MOST_ROWS + 1
+    rows, values = rows[::step], values[::step]
+    weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
+    held = {"ambient": slice(1), "diffuse": slice(2, -1), "specular": slice(-1, None)}.get(fixed, slice(0))
+    weight[held, held] *= HELD
+    factors, kept = usual, np.ones(len(values), bool)
+    for _ in range(ROUNDS):
+        chosen, aims = rows[kept], values[kept]
+        found = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
+        factors = np.maximum(found, 0).astype(np.float64)
+        off = np.abs(rows @ factors - values)
+        kept = off < max(2 * np.median(off), 3 * LEVEL) if len(off) else kept
+    return factors
+
+
+def drawn(terms: Floats, seen: Seen, guess: Guess, factors: Floats, sky: Floats) -> Floats:
+    """Return the levels of pixels, (n, 3) from 0 to 1, in the order of the scene's colours."""
+    shown = shown_levels(terms @ factors, guess)
+    shown[seen.owner < 0] = sky
+    return shown
+
+
+def slack(guess: Guess) -> float:
+    """By how much the factor of the lamps may differ from 1: more where light fades, in a unit of their own."""
+    return FADING_SLACK if guess["fading"] else SLACK
+
+
+def middle(factors: Floats) -> float:
+    """The median of the factors of lamps; 1 without any."""
+    return float(np.median(factors)) if len(factors) else 1.0
+
+
+def differs(factor: float, slack: float = SLACK) -> bool:
+    """Whether a factor is not the one of this program."""
+    return abs(factor - 1) > slack
+
+
+def shown_levels(light: Floats, guess: Guess) -> Floats:
+    """Return the levels, from 0 to 1, by which light is shown."""
+    if guess["overflow"] == "wrapped":
+        light = light % (256 * LEVEL)
+    result: Floats = np.clip(light, 0, 1) ** (1 / guess["gamma"])
+    return result
+
+
+def background(scene: Scene) -> Floats:
+    """The colour of the background."""
+    paint = scene.background.paint if scene.background else (0, 0, 0)
+    return np.zeros(3) if isinstance(paint, str) else numbers(paint)

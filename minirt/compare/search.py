@@ -1,0 +1,223 @@
+"""The search for the guess that explains a picture best.
+
+First the camera and the shapes, by how well each region that traced rays give is one colour in one light, whatever
+they are; then the light; then all rows of the table in turn, from the best few beginnings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from minirt.compare import lighting
+from minirt.compare.geometry import Floats, Seen, frame, see, slopes
+from minirt.compare.lighting import Fit
+from minirt.compare.table import GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
+from minirt.scene import Scene
+
+COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
+UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
+FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too near"
+SCALES = tuple(np.geomspace(0.35, 2.8, 19))
+FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
+ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
+EVEN = 0.001  # unevenness of a camera and of sizes that may be right
+NAMED, FREE = 7, 3  # cameras of the table, and those with another field of view, from which shapes are tried
+BEGINNINGS, FINALISTS = 8, 3
+ALIKE = 1.05  # scores up to this times another are as good
+NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
+NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
+BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
+SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
+SOURCES = "cylinder", "radius", "cone"
+
+
+class Case:
+    """A scene, a picture of another program, and samples of its pixels."""
+
+    def __init__(self, scene: Scene, picture: Floats) -> None:
+        self.scene, self.picture = scene, picture
+        self.height, self.width = picture.shape[:2]
+        self.judged = lighting.plain_shapes(scene)
+        has_specks = speck_share(picture) > SPECKLED
+        self.table = [row for row in TABLE if row.name != "acne" or has_specks]
+        self.light = [row for row in self.table if row in LIGHT]
+        self.kept: dict[Any, Seen] = {}
+        self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
+
+    def sample(self, count: int) -> tuple[Floats, Floats, Floats]:
+        """Return x, y and colours of about that many pixels, on a slanted grid."""
+        if count in self.samples:
+            return self.samples[count]
+        step = max(1.0, (self.width * self.height / count) ** 0.5)
+        rows = np.arange(step / 2, self.height, step)
+        places = [((np.arange(0, self.width, step) + shift * step) % self.width, row)
+                  for shift, row in zip((0.618034 * np.arange(len(rows))) % 1, rows, strict=True)]  # fmt: skip
+        x = np.concatenate([np.floor(along) for along, _ in places])
+        y = np.concatenate([np.full(len(along), float(int(row))) for along, row in places])
+        self.samples[count] = x, y, self.picture[y.astype(int), x.astype(int)]
+        return self.samples[count]
+
+    def see(self, guess: Guess, count: int) -> Seen:
+        """What the pixels of a sample show under a guess; the last ones are kept."""
+        key = count, *(guess[name] for name in GEOMETRIC)
+        if key not in self.kept:
+            if len(self.kept) > 400:
+                self.kept.clear()
+            x, y, _ = self.sample(count)
+            self.kept[key] = see(self.scene, (self.width, self.height), x, y, guess)
+        return self.kept[key]
+
+    def fit(self, guess: Guess, count: int = FINE) -> Fit:
+        """How a guess explains the sample."""
+        seen = self.see(guess, count)
+        return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
+
+    def unevenness(self, guess: Guess) -> float:
+        """How far the regions of a guess are from being one colour in one light each."""
+        seen = self.see(guess, COARSE)
+        residual = lighting.unevenness(seen, self.sample(COARSE)[2], guess)
+        return float(np.minimum(residual, lighting.STEADY**2).mean())
+
+
+GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "scale", "roll"
+
+
+def search(case: Case) -> Guess:
+    """Find the guess that explains the picture best."""
+    seen_from = ranked(case, cameras(case))
+    if case.unevenness(seen_from[0]) > EVEN:  # sizes may hide the camera
+        radii = [row.changes for row in GEOMETRY if row.name == "radius"]
+        named = [each for each in seen_from if each["scale"] == 1.0]
+        seen_from = ranked(case, [*seen_from, *(each | changes for each in named for changes in radii)])
+    free = [each for each in seen_from if each["scale"] != 1.0]
+    seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
+    names = [name for name in SOURCES if used(case.scene, name)]
+    shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
+    variants = [each | dict(zip(names, values, strict=True)) for values in product(*shaped) for each in seen_from]
+    variants = ranked(case, variants)
+    matt = [row for row in case.light if row.name != "specular"]
+    lit = [steepest(case, each, matt) for each in [OURS, *variants[:BEGINNINGS]]]
+    best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
+    found = [with_simplest_light(case, simplify(case, descend(case, each, case.table, 3))) for each in best]
+    return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
+
+
+def ranked(case: Case, guesses: Iterable[Guess]) -> list[Guess]:
+    """Sort guesses by how even they make the shapes."""
+    return sorted(guesses, key=case.unevenness)
+
+
+def speck_share(picture: Floats) -> float:
+    """The share of pixels that are clearly darker than both of their neighbours at the sides."""
+    light = picture.sum(axis=-1)
+    beside = np.minimum(light[:, :-2], light[:, 2:])
+    return float((beside - light[:, 1:-1] > SPECK).mean())
+
+
+def used(scene: Scene, name: str) -> bool:
+    """Whether a scene has shapes that a parameter changes."""
+    wanted = {"cylinder": scene.cylinders, "cone": scene.cones, "radius": (*scene.spheres, *scene.cylinders)}
+    return bool(wanted[name])
+
+
+def cameras(case: Case) -> Iterator[Guess]:
+    """Yield guesses about the camera, simple ones first; of those that draw the same only the first."""
+    drawn = set()
+    views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
+    names = "direction", "flipped", "mirrored", "up"  # of two that draw the same, the mirrored one is likelier
+    values = product(("as given", "reversed"), (False, True), (False, True), UPS)
+    frames = [OURS | dict(zip(names, each, strict=True)) for each in values]
+    for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
+        for fov, scale in views if each["direction"] == "as given" else views[:2]:
+            guess = each | {"fov": fov, "scale": scale}
+            if (key := drawn_by(case, guess)) not in drawn:
+                drawn.add(key)
+                yield guess
+
+
+def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
+    """Numbers that are equal for guesses whose cameras draw the same."""
+    edges = slopes(case.scene.camera, case.width / case.height, guess)
+    return tuple(np.round([*frame(case.scene.camera, guess).ravel(), *edges], 4) + 0.0)
+
+
+def differences(guess: Guess) -> int:
+    """The number of parameters in which a guess differs from this program; those with a free number count twice."""
+    costly = [guess["scale"] != 1.0, guess["roll"] != 0.0, guess["ambient"] == "light plus object"]
+    return [*(guess[name] != value for name, value in OURS.items()), *costly].count(True)
+
+
+def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
+    """Return the neighbours of a guess by the parameter in which they differ."""
+    found: dict[str, list[Guess]] = {}
+    for row in rows:
+        (name, value), *_ = row.changes.items()
+        if guess[name] != value:
+            found.setdefault(name, []).append(guess | row.changes)
+    for name, near in found.items():
+        if guess[name] != OURS[name]:
+            near.append(guess | {name: OURS[name]})
+    if "fov" in found:  # rows of the camera
+        scales = [guess["scale"] * factor for factor in FINER] + [1.0]
+        found["fov"] += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS if guess["scale"] != 1.0]
+        found["scale"] = [guess | {"scale": scale} for scale in scales]
+        found["roll"] = [guess | {"roll": guess["roll"] + sign * turn} for turn in ROLLS for sign in (1, -1)]
+        found["roll"].append(guess | {"roll": 0.0})
+    return found
+
+
+def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
+    """Improve a guess, one parameter after the other, until no step explains the picture clearly better."""
+    best = case.fit(guess, count).score
+    for _ in range(rounds):
+        before = best
+        for name in steps(guess, rows):
+            for each in steps(guess, rows).get(name, ()):
+                score = case.fit(each, count).score
+                if score < best * (BETTER if count == FINE else BETTER_YET):
+                    guess, best = each, score
+        if best == before:
+            break
+    return guess
+
+
+def steepest(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> Guess:
+    """Take the step that explains the picture best, again and again, until none explains it clearly better."""
+    best = case.fit(guess).score
+    while True:
+        scored = [(case.fit(each).score, each) for near in steps(guess, rows).values() for each in near]
+        score, near = min(scored, key=lambda each: each[0])
+        if score >= best * BETTER:
+            return guess
+        guess, best = near, score
+
+
+def simplify(case: Case, guess: Guess) -> Guess:
+    """Return the simplest guess that explains the picture as well: with a named camera in place of free numbers."""
+    limit = case.fit(guess).score * ALIKE + NEAR_SCORE
+    plain = {"roll": 0.0, "scale": 1.0, "fov": "horizontal", "up": "y", "mirrored": False, "flipped": False}
+    named = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS]
+    named += [each | {"roll": 0.0, "up": up} for each in (guess, *named) for up in UPS]
+    flips = product((False, True), (False, True), UPS)
+    named += [guess | {"mirrored": left, "flipped": down, "up": up} for left, down, up in flips]
+    named += [guess | {name: value} for name, value in plain.items()]
+    simpler = sorted((each for each in named if differences(each) < differences(guess)), key=differences)
+    key = drawn_by(case, guess)
+    for each in simpler:
+        if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR and case.fit(each).score < limit:
+            return each
+    return guess
+
+
+def with_simplest_light(case: Case, guess: Guess) -> Guess:
+    """Return the guess with the ambient light and the fading of fewest differences that explain as much."""
+    limit = case.fit(guess).score * ALIKE + NEAR_SCORE
+    forms = ["object x light", *(row.changes["ambient"] for row in LIGHT if "ambient" in row.changes)]
+    others = [guess | {"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
+    fits = [(each, case.fit(each)) for each in [guess, *others]]
+    alike = [(differences(each) + fit.odd, number) for number, (each, fit) in enumerate(fits) if fit.score <= limit]
+    return fits[min(alike)[1]][0]

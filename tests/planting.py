@@ -1,0 +1,160 @@
+"""Plant hypotheses of `minirt.compare` in pictures of random scenes: python -m tests.planting --pairs 0 40.
+
+The light of planted pictures is drawn by the formulas of `minirt.compare.lighting` with known factors;
+`tests/test_compare.py` holds those of this program equal to the kernel's, and plants by edited scenes, too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+import minirt
+from minirt.compare import Comparison, compare, lighting
+from minirt.compare.geometry import see
+from minirt.compare.pictures import EDGE
+from minirt.compare.table import OURS, TABLE, Guess, Hypothesis
+from minirt.scene import Scene
+
+Bytes = NDArray[np.uint8]  # (h, w, 3)
+SIZE = 480, 270
+VISIBLE, LEVELS = 0.01, 6  # share of pixels that a planted hypothesis changes by more than so many levels
+VISIBLE_EDGES = 0.0015  # of one that only moves edges
+SKY = (40, 90, 160)
+SPECKS = 0.25
+KNOWN = 0.96
+EXPONENTS = 16, 50, 200
+
+
+def student_scene(seed: int) -> Scene:
+    """A scene as students write them: a floor, a few balls and cylinders, one or two lamps, and a camera."""
+    random = np.random.default_rng(seed)
+
+    def between(low: float, high: float) -> float:
+        return float(random.uniform(low, high))
+
+    def place(low: float, high: float) -> tuple[float, float, float]:
+        return between(-4, 4), between(low, high), between(-3, 3)
+
+    def colour(least: int) -> tuple[int, ...]:
+        return tuple(map(int, random.integers(least, 256, 3)))
+
+    eye = between(-7, 7), between(1.5, 6), between(-12, -8)
+    items = [
+        minirt.Ambient(between(0.1, 0.3), colour(150)),
+        minirt.Camera.look_at(eye, (between(-1, 1), between(0, 1.5), between(-1, 1)), fov=between(50, 90)),
+        minirt.Light((between(-8, 8), between(6, 12), between(-8, 0)), between(0.5, 0.8), colour(150)),
+        minirt.Plane((0, -1, 0), (0, 1, 0), colour(40)),
+    ]
+    if random.random() < 0.3:
+        items.append(minirt.FurtherLight((between(-8, 8), between(6, 12), between(-8, 0)), 0.3, colour(150)))
+    if random.random() < 0.4:
+        items.append(minirt.Plane((0, 0, between(7, 12)), (0, 0, -1), colour(40)))
+    if random.random() < 0.3:
+        items.append(minirt.Plane((0, 14, 0), (0, 1, 0), colour(40)))
+    items += [minirt.Sphere(place(0, 2), between(1, 2.6), colour(40)) for _ in range(random.integers(2, 4))]
+    for _ in range(random.integers(1, 3)):
+        axis = random.normal(size=3)
+        axis *= np.copysign(1 / np.linalg.norm(axis), axis[1])
+        items.append(minirt.Cylinder(place(0, 2), tuple(axis), between(0.8, 2), between(1.5, 4), colour(40)))
+    if random.random() < 0.5:
+        items.append(minirt.Cone(place(2, 3), (0, -1, 0), between(1, 2), between(1, 3), colour(40)))
+    return Scene(items)
+
+
+def draw(scene: Scene, guess: Guess, size: tuple[int, int] = SIZE, seed: int = 0) -> Bytes:
+    """Draw a scene as a guess says, with highlights of half of the light; light fades from a distance of 8 on."""
+    width, height = size
+    y, x = np.mgrid[0:height, 0:width].reshape(2, -1).astype(float)
+    seen = see(scene, size, x, y, guess)
+    terms = lighting.columns(scene, seen, guess)
+    factors = np.ones(terms.shape[-1])
+    factors[1], factors[-1] = 0.1, 0.5
+    factors[2:-1] = (8 / seen.reach) ** guess["fading"]
+    own = guess["background"] == "own"
+    shown = lighting.drawn(terms, seen, guess, factors, lighting.numbers(SKY) if own else lighting.background(scene))
+    if guess["acne"]:
+        specks = (np.random.default_rng(seed).random(len(x)) < SPECKS) & (seen.owner >= 0)
+        shown[specks] = lighting.shown_levels(terms[specks, :, :1] @ factors[:1], guess)
+    if guess["colours"] == "swapped":
+        shown = shown[:, ::-1]
+    levels: Bytes = np.rint(255 * shown).astype(np.uint8).reshape(height, width, 3)
+    return levels
+
+
+def compared(scene: Scene, levels: Bytes, folder: Path) -> Comparison:
+    """Compare a picture with its scene, by a file."""
+    Image.fromarray(levels).save(folder / "theirs.png")
+    return compare(scene, folder / "theirs.png")
+
+
+def are_visible(scene: Scene, rows: Sequence[Hypothesis]) -> bool:
+    """Whether each of some hypotheses changes the picture beside the others, and it shows anything."""
+    together = draw(scene, merged(rows))
+    if np.ptp(together, axis=(0, 1)).max() <= EDGE:
+        return False
+    for row in rows:
+        without = draw(scene, merged([each for each in rows if each is not row]))
+        changed = (np.abs(together.astype(int) - without).max(axis=-1) > LEVELS).mean()
+        if changed < (VISIBLE_EDGES if row.name == "pixel" else VISIBLE):
+            return False
+    return True
+
+
+def merged(rows: Sequence[Hypothesis]) -> Guess:
+    """Return the guess that makes all changes of some rows."""
+    guess = dict(OURS)
+    for row in rows:
+        guess |= row.changes
+    return guess
+
+
+class Result(NamedTuple):
+    """What was found of planted hypotheses."""
+
+    found: bool
+    wrong: bool  # a cause that was not planted, though nearly everything is explained
+
+
+def judged(rows: Sequence[Hypothesis], found: Comparison) -> Result:
+    """Whether all hypotheses were found, and something else with certainty."""
+    planted, named = {row.name for row in rows}, {each.name for each in found.causes}
+    return Result(planted <= named, bool(named - planted) and found.explained > KNOWN)
+
+
+def main() -> int:
+    """Plant rows of the table alone, or pairs of them, for a range of seeds; print what is found."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("first", type=int)
+    parser.add_argument("end", type=int)
+    parser.add_argument("--pairs", action="store_true")
+    chosen = parser.parse_args()
+    table = [row for row in TABLE if row.name != "specular" or row.changes["specular"][1] in EXPONENTS]
+    results = []
+    with TemporaryDirectory() as folder:
+        for seed in range(chosen.first, chosen.end):
+            scene = student_scene(seed)
+            rows = random.Random(seed).sample(table, 2) if chosen.pairs else [table[seed % len(table)]]
+            if len({row.name for row in rows}) < len(rows) or not are_visible(scene, rows):
+                continue
+            found = compared(scene, draw(scene, merged(rows), seed=seed), Path(folder))
+            results.append(judged(rows, found))
+            told = ", ".join(f"{each.name} {each.value}" for each in found.causes)
+            planted = ", ".join(f"{row.name} {row.value}" for row in rows)
+            print(f"{seed}: planted {planted}; told {told}; {found.explained:.1%}; {results[-1]}", flush=True)
+    count = len(results)
+    print(f"{count} pictures: {sum(each.found for each in results)} found, {sum(each.wrong for each in results)} wrong")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

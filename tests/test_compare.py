@@ -1,0 +1,202 @@
+"""`minirt.compare`: causes that are planted in pictures are named, and nothing else is."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from math import atan, degrees, radians, tan
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import minirt
+from minirt.compare import pictures
+from minirt.compare.table import OURS, TABLE
+from minirt.scene import Scene
+from tests.paths import PACKAGE, ROOT
+from tests.planting import SIZE, Bytes, are_visible, compared, draw, judged, merged, student_scene
+from tests.skipping import skip_incomplete
+
+ROWS = {f"{row.name} {row.value}": row for row in TABLE}
+
+
+def rendered(scene: Scene, samples: int = 1) -> Bytes:
+    return minirt.render(scene, *SIZE, samples=samples).array
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_formulas_are_those_of_the_kernel(seed: int) -> None:
+    scene = student_scene(seed)
+    ours, theirs = draw(scene, OURS), rendered(scene)
+    assert (pictures.distance(ours, theirs) > 1).mean() < 1e-4
+
+
+# Changes of scene or pixels that the kernel draws, by the cause and its value.
+def wider(scene: Scene) -> Bytes:
+    vertical = degrees(2 * atan(tan(radians(scene.camera.fov) / 2) * SIZE[0] / SIZE[1]))
+    return rendered(scene.replace(scene.camera, fov=vertical))
+
+
+def on_their_base(scene: Scene) -> Bytes:
+    for each in scene.cylinders:
+        centre = tuple(p + each.height / 2 * d for p, d in zip(each.centre, each.axis, strict=True))
+        scene = scene.replace(each, centre=centre)
+    return rendered(scene)
+
+
+def doubled_balls(scene: Scene) -> Bytes:
+    for each in scene.spheres:
+        scene = scene.replace(each, diameter=2 * each.diameter)
+    return rendered(scene)
+
+
+EDITED: dict[tuple[str, object], Callable[[Scene], Bytes]] = {
+    ("mirrored", True): lambda scene: rendered(scene.mirrored()),
+    ("fov", "vertical"): wider,
+    ("cylinder", "base"): on_their_base,
+    ("radius", "spheres"): doubled_balls,
+    ("ambient", 0.5): lambda scene: rendered(scene.replace(scene.ambient, brightness=scene.ambient.brightness / 2)),
+    ("colours", "swapped"): lambda scene: rendered(scene)[..., ::-1],
+}
+
+
+@pytest.mark.parametrize("cause", EDITED)
+def test_what_an_edited_scene_shows_is_named(cause: tuple[str, object], tmp_path: Path) -> None:
+    scene = student_scene(7)
+    found = compared(scene, EDITED[cause](scene), tmp_path)
+    assert [(each.name, each.value) for each in found.causes] == [cause]
+    assert found.explained > 0.99
+
+
+@pytest.mark.parametrize(
+    ("seed", "names"),
+    [
+        (1, ["up z"]),
+        (2, ["pixel corner"]),
+        (3, ["ambient not in shadow"]),
+        (4, ["fading 1"]),
+        (5, ["gamma 2.2", "flipped True"]),
+        (6, ["cylinder doubled", "shadows none"]),
+    ],
+)
+def test_planted_causes_are_named_alone_and_in_pairs(seed: int, names: list[str], tmp_path: Path) -> None:
+    scene, rows = student_scene(seed), [ROWS[name] for name in names]
+    assert are_visible(scene, rows)
+    found = compared(scene, draw(scene, merged(rows)), tmp_path)
+    assert judged(rows, found) == (True, False)
+
+
+def test_equal_pictures_are_told(tmp_path: Path) -> None:
+    scene = student_scene(0)
+    assert str(compared(scene, rendered(scene), tmp_path)) == "The pictures are equal."
+    smooth = compared(scene, rendered(scene, samples=16), tmp_path)
+    assert (smooth.equal, str(smooth)) == (True, "The pictures are equal, but at edges.")
+    Image.fromarray(rendered(scene)).save(tmp_path / "theirs.jpg", quality=90)
+    assert minirt.compare(scene, tmp_path / "theirs.jpg").equal
+
+
+def test_what_cannot_be_known_is_not_guessed(tmp_path: Path) -> None:
+    scene = student_scene(0)
+    noise = np.random.default_rng(0).integers(0, 256, (*SIZE[::-1], 3)).astype(np.uint8)
+    for levels in (noise, rendered(student_scene(1)), np.full_like(noise, 30)):
+        found = compared(scene, levels, tmp_path)
+        assert (found.equal, found.causes) == (False, ())
+        assert found.explained < 0.8
+        assert "not known why" in str(found)
+
+
+def test_borders_and_blocks_are_told(tmp_path: Path) -> None:
+    scene = student_scene(0)
+    levels = rendered(scene)
+    framed = np.pad(levels, ((30, 5), (5, 5), (0, 0)), constant_values=90)
+    found = compared(scene, framed, tmp_path)
+    assert (found.equal, found.picture.shape) == (True, levels.shape)
+    assert "5, 30, 5 and 5 pixels at the left, top, right and bottom" in found.notices[0]
+    found = compared(scene, levels.repeat(3, axis=0).repeat(3, axis=1), tmp_path)
+    assert (found.equal, found.notices) == (
+        True,
+        ("Blocks of 3x3 pixels have one colour: 480x270 of them are compared.",),
+    )
+
+
+def test_the_rest_is_where_it_differs(tmp_path: Path) -> None:
+    scene = student_scene(7)
+    shown = minirt.buffers(scene, *SIZE).shape
+    ball = max(scene.spheres, key=lambda each: (shown == scene.shapes.index(each)).sum())
+    painted = scene.replace(ball, colour=(0, 0, 0))
+    found = compared(scene, rendered(painted), tmp_path)
+    assert found.causes == ()
+    assert found.rest[0].shape == f"sphere {scene.spheres.index(ball) + 1}"
+    x, y = found.rest[0].pixel
+    assert (rendered(painted)[y, x] != rendered(scene)[y, x]).any()
+
+
+def test_the_command_line_prints_and_writes_the_answer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from minirt import cli
+
+    monkeypatch.chdir(tmp_path)
+    scene = student_scene(7)
+    scene.save(tmp_path / "scene.rt")
+    Image.fromarray(rendered(scene.mirrored())).save("mine.ppm")
+    assert cli.main(["scene.rt", "--compare", "mine.ppm", "-o", "four.png", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert set(told) == {"equal", "explained", "causes", "rest", "notices"}
+    assert (told["equal"], told["causes"][0]["name"], told["causes"][0]["value"]) == (False, "mirrored", True)
+    four = np.asarray(Image.open("four.png"))
+    width, gap = SIZE[0], pictures.GAP
+    theirs, reference, under, difference = (four[:, i * (width + gap) : i * (width + gap) + width] for i in range(4))
+    assert (theirs == rendered(scene.mirrored())).all()
+    assert (reference == rendered(scene)).all()
+    assert (pictures.distance(under, theirs) > 1).mean() < 1e-3
+    assert (difference > 8).mean() < 1e-3
+    assert cli.main(["scene.rt", "--compare", "none.ppm"]) == 1
+    assert "none.ppm" in capsys.readouterr().err
+
+
+def test_rows_of_the_table_differ_and_change_known_parameters() -> None:
+    assert len(ROWS) == len(TABLE)
+    for row in TABLE:
+        assert set(row.changes) <= set(OURS)
+        assert all(OURS[name] != value for name, value in row.changes.items())
+
+
+PROGRAM = """
+void *mlx_init(void);
+void *mlx_new_window(void *, int, int, char *);
+int mlx_pixel_put(void *, void *, int, int, int);
+int mlx_loop(void *);
+int main(void)
+{
+    void *mlx = mlx_init();
+    void *window = mlx_new_window(mlx, 3, 2, "");
+    mlx_pixel_put(mlx, window, 1, 0, 0x102030);
+    return mlx_loop(mlx);
+}
+"""
+
+
+def test_the_stub_of_minilibx_writes_the_window(tmp_path: Path) -> None:
+    compiler = shutil.which("cc") or skip_incomplete("needs a C compiler")
+    stub = subprocess.run([sys.executable, "-m", "minirt.compare", "stub"], capture_output=True, check=True).stdout
+    (tmp_path / "mlx_stub.c").write_bytes(stub)
+    (tmp_path / "main.c").write_text(PROGRAM)
+    subprocess.run([compiler, "-Wall", "-Werror", "main.c", "mlx_stub.c", "-o", "mini"], cwd=tmp_path, check=True)
+    subprocess.run(["./mini"], cwd=tmp_path, env={"MLX_PICTURE": "mine.ppm"}, check=True)
+    levels = np.asarray(Image.open(tmp_path / "mine.ppm"))
+    assert levels.shape == (2, 3, 3)
+    assert levels[0, 1].tolist() == [16, 32, 48]
+    assert levels.sum() == 96
+
+
+def test_the_example_of_the_page_is_what_the_program_prints() -> None:
+    found = minirt.compare(minirt.load(ROOT / "scenes/figure-v6-shadows.rt"), ROOT / "assets/compare-theirs.png")
+    page = (PACKAGE / "compare" / "README.md").read_text(encoding="utf-8")
+    assert f"```\n{found}\n```" in page
+    assert (pictures.distance(found.panels(), np.asarray(Image.open(ROOT / "assets/compare.png"))) <= 1).all()
