@@ -23,7 +23,7 @@ KNOWN = 0.8  # share of the inner pixels; what explains less is not told
 
 
 class Comparison(NamedTuple):
-    """What is found about a picture. `str()` of it is the answer in words, `.json()` the same for programs."""
+    """Answer about a picture. `str()` of it is the answer in words, `.json()` the same for programs."""
 
     equal: bool  # within a level, or within four but at edges
     explained: float  # share of the inner pixels that are equal, or are so under the causes

@@ -28,7 +28,7 @@ TOGETHER = {"scale": ("scale", "fov")}  # parameters that are one cause
 
 
 class Cause(NamedTuple):
-    """What the other program does in another way."""
+    """Difference of the other program from this one, and the sentence that says what to change."""
 
     name: str
     value: Any
@@ -36,7 +36,7 @@ class Cause(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """Where pixels are not explained."""
+    """Part of the picture whose pixels are not explained."""
 
     shape: str
     part: str  # surface, cap, shadow or edge
@@ -76,7 +76,7 @@ class Judge:
         return inner
 
     def fitted(self, guess: Guess, fixed: str = "") -> Fit:
-        """How a guess explains the inner pixels."""
+        """Return how a guess explains the inner pixels."""
         seen = self.seen if guess == self.guess else self.look(guess)
         return lighting.fit(self.case.scene, seen, self.colours, guess, self.inner, fixed)
 

@@ -1,4 +1,4 @@
-"""What pixels show under a guess: rays of another camera, through a scene whose shapes mean something else."""
+"""Geometry under a guess: rays of another camera, through a scene whose shapes mean something else."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ON_CAP = 0.999  # cosine between the normal of a cap and the axis
 
 
 class Seen(NamedTuple):
-    """What n rays meet, and the way from there to each of the lamps."""
+    """Hits of n rays, and the ways from there to each of the lamps."""
 
     owner: NDArray[np.int64]  # index in `scene.shapes`, -1 for the background
     point: Floats

@@ -28,7 +28,7 @@ PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same ev
 
 
 class Fit(NamedTuple):
-    """How a guess explains the colours of pixels."""
+    """Colours of pixels under a guess, and how well they fit."""
 
     score: float  # mean error plus the price of the guess
     error: Floats  # (n,) of the worst channel, from 0 to 1

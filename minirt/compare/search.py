@@ -62,7 +62,7 @@ class Case:
         return self.samples[count]
 
     def see(self, guess: Guess, count: int) -> Seen:
-        """What the pixels of a sample show under a guess; the last ones are kept."""
+        """Return what the pixels of a sample show under a guess; the last ones are kept."""
         key = count, *(guess[name] for name in GEOMETRIC)
         if key not in self.kept:
             if len(self.kept) > 400:
@@ -72,12 +72,12 @@ class Case:
         return self.kept[key]
 
     def fit(self, guess: Guess, count: int = FINE) -> Fit:
-        """How a guess explains the sample."""
+        """Return how a guess explains the sample."""
         seen = self.see(guess, count)
         return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
 
     def unevenness(self, guess: Guess) -> float:
-        """How far the regions of a guess are from being one colour in one light each."""
+        """Return how far the regions of a guess are from being one colour in one light each."""
         seen = self.see(guess, COARSE)
         residual = lighting.unevenness(seen, self.sample(COARSE)[2], guess)
         return float(np.minimum(residual, lighting.STEADY**2).mean())

@@ -15,9 +15,10 @@ from minirt.mlx import Button, Key, Modifier
 from minirt.mlx.memory import Memory
 from minirt.scene import Camera, describe, dump, load
 from minirt.shapes import Plane, Sphere
-from minirt.viewer.app.choosing import LISTS, OPEN_MENU
+from minirt.viewer.app.choosing import LISTS
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.events import PANEL
+from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import ZOOMS
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import BEGUN

@@ -12,7 +12,7 @@ from minirt.element import Record, fields_of
 from minirt.materials import Compound
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer import language
-from minirt.viewer.app.choosing import MENU
+from minirt.viewer.app.menu import MENU
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE, key_groups
 from minirt.viewer.display import tool_row
 from minirt.viewer.display.screen import TIPS

@@ -7,15 +7,14 @@ any key that means nothing to the list leaves it there, as the last change.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 from minirt.fields import Triple
 from minirt.mlx import Button, Key
-from minirt.scene import Camera
 from minirt.scene.names import element_name
-from minirt.shapes import Shape
+from minirt.viewer.app.menu import MENU, menu_of
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
@@ -26,20 +25,6 @@ from minirt.viewer.language import GAP, searchable, translated
 
 ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
 LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
-OPEN_MENU = "open menu"  # the action that opens the list of what can be done
-MENU = {  # its rows: actions, and what they are called there
-    "add": "add here >",
-    "add attribute": "add an attribute >",
-    "duplicate": "duplicate",
-    "delete": "delete",
-    "drop": "drop onto what lies beneath",
-    "look at": "bring into view",
-    "look through": "look through",
-    "focus": "focus here",
-    "explain pixel": "explain this pixel",
-    "undo": "undo",
-    "redo": "redo",
-}
 HINT = "type, arrows, click or Enter    Esc: none"
 WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}
 
@@ -74,15 +59,15 @@ class Choosing:
 
     def begin(self, action: str, state: State) -> None:
         """Add the first choice of an action of LISTS, or by keys an element of the kind that was added last."""
-        self._before, self._group, self._letters = state, LISTS[action], ""
-        is_element = self._group == structure.ELEMENT
-        self._title = "element" if is_element else "attribute"
-        choices = list(structure.choices(state, self._group))
-        titles = [each.element.title if is_element else each.active.field.title for each in choices]
-        self._every = [Row(translated(title), choice) for title, choice in zip(titles, choices, strict=True)]
+        choices = list(structure.choices(state, LISTS[action]))
         if not choices:
             self.session.show(state.with_message(f"{state.element.title} has no attribute that can be added"))
             return
+        self._before, self._group, self._letters = state, LISTS[action], ""
+        is_element = self._group == structure.ELEMENT
+        self._title = "element" if is_element else "attribute"
+        titles = [each.element.title if is_element else each.active.field.title for each in choices]
+        self._every = [Row(translated(title), choice) for title, choice in zip(titles, choices, strict=True)]
         kind = state.added_kind if is_element and not self._place else None  # a pointer expects the first one
         again = (row for row, each in zip(self._every, choices, strict=True) if type(each.element) is kind)
         self.choose(next(again, self._every[0]))
@@ -241,19 +226,3 @@ class Choosing:
             titles = tuple(row.title for row in rows)
             screen.list_box = ListBox(title, titles, self.index_in(rows), tuple(map(translated, keys)), self._place)
         self.session.refresh()
-
-
-def menu_of(state: State, point: Triple | None) -> Iterator[str]:
-    """Yield the actions of a list about the selected element, at a point of the scene or where there is none."""
-    element = state.element
-    without = {
-        "delete": element.required,
-        "drop": not isinstance(element, Shape) or element.infinite,
-        "look through": not isinstance(element, Camera) or element is state.scene.camera,
-        "focus": point is None,
-        "undo": not state.undo_stack,
-        "redo": not state.redo_stack,
-    }
-    for action in MENU:
-        if not without.get(action):
-            yield action

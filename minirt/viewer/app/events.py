@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.errors import MlxError
 from minirt.mlx.events import MODIFIER_KEYS, Button, Event
-from minirt.viewer.app.choosing import ADDING, LISTS, OPEN_MENU, Choosing
+from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.explaining import choose_row
+from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session

@@ -175,7 +175,8 @@ class Mouse:
         session = self.session
         if near := in_reach(session.state, point):
             return near
-        _, middle = session.surface_at(session.window.width // 2, session.window.height // 2)
+        width, height = session.screen.size
+        _, middle = session.surface_at(width // 2, height // 2)
         return in_reach(session.state, middle)
 
     def select_for_menu(self) -> Triple | None:

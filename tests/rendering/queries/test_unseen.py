@@ -10,8 +10,9 @@ import pytest
 
 from minirt.materials import Checker
 from minirt.rendering.notices import NOT_COMPUTED, notices_about
+from minirt.rendering.queries import no_effect
 from minirt.rendering.queries import unseen as module
-from minirt.rendering.queries.no_effect import AMBIENT_ALONE, covers, without_effect
+from minirt.rendering.queries.no_effect import AMBIENT_ALONE, covers, idle_lights, without_effect
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.queries.preview import render_interpreted
 from minirt.rendering.queries.unseen import is_blank, notice_about
@@ -244,6 +245,20 @@ def test_lights_that_light_nothing_in_view_are_named(lines: str, names: str) -> 
     assert (AMBIENT_ALONE in without_effect(scene, (640, 360))) == (lines == "L 4,9,0 0")
     away = scene.replace(scene.camera, scene.camera.replace(position=(0, 9, 0), direction=(0, 1, 0)))
     assert not [each for each in without_effect(away, (640, 360)) if each.startswith(IDLE)]  # nothing is in view
+
+
+def test_the_quick_look_at_solids_spares_pictures_and_changes_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = "demo", "subject", "eval-inside-light", "shapes", "eval-shadow"
+    scenes = [load(SCENES / f"{name}.rt").scene for name in names]
+    scenes += [parse(f"{GREY}{BALL}\npl 0,-2,0 0,1,0 9,9,9\n{lines}\n").scene for lines in LAMPS]
+    answers = [[*idle_lights(each)] for each in scenes]
+    drawn: list[Scene] = []
+    monkeypatch.setattr(no_effect, "render_interpreted", lambda *_: drawn.append(scenes[0]))
+    assert not [*idle_lights(scenes[0])]
+    assert not drawn
+    monkeypatch.undo()
+    monkeypatch.setattr(no_effect, "lights_a_solid", lambda *_: False)
+    assert [[*idle_lights(each)] for each in scenes] == answers
 
 
 def told(text: str) -> list[str]:

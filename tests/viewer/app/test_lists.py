@@ -7,7 +7,7 @@ import pytest
 
 from minirt.scene import Camera
 from minirt.shapes import Box, Cylinder, Plane, Sphere
-from minirt.viewer.app.choosing import MENU
+from minirt.viewer.app.menu import MENU
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox, layout_of
 from minirt.viewer.display.tool_row import TOOLS, layout, tool_at

@@ -11,6 +11,7 @@ from minirt.fields import Triple
 from minirt.rendering.queries.pick import pick
 from minirt.scene import Scene
 from minirt.scene.elements import linear_combination
+from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.session import Session
 from minirt.viewer.editing.motion import APPROACH
 from minirt.viewer.editing.projection import projection_of
@@ -166,3 +167,13 @@ def test_forward_is_along_the_ground_where_the_camera_looks_straight_up_or_down(
     text = TEXT.replace("C 0,0,10 0,0,-1", f"C 0,0,10 {direction}")
     start, after = (played(*keys, text=text).state for keys in ((), ("press w",)))
     assert after.element.position == pytest.approx(linear_combination(1, start.element.position, start.stride, forward))
+
+
+def test_beside_the_panel_the_middle_is_that_of_the_picture_which_is_shown() -> None:
+    session = played(size=(640, 480))
+    session.screen.covered = 320
+    middle = Mouse(session, lambda _: None).pivot(None)
+    assert middle is not None
+    x, y, z = middle
+    assert hypot(x, y) < 0.1  # in front of the ball around the origin, and not at the edge of the picture
+    assert z == pytest.approx(1, abs=0.01)

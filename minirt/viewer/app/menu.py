@@ -1,0 +1,41 @@
+"""Menu of a right click: what can be done with the element under the pointer, and with the point there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from minirt.fields import Triple
+from minirt.scene import Camera
+from minirt.shapes import Shape
+from minirt.viewer.editing.state import State
+
+OPEN_MENU = "open menu"  # the action that opens the list of what can be done
+MENU = {  # its rows: actions, and what they are called there
+    "add": "add here >",
+    "add attribute": "add an attribute >",
+    "duplicate": "duplicate",
+    "delete": "delete",
+    "drop": "drop onto what lies beneath",
+    "look at": "bring into view",
+    "look through": "look through",
+    "focus": "focus here",
+    "explain pixel": "explain this pixel",
+    "undo": "undo",
+    "redo": "redo",
+}
+
+
+def menu_of(state: State, point: Triple | None) -> Iterator[str]:
+    """Yield the actions of a list about the selected element, at a point of the scene or where there is none."""
+    element = state.element
+    without = {
+        "delete": element.required,
+        "drop": not isinstance(element, Shape) or element.infinite,
+        "look through": not isinstance(element, Camera) or element is state.scene.camera,
+        "focus": point is None,
+        "undo": not state.undo_stack,
+        "redo": not state.redo_stack,
+    }
+    for action in MENU:
+        if not without.get(action):
+            yield action
