@@ -74,7 +74,7 @@ class Attributes(Element):
     glass: Glass | None = declare(Compound, "refracted light", record=Glass, default=None, shared=SHARED)
     tint: Tint | None = declare(Compound, "colour that glass gives to light", record=Tint, default=None, shared=SHARED)
     fresnel: float | None = declare(Fresnel, "how far Fresnel's equations count", bare="1", default=None, shared=SHARED)
-    glow: float | None = declare(Glow, "light of its own", default=None, shared=SHARED)
+    glow: float | None = declare(Glow, "light of its own, which lights nothing else", default=None, shared=SHARED)
     checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", default=None, shared=BOARD)
     texture: str | None = declare(Texture, "picture in the place of the colour", default=None, shared=MAPPED)
     bump: Bump | None = declare(Compound, "relief", record=Bump, default=None, shared=MAPPED)

@@ -263,6 +263,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "farther": ((), approached(-1)),
     "previous value": ((*SPHERE, "press V", "press V"), lambda _, after: after.state.active.name == "colour"),
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
+    "choose colour": ((*SPHERE, "press U", "press Down"), lambda _, after: after.state.element.colour == (70, 70, 70)),
     "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
     "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
     "explain pixel": (

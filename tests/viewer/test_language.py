@@ -116,7 +116,7 @@ def test_a_text_that_lacks_a_translation_is_found() -> None:
         ("sphere: + - diameter 3.8    H: help", "sphère: + - diamètre 3.8    H : aide"),
         ("saved: /tmp/a sphere.rt; what another program had written is in b.rt", SAVED),
         ("not a text of the catalogue", "not a text of the catalogue"),
-        ("light of its own: glow:0.5", "lumière propre: glow:0.5"),
+        ("light of its own, which lights nothing else: glow:1", "lumière propre, qui n'éclaire rien d'autre: glow:1"),
         ("640x480 at 1/3    4 of 16 samples    error 0.003", "640x480 à 1/3    4 sur 16 échantillons    erreur 0.003"),
         ("", ""),
         ("{} }{", "{} }{"),

@@ -1,8 +1,8 @@
-"""Choosing from a list: an element or an attribute to add, or what to do with what is under the pointer.
+"""Choosing from a list: an element or attribute to add, a colour, or what to do with what is under the pointer.
 
-Letters filter, arrows, the wheel and the pointer go through the list, Enter and a click take a row. An element or an
-attribute is in the scene as soon as it is chosen by a key, so that the picture shows it. Escape takes it out again, and
-any key that means nothing to the list leaves it there, as the last change.
+Letters filter, arrows, the wheel and the pointer go through the list, Enter and a click take a row. An element,
+attribute or colour is in the scene as soon as it is chosen by a key, so that the picture shows it. Escape takes it out
+again, and any key that means nothing to the list leaves it there, as the last change.
 """
 
 from __future__ import annotations
@@ -20,11 +20,21 @@ from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
 from minirt.viewer.display.lists import ListBox, layout_of
 from minirt.viewer.editing import structure
+from minirt.viewer.editing.colours import COLOUR, colours
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import GAP, searchable, translated
 
 ADDING = {"add": 1, "add previous": -1}  # actions that open the list of elements, and how they go on in it
-LISTS = dict.fromkeys(ADDING, structure.ELEMENT) | {"add attribute": structure.ATTRIBUTE}  # actions that open a list
+LISTS = {  # actions that open a list of states, and the kind of the change that each of them is
+    **dict.fromkeys(ADDING, structure.ELEMENT),
+    "add attribute": structure.ATTRIBUTE,
+    "choose colour": COLOUR,
+}
+TITLES = {  # of these lists, and what is said where they are empty
+    structure.ELEMENT: ("element", ""),
+    structure.ATTRIBUTE: ("attribute", "{} has no attribute that can be added"),
+    COLOUR: ("colour", "{} has no colour"),
+}
 HINT = "type, arrows, click or Enter    Esc: none"
 WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}
 
@@ -59,17 +69,16 @@ class Choosing:
 
     def begin(self, action: str, state: State) -> None:
         """Add the first choice of an action of LISTS, or by keys an element of the kind that was added last."""
-        choices = list(structure.choices(state, LISTS[action]))
+        group = LISTS[action]
+        title, complaint = TITLES[group]
+        choices = list(colours(state) if group == COLOUR else structure.choices(state, group))
         if not choices:
-            self.session.show(state.with_message(f"{state.element.title} has no attribute that can be added"))
+            self.session.show(state.with_message(complaint.format(state.element.title)))
             return
-        self._before, self._group, self._letters = state, LISTS[action], ""
-        is_element = self._group == structure.ELEMENT
-        self._title = "element" if is_element else "attribute"
-        titles = [each.element.title if is_element else each.active.field.title for each in choices]
-        self._every = [Row(translated(title), choice) for title, choice in zip(titles, choices, strict=True)]
-        kind = state.added_kind if is_element and not self._place else None  # a pointer expects the first one
-        again = (row for row, each in zip(self._every, choices, strict=True) if type(each.element) is kind)
+        self._before, self._group, self._letters, self._title = state, group, "", title
+        self._every = [Row(translated(title), choice) for title, choice in choices]
+        kind = None if self._place or group != structure.ELEMENT else state.added_kind  # a pointer expects the first
+        again = (row for row, (_, each) in zip(self._every, choices, strict=True) if type(each.element) is kind)
         self.choose(next(again, self._every[0]))
 
     def begin_menu(self, place: tuple[int, int], point: Triple | None) -> None:
@@ -151,7 +160,10 @@ class Choosing:
 
     def take(self) -> None:
         """Take the chosen row: its state stays, or its action is performed where it was asked for."""
-        row, place = self._chosen, self._place
+        row, place, before = self._chosen, self._place, self._before
+        if self._group and before and before.scene is self.session.state.scene:  # a colour as it was
+            self.cancel()
+            return
         if self._group:
             self.session.state = self.session.state.end_merging()
         self.end()

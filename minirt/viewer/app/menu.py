@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from minirt.fields import Triple
 from minirt.scene import Camera
 from minirt.shapes import Shape
+from minirt.viewer.editing.colours import colour_value
 from minirt.viewer.editing.state import State
 
 OPEN_MENU = "open menu"  # the action that opens the list of what can be done
 MENU = {  # its rows: actions, and what they are called there
     "add": "add here >",
+    "choose colour": "colour >",
     "add attribute": "add an attribute >",
     "duplicate": "duplicate",
     "delete": "delete",
@@ -29,6 +31,7 @@ def menu_of(state: State, point: Triple | None) -> Iterator[str]:
     """Yield the actions of a list about the selected element, at a point of the scene or where there is none."""
     element = state.element
     without = {
+        "choose colour": colour_value(element) is None,
         "delete": element.required,
         "drop": not isinstance(element, Shape) or element.infinite,
         "look through": not isinstance(element, Camera) or element is state.scene.camera,

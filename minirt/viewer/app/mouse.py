@@ -63,7 +63,7 @@ class Mouse:
         try:
             owner, point = self.owner_at(x, y)
             if drag.action == "orbit":
-                point = self.pivot(point)
+                point = self.pivot(owner, point)
         except MiniRTError as error:  # the file of a texture may be gone meanwhile
             session.show_error(error)
             session.show(session.state)
@@ -128,7 +128,8 @@ class Mouse:
                 if pressed.owner is not None and pressed.action == SHIFT_DRAG:
                     session.state = session.state.make_primary(pressed.owner)
             session.say("")
-            pressed = pressed._replace(snaps=Modifier.ACCEL in session.modifiers)
+            held = session.modifiers
+            pressed = pressed._replace(snaps=Modifier.ACCEL in held, fine=Modifier.SHIFT in held)
             drag = pull if pressed.handle else DRAGS[pressed.action]
             session.show(drag(session.state, pressed, x, y))
 
@@ -170,14 +171,17 @@ class Mouse:
         ray = session.view.ray(x + PIXEL_CENTRE, y + PIXEL_CENTRE)
         session.show(approach(state, ray, self._target, steps, session.now))
 
-    def pivot(self, point: Triple | None) -> Triple | None:
-        """The point that the camera orbits: under the pointer or, if that is far away, in the middle of the picture."""
-        session = self.session
-        if near := in_reach(session.state, point):
+    def pivot(self, owner: int | None, point: Triple | None) -> Triple | None:
+        """The point that the camera orbits: on the element under the pointer or, if that is endless or far away, in the
+        middle of the picture."""
+        session, state = self.session, self.session.state
+        near = in_reach(state, point)
+        element = None if owner is None else state.scene.elements[owner]
+        if near and not (isinstance(element, Shape) and element.infinite):
             return near
         width, height = session.screen.size
         _, middle = session.surface_at(width // 2, height // 2)
-        return in_reach(session.state, middle)
+        return in_reach(state, middle) or near
 
     def select_for_menu(self) -> Triple | None:
         """Select the element under the pointer, or the camera where there is none; return the point there."""

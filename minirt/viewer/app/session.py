@@ -31,6 +31,7 @@ from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
 NO_SHAPES = "the scene has no shapes; the grid marks the ground y = 0, and is on no picture"
+MOST_JUDGED = 200  # shapes of a scene whose pictures are judged after edits, in some hundredths of a second
 WORDS_DELAY = 0.04  # seconds in which words wait for their picture, which drawing them twice would delay
 
 
@@ -88,7 +89,9 @@ class Session:
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
         self._current_at = self.now  # when the window last got a frame, or last had the words of the current scene
-        self._judged: Scene | None = None  # the scene of the file whose first picture was searched for shapes
+        self._judged: Scene | None = None  # the last scene whose picture was judged
+        self._of_file: Scene | None = None  # what the file held then
+        self._told = set[str]()  # what was noticed about it
         self.watch_file(path)
 
     def show(self, state: State) -> None:
@@ -138,23 +141,27 @@ class Session:
             give_back_memory()
 
     def judge_view(self) -> None:
-        """Say so, and what to do, if the first picture of a scene that was read shows nothing of it."""
+        """Say what the first picture of a file does not show, and what the final one after an edit does not any more,
+        and what to do."""
         latest = self.refinement.latest
-        if self._judged is self.saved or latest is None or latest.preview:
+        if latest is None or latest.preview or latest.pixels is None or latest.job.scene is self._judged:
             return
-        if latest.job.scene is not self.saved and latest.job.scene is not self.opened:
+        scene, is_first = latest.job.scene, self._of_file is not self.saved
+        if is_first and scene is not self.saved and scene is not self.opened:
             return
-        self._judged = self.saved
-        if latest.pixels is not None:
-            from minirt.rendering.notices import notices_about
-            from minirt.rendering.queries.unseen import SHOWN_BY
+        if not is_first and (not self.refinement.complete or self.pressed or len(scene.shapes) > MOST_JUDGED):
+            return
+        self._judged, self._of_file, told = scene, self.saved, set[str]() if is_first else self._told
+        from minirt.rendering.notices import notices_about
+        from minirt.rendering.queries.unseen import SHOWN_BY
 
-            scene, (height, width) = latest.job.scene, latest.pixels.shape[:2]
-            before = f"{self.state.message}\n" if self.state.message else ""
-            notices = notices_about(scene, latest.pixels[..., :3], (width, height)) if scene.runs else iter([NO_SHAPES])
-            for notice in islice(notices, 1):
-                why, can_be_shown, _ = notice.partition(SHOWN_BY)
-                self.say(before + (f"{why}; {named('F')} brings the scene into view" if can_be_shown else notice))
+        height, width = latest.pixels.shape[:2]
+        notices = notices_about(scene, latest.pixels[..., :3], (width, height)) if scene.runs else iter([NO_SHAPES])
+        reasons = [notice.partition(SHOWN_BY)[:2] for notice in notices]
+        self._told = {why for why, _ in reasons}
+        before = f"{self.state.message}\n" if self.state.message else ""
+        for why, can_be_shown in islice((each for each in reasons if each[0] not in told), 1):
+            self.say(before + why + (f"; {named('F')} brings the scene into view" if can_be_shown else ""))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""

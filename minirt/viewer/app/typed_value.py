@@ -46,7 +46,7 @@ class Typing:
         text = self.text
         if text.startswith(NAME):
             text = (NAME if text == self._begun else text) + character
-        elif character in CHARACTERS:
+        elif character in f"{CHARACTERS} ":
             text = text.removeprefix("=") + character
         self.show(text[:MAX_LENGTH])
 
@@ -71,7 +71,9 @@ class Typing:
         """Show what is typed; nothing if it is empty."""
         session = self.session
         self.text = text
-        hint = f"{session.state.active.name}: {text}_    Enter: set it    Esc: leave it    += -= *= /=: relative"
+        active = session.state.active
+        also = "1 2 3: all three" if isinstance(active.get(session.state.element), tuple) else "+= -= *= /=: relative"
+        hint = f"{active.name}: {text}_    Enter: set it    Esc: leave it    {also}"
         if text.startswith(NAME):
             name = element_name(session.state.scene, session.state.selected)
             hint = f"name of {name}: {text.removeprefix(NAME)}_    Enter: set it    Esc: leave it"

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.element import Element, fields_of
-from minirt.fields import Colour, Triple
+from minirt.fields import Triple
 from minirt.mlx.text import draw_text, measure
 from minirt.scene import Lamp, Scene
 from minirt.scene.elements import linear_combination
@@ -17,6 +16,7 @@ from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.display.painter import Pixels
+from minirt.viewer.editing.colours import own_colour
 from minirt.viewer.editing.dragging import MOVE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.dragging import SIZE as RESIZE
 from minirt.viewer.editing.motion import WORLD_AXES
@@ -165,15 +165,10 @@ def visible_icons(scene: Scene, marked: Iterable[int], view: Projection, scale: 
         at: Pixel | None = view.pixel(place) if place else (corner, size)
         corner -= 0 if place else round(1.5 * size)
         if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:
-            placed.append(Icon(index, round(at[0]), round(at[1]), owner.code, colour_of(owner)))
+            red, green, blue = map(int, own_colour(owner))
+            colour = 0xFF << 24 | red << 16 | green << 8 | blue
+            placed.append(Icon(index, round(at[0]), round(at[1]), owner.code, colour))
     return placed
-
-
-def colour_of(element: Element) -> int:
-    """Return the element's own colour as 0xFFRRGGBB, white if it has none."""
-    colours = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
-    red, green, blue = map(int, next((each for each in colours if not isinstance(each, str)), (255, 255, 255)))
-    return 0xFF << 24 | red << 16 | green << 8 | blue
 
 
 def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tuple[float, float] | None:

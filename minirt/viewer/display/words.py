@@ -5,49 +5,24 @@ from __future__ import annotations
 import re
 
 from minirt.element import Element, fields_of
-from minirt.fields import Colour, Direction, Field, Point, Triple
+from minirt.fields import Colour, Direction, Field, Point
 from minirt.scene.writer import field_text
+from minirt.viewer.editing.colours import colour_word, own_colour
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import translated
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
+NONE = -1, -1, -1  # the colour of what has none
 LAST = (Point, Colour, Direction)  # sorts of fields that are said after all others, in this order
-COLOURS: dict[str, Triple] = {
-    "black": (0, 0, 0),
-    "dark grey": (70, 70, 70),
-    "grey": (130, 130, 130),
-    "light grey": (195, 195, 195),
-    "white": (255, 255, 255),
-    "dark red": (120, 10, 10),
-    "red": (230, 30, 30),
-    "pink": (255, 160, 190),
-    "beige": (240, 220, 180),
-    "brown": (130, 75, 30),
-    "orange": (255, 140, 0),
-    "yellow": (255, 235, 40),
-    "dark green": (10, 90, 20),
-    "green": (40, 180, 50),
-    "light green": (150, 230, 140),
-    "turquoise": (50, 195, 190),
-    "light blue": (150, 195, 255),
-    "blue": (30, 80, 210),
-    "dark blue": (25, 40, 110),
-    "purple": (140, 40, 190),
-}
-
-
-def colour_word(colour: Triple) -> str:
-    """Return the word whose colour is nearest."""
-    return min(COLOURS, key=lambda word: sum((a - b) ** 2 for a, b in zip(COLOURS[word], colour, strict=True)))
 
 
 def title_in_words(element: Element) -> str:
     """Return what an element is called, with its first colour if it has one: "red sphere"."""
     title = translated(element.title)
-    values = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
-    if not values or isinstance(values[0], str):  # the file of a picture
+    colour = own_colour(element, NONE)
+    if colour is NONE:
         return title
-    return translated("{colour} {element}").format(colour=translated(colour_word(values[0])), element=title)
+    return translated("{colour} {element}").format(colour=translated(colour_word(colour)), element=title)
 
 
 def values_in_words(state: State) -> list[str]:

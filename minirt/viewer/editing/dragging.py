@@ -23,12 +23,13 @@ from minirt.viewer.editing.placing import aim, dropped, keep_standing, lowest_al
 from minirt.viewer.editing.projection import UP, Pixel, Projection, dot, extent, position_of, scene_centre, subtract
 from minirt.viewer.editing.rigid import can_turn, shifted
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import Value, values
+from minirt.viewer.editing.values import Value, leading_decimal, values
 
 PIXEL_CENTRE = 0.5  # pixels
 CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
 SNAP_ANGLE = 15.0  # degrees
 LEVEL = 1e-6  # in place of the slope of a level ray
+FINE = 0.1  # of a pixel, with Shift
 TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
 
 # Handles: arrows along the axes move the element, a square in two; rings turn it, boxes resize it.
@@ -66,6 +67,7 @@ class DragStart(NamedTuple):
     handle: Handle | None = None  # of the element, that the pointer has grabbed
     reach: Pixel = (0.0, 0.0)  # how far a handle was pulled, to the right and down; a tenth while Shift is down
     snaps: bool = False  # whether Ctrl is down, so that a handle snaps to a grid
+    fine: bool = False  # whether Shift is down
     owner: int | None = None  # index of the element under the pointer
 
     @property
@@ -83,8 +85,11 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
         distance = start.projection.distance_along(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.point, axis)
         if distance is None:
             return state.with_message("the view is along the axis: nothing moves")
-        return motion.move(state, start.element, axis, distance, *CHANGE)
-    return motion.move(state, start.element, pointer_offset(start, x, y, start.point), 1.0, *CHANGE)
+        way = linear_combination(distance, axis, 0.0, axis)
+    else:
+        way = pointer_offset(start, x, y, start.point)
+    way = snapped_way(start.element, start.point, way, resolution(start, start.point))
+    return motion.move(state, start.element, way, 1.0, *CHANGE)
 
 
 def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -> State:
@@ -118,7 +123,8 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
     """Move, turn or resize the element by its handle; with Ctrl on a grid, or by steps of SNAP_ANGLE."""
     handle, view, element = start.handle, start.projection, start.element
     assert handle
-    centre, axis, snap = handle.centre, AXES[handle.axis], state.stride if start.snaps else 0.0
+    centre, axis = handle.centre, AXES[handle.axis]
+    step = state.stride if start.snaps else resolution(start, centre)
     from_x, from_y = start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE
     ends = [(from_x, from_y), (from_x + start.reach[0], from_y + start.reach[1])]
     if handle.kind == TURN:
@@ -137,13 +143,28 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
             return state.with_message("the view is along the axis: nothing moves")
         if handle.value:
             length = handle.value.current(element) * abs(after / before)
-            length = clamp_length(max(snapped(length, snap), snap))
+            length = clamp_length(max(snapped(length, step), step))
             changed = element.replace(**{handle.value.field.name: handle.value.replaced(element, length)})
             return state.edit_element(keep_standing(state, element, changed), *CHANGE)
         offset = linear_combination(after - before, axis, 0.0, axis)
-    parts = zip(position_of(element) or centre, offset, strict=True)
-    x_way, y_way, z_way = (snapped(part + way, snap) - part if way else 0.0 for part, way in parts)
-    return motion.move(state, element, (x_way, y_way, z_way), 1.0, *CHANGE)
+    return motion.move(state, element, snapped_way(element, centre, offset, step), 1.0, *CHANGE)
+
+
+def resolution(start: DragStart, point: Triple) -> float:
+    """The power of ten that is not above the size of a pixel at the depth of a point, with Shift of a tenth of one.
+
+    Positions and lengths that a drag gives are multiples of it: finer ones are not seen, and long to read.
+    """
+    view = start.projection
+    pixel = view.depth(point) * 2 * hypot(*view.right) / view.width * (FINE if start.fine else 1.0)
+    return float(10.0 ** -leading_decimal(pixel)) if pixel > 0 else 0.0
+
+
+def snapped_way(element: Element, point: Triple, way: Triple, step: float) -> Triple:
+    """The way that takes the position of an element, or else a point, to the multiples of a step nearest to its end."""
+    parts = zip(position_of(element) or point, way, strict=True)
+    x, y, z = (snapped(part + length, step) - part if length else 0.0 for part, length in parts)
+    return x, y, z
 
 
 def snapped(number: float, step: float) -> float:

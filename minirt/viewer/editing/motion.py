@@ -144,22 +144,28 @@ def turn_axis(camera: Camera, axis: int) -> Triple:
 
 
 def look_at(state: State, _amount: float, now: float) -> State:
-    """Move the camera, without turning it, so that the selected element is centred and fills the picture; if the camera
-    is selected itself, move and turn it so that it shows the scene."""
+    """Move the camera, without turning it, so that the selected element is centred and fills the picture. Where that
+    changes nothing, and if the camera is selected itself, move and turn it so that it shows the scene."""
     from minirt.rendering.queries.unseen import showing_camera
 
-    element, camera = state.element, state.scene.camera
-    if isinstance(element, Camera) and (showing := showing_camera(state.scene, USUAL_SIZE)):
-        return state.edit_camera(showing, "", now)
-    bounds = extent(element)
-    if bounds is None:
-        return state.with_message(f"select an element with a position to look at: {element.title} has none")
-    centre, radius = bounds
+    element = state.element
+    bounds = None if isinstance(element, Camera) else extent(element)
+    after = state if bounds is None else state.edit_camera(nearer(state, *bounds), "", now)
+    if after is not state:
+        return after.with_message("again: the whole scene")
+    if bounds or isinstance(element, Camera):
+        showing = showing_camera(state.scene, USUAL_SIZE)
+        return state.edit_camera(showing, "", now) if showing else state
+    return state.with_message(f"select an element with a position to look at: {element.title} has none")
+
+
+def nearer(state: State, centre: Triple, radius: float) -> Camera:
+    """The camera, moved without a turn so that a ball is centred and fills the picture."""
+    camera = state.scene.camera
     half = atan(tan(radians(clamp(camera.fov, 1.0, 120.0)) / 2) * ASPECT)
     distance = MARGIN * (radius or POINT_RADIUS * state.size) / sin(half)
     _, _, forward = camera_frame(camera)
-    moved = camera.replace(position=clamp_point(linear_combination(1.0, centre, -distance, forward)))
-    return state.edit_camera(moved, "", now)
+    return camera.replace(position=clamp_point(linear_combination(1.0, centre, -distance, forward)))
 
 
 def in_reach(state: State, point: Triple | None) -> Triple | None:

@@ -81,19 +81,19 @@ def names_of_chosen(state: State | Snapshot) -> str:
     return f"{len(state.others) + 1} elements" if state.others else element_name(state.scene, state.selected)
 
 
-def choices(state: State, group: str) -> Iterator[State]:
+def choices(state: State, group: str) -> Iterator[tuple[str, State]]:
     """Yield the states after each kind of element, or each attribute that the selected element lacks, was added.
 
-    Those that need a missing file, or cannot be so small or far away, are left out.
+    Each comes with its title. Those that need a missing file, or cannot be so small or far away, are left out.
     """
     if group == ELEMENT:
-        additions = [partial(with_element, state, kind) for kind in addable_kinds(state.scene)]
+        ways = [(kind.title, partial(with_element, state, kind)) for kind in addable_kinds(state.scene)]
     else:
         absent = [each for each in fields_of(type(state.element)) if getattr(state.element, each.name) is None]
-        additions = [partial(with_attribute, state, field) for field in absent if field.keyed]
-    for add in additions:
+        ways = [(field.title, partial(with_attribute, state, field)) for field in absent if field.keyed]
+    for title, add in ways:
         with suppress(LookupError, ElementError):
-            yield add()
+            yield title, add()
 
 
 def with_element(before: State, kind: type[Element]) -> State:

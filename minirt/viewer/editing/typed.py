@@ -3,7 +3,7 @@
 3.5 or 3,5       that value; a comma where one number is expected is a decimal comma
 -3               a negative number
 2*3+1  (1+2)/4   the result
-1,2,3            three numbers for a colour, sizes, a position or a direction, even if one part of it is active
+1,2,3  1 2 3     three numbers for a colour, sizes, a position or a direction, even if one part of it is active
 *=2  +=0.5       the present value times 2, or plus 0.5; also -= and /=
 
 In the picture a digit begins a value, and = any other one: =-3, =+=0.5.
@@ -60,7 +60,9 @@ def typed(value: Value, old: Any, current: Any, text: str) -> Any:
     body = text.removeprefix("=").strip()
     change = CHANGES.get(body[:2])
     body = body[2:].strip() if change else body
-    texts = body.split(",")
+    words = body.split()
+    are_three = len(words) == Three.width and "," not in body and all(any(map(str.isdigit, each)) for each in words)
+    texts = words if are_three else body.split(",")
     if len(texts) == Three.width and isinstance(old, tuple):
         presents = old
     elif len(presents) == 1 and (len(texts) == 2 or any(each in body[1:] for each in SIGNS)):

@@ -8,20 +8,18 @@ from dataclasses import replace
 
 from slimgui import imgui
 
-from minirt.element import Element, fields_of
-from minirt.fields import Colour
 from minirt.mlx import Modifier
 from minirt.scene import Camera, Scene
 from minirt.scene.names import COUNTED_AS, element_name, numbered_kind, own_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.editing import structure
+from minirt.viewer.editing.colours import own_colour
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.selection import look_through
 from minirt.viewer.language import searchable, translated
 from minirt.viewer.panel.groups import Groups
 from minirt.viewer.panel.numbers import TO_TYPE, TYPING
 from minirt.viewer.panel.rows import Rows
-from minirt.viewer.panel.style import Rgba
 
 AROUND = 3  # rows above and below those that are seen: the arrow keys go on to them
 LISTED = 0.35  # of the height: the list of elements
@@ -99,7 +97,8 @@ class Elements:
         imgui.same_line()
         side = imgui.get_frame_height() * 0.7
         imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
-        if imgui.color_button("###colour", colour_of(element), imgui.ColorEditFlags.NO_TOOLTIP, (side, side)):
+        red, green, blue = (level / 255 for level in own_colour(element, PLAIN))
+        if imgui.color_button("###colour", (red, green, blue, 1.0), imgui.ColorEditFlags.NO_TOOLTIP, (side, side)):
             self.pick(index)
         imgui.pop_item_flag()
         imgui.same_line()
@@ -182,13 +181,6 @@ def found(word: str, scene: Scene) -> Sequence[int]:
         if word in searchable(f"{title} {item.code} {own_name(item)} {comment}"):
             indices.append(sum(numbers.values()) - 1)
     return indices
-
-
-def colour_of(element: Element) -> Rgba:
-    """The first colour of an element, for the square in its row."""
-    found = (getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour))
-    red, green, blue = next((each for each in found if isinstance(each, tuple)), PLAIN)
-    return red / 255, green / 255, blue / 255, 1.0
 
 
 def seen(count: int) -> Iterator[int]:

@@ -6,6 +6,7 @@ Only this package imports `slimgui`, and it is imported when the panel first ope
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import Any
 
 from PIL import ImageFont
@@ -30,6 +31,7 @@ WHEEL = {Button.WHEEL_UP: 1.0, Button.WHEEL_DOWN: -1.0}
 NOWHERE = -3.4028234663852886e38  # where the pointer is when it has left the window
 SETTLING = 2  # frames after an event: the second one shows what the first one has changed
 SHORTEST = 1e-3  # seconds between two frames
+LONGEST = 0.05  # seconds between two frames while a key is held: a slow picture does not repeat a short press
 
 
 class Gui:
@@ -165,7 +167,8 @@ class Gui:
         """Make a frame, and let the window show what it has changed."""
         imgui.set_current_context(self._context)
         now, window = self.session.now, self.session.window
-        self.io.delta_time, self._time = max(now - self._time, SHORTEST), now
+        longest = LONGEST if self._held else inf
+        self.io.delta_time, self._time = min(max(now - self._time, SHORTEST), longest), now
         self.io.display_size = window.width, window.height
         imgui.new_frame()
         imgui.push_font(None, float(self.size))

@@ -13,7 +13,7 @@ from slimgui import imgui
 
 from minirt.element import Element
 from minirt.errors import MiniRTError
-from minirt.fields import spelled
+from minirt.fields import Three, spelled
 from minirt.viewer.app.session import FINE_STEP, Session
 from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
@@ -25,7 +25,12 @@ PIXELS = 6  # of a drag to the right or upwards, for one step
 SLIDE = ("value slide", 0.0)  # kind and time of the changes of a drag: the constant time merges them for undo
 TO_TYPE = 3  # frames until a text has the focus, and what began it
 AGAIN = " again"
+HINTS = (  # of one number, and of one of three
+    "drag it, or click to type it: -3, 2*3, +=1; Shift: finer",
+    "drag it, or click to type it: -3, 2*3, +=1, or all three: 1 2 3; Shift: finer",
+)
 TYPING = imgui.InputTextFlags.ENTER_RETURNS_TRUE | imgui.InputTextFlags.AUTO_SELECT_ALL
+NO_ERROR = -1, "", ""
 
 
 class Numbers:
@@ -34,7 +39,7 @@ class Numbers:
     def __init__(self, session: Session, gui: Gui) -> None:
         self.session = session
         self.gui = gui
-        self.error = ("", "")  # name of the value that was refused, and why
+        self.error = NO_ERROR  # index of the element and name of its value that was refused, and why
         self.index = 0  # of the element whose rows are shown
         self._typing: tuple[int, Value] | None = None  # the number that is typed, after the index of its element
         self._shows_typing = False  # whether the last frame shows it
@@ -48,6 +53,12 @@ class Numbers:
     def element(self) -> Element:
         """The element whose rows are shown, as it is now."""
         return self.session.state.scene.elements[self.index]
+
+    @property
+    def typing(self) -> tuple[int, Value] | None:
+        """The value of which a part is typed, after the index of its element; None while no part is."""
+        typed = self._typing
+        return (typed[0], typed[1]._replace(channel=None)) if typed and typed[1].channel is not None else None
 
     def begin_frame(self) -> None:
         """Begin a frame: a number that is not shown any more is not typed any more."""
@@ -64,7 +75,7 @@ class Numbers:
         texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
         text = next((each for each in texts if imgui.calc_text_size(each)[0] < room), texts[-1])
         entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
-        self.gui.hint("drag it, or click to type it: -3, 2*3, +=1; Shift: finer")
+        self.gui.hint(HINTS[isinstance(value.leaf, Three)])
         if imgui.is_item_activated():
             self.pressed, self._start, self._slid = value.name, self.element, 0.0
             self.session.state = self.session.state.end_merging()
@@ -139,7 +150,10 @@ class Numbers:
             after = edit(state)
         except (MiniRTError, ValueError, LookupError) as error:
             after = state.with_message(str(error))
-        self.error = (name, after.message) if after.message and after.scene is state.scene else ("", "")
+        if after.message and after.scene is state.scene:
+            self.error = self.index, name, after.message
+        elif self.error[1] == name or self.error[0] != self.index:
+            self.error = NO_ERROR
         self.gui.show(after)
 
 

@@ -11,6 +11,7 @@ from slimgui import imgui
 
 from minirt.errors import FieldError, quoted
 from minirt.fields import Choice, Colour, Field, Flag, MeshField, MeshFile, Paint, Picture, Three
+from minirt.viewer.editing.colours import COLOURS
 from minirt.viewer.editing.typed import with_value
 from minirt.viewer.editing.values import CHANNELS, Value, part_names, values_of_field
 from minirt.viewer.files import usable_files
@@ -18,9 +19,11 @@ from minirt.viewer.language import translated
 from minirt.viewer.panel.numbers import TYPING, Numbers
 from minirt.viewer.panel.style import GOLD, rgba
 
+ALL_THREE = "or 1 2 3"  # in place of the name of three numbers while one of them is typed
 LABEL = 0.3  # of the width: the name of a value
 COLOUR_OR = "colour"  # what stands for a colour among the pictures
 HEX = re.compile("#?([0-9a-fA-F]{6})")
+SWATCHES = 10  # in a line
 PICKER = imgui.ColorEditFlags.NO_INPUTS | imgui.ColorEditFlags.NO_SIDE_PREVIEW | imgui.ColorEditFlags.NO_LABEL
 SELECTED = imgui.InputTextFlags.AUTO_SELECT_ALL
 
@@ -43,7 +46,8 @@ class Rows(Numbers):
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
         imgui.push_id(f"{self.index} {value.name}")  # what is typed is that of no other element
         imgui.align_text_to_frame_padding()
-        imgui.text(translated(leaf.title))
+        types_part = self.typing == (self.index, value)
+        imgui.text(translated(ALL_THREE if types_part else leaf.title))
         self.gui.hint(leaf.doc, leaf.range)
         if imgui.get_item_rect_size()[0] < LABEL * width:
             imgui.same_line()
@@ -61,9 +65,10 @@ class Rows(Numbers):
             self.show_triple(value, room)
         elif isinstance(old, int | float):
             self.number(value, room)
-        if self.error[0].startswith(value.name):
+        index, name, reason = self.error
+        if index == self.index and name.startswith(value.name):
             imgui.push_style_color(imgui.Col.TEXT, rgba(GOLD))
-            imgui.text_wrapped(f"! {translated(self.error[1])}")
+            imgui.text_wrapped(f"! {translated(reason)}")
             imgui.pop_style_color()
         imgui.pop_id()
 
@@ -98,10 +103,26 @@ class Rows(Numbers):
             self.change(value, self.element, lambda: value.replaced(self.element, levels))
         if imgui.is_item_deactivated():
             self.session.state = self.session.state.end_merging()
+        self.swatches(value, imgui.get_item_rect_size()[0])
         entered, text = imgui.input_text(f"hex###{value.name} hex", bytes(colour).hex().upper(), TYPING)
         if entered or imgui.is_item_deactivated_after_edit():
             self.apply(lambda state: with_value(state, value, levels_of(text), self.session.now), value.name)
         imgui.end_popup()
+
+    def swatches(self, value: Value, width: float) -> None:
+        """Show the colours that have a name, in lines of a width; a click gives one and closes the picker."""
+        side = width / SWATCHES
+        imgui.push_style_var(imgui.StyleVar.ITEM_SPACING, (0.0, 0.0))
+        for number, (word, levels) in enumerate(COLOURS.items()):
+            if number % SWATCHES:
+                imgui.same_line()
+            red, green, blue = (level / 255 for level in levels)
+            flags = imgui.ColorEditFlags.NO_TOOLTIP
+            if imgui.color_button(f"###{value.name} {word}", (red, green, blue, 1.0), flags, (side, side)):
+                self.set(value, levels)
+                imgui.close_current_popup()
+            self.gui.hint(word)
+        imgui.pop_style_var()
 
     def option(self, name: str, options: Iterable[Any], shown: Any, width: float = 0.0) -> Any:
         """Show a list, with its name unless a `width` is given; return the option that is chosen now, or None."""

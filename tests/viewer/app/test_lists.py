@@ -102,7 +102,7 @@ def test_lists_of_keys_take_clicks_and_the_wheel() -> None:
 def test_keys_and_the_pointer_go_through_the_list_of_actions() -> None:
     title = right_click(AT_SPHERE)
     listed = play(title)
-    assert len(play(title, "press Down", "press Down", "press Return").state.scene.spheres) == 2
+    assert len(play(title, *["press Down"] * 3, "press Return").state.scene.spheres) == 2
     assert len(play(title, "press d", "press e", "press Return").state.scene.spheres) == 0
     assert box_of(play(title, "press Up")) == box_of(listed)._replace(chosen=len(rows(listed)) - 1)
     assert rows(play(title, "press N"))[0] == "sphere"  # the key beside a row

@@ -172,7 +172,7 @@ def test_forward_is_along_the_ground_where_the_camera_looks_straight_up_or_down(
 def test_beside_the_panel_the_middle_is_that_of_the_picture_which_is_shown() -> None:
     session = played(size=(640, 480))
     session.screen.covered = 320
-    middle = Mouse(session, lambda _: None).pivot(None)
+    middle = Mouse(session, lambda _: None).pivot(None, None)
     assert middle is not None
     x, y, z = middle
     assert hypot(x, y) < 0.1  # in front of the ball around the origin, and not at the edge of the picture

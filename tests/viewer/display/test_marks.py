@@ -11,10 +11,10 @@ import pytest
 from minirt.fields import Triple
 from minirt.rendering.packing.ray_casting import camera_ray, distances_of
 from minirt.rendering.queries.pick import covers
-from minirt.scene import Camera, Light
+from minirt.scene import Camera
 from minirt.shapes import Shape, Torus
 from minirt.shapes import torus as torus_formulas
-from minirt.viewer.display import marks, outline
+from minirt.viewer.display import outline
 from minirt.viewer.display.marks import (
     AXIS_COLOURS,
     BLACK,
@@ -197,8 +197,10 @@ def test_a_further_camera_has_an_icon_that_can_be_dragged_unless_it_is_in_view()
 
 
 def test_an_icon_has_the_colour_of_its_light() -> None:
-    assert marks.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFFFF8001
-    assert marks.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFFFF
+    text = "A 0 0,0,0\nC 0,0,0 0,0,1 70\nL 0,0,5 1 255,128,1\nc 0,0,9 0,0,1 70\n"
+    view = projection_of(scene(text).camera, 300, 200)
+    icons = visible_icons(scene(text), frozenset(), view, 1.0, every=True)
+    assert {icon.code: icon.colour for icon in icons}.items() >= {"L": 0xFFFF8001, "c": 0xFFFFFFFF}.items()
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])

@@ -244,7 +244,7 @@ def test_the_camera_alone_tells_a_scale(position: Triple, direction: Triple, dis
 
 def adding(state: State, number: int = 1) -> State:
     """The state after an element was added: the first of the list, or the one with that number."""
-    return list(choices(state, ELEMENT))[number - 1]
+    return list(choices(state, ELEMENT))[number - 1][1]
 
 
 def test_shapes_come_first_and_what_a_scene_has_once_is_not_added_again() -> None:
@@ -256,7 +256,7 @@ def test_shapes_come_first_and_what_a_scene_has_once_is_not_added_again() -> Non
 
 def test_each_choice_adds_another_kind_and_is_one_undo_step() -> None:
     start = initial_state(scene())
-    after = list(choices(start, ELEMENT))
+    after = [each for _, each in choices(start, ELEMENT)]
     assert [*(type(state.element) for state in after), Mesh] == addable_kinds(start.scene)  # there is no mesh file
     for state in after:
         assert len(state.scene.elements) == len(start.scene.elements) + 1

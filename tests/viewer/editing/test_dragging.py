@@ -21,6 +21,7 @@ FROM, TO = (33, 23), (45, 15)  # on the sphere; beside it
 DRAG = "drag 33,23 45,15"
 PROJECTION = projection_of(scene().camera, WIDTH, HEIGHT)
 HALF = 0.5  # pixel: offset of its centre
+STEP = 0.1  # of which a drag makes multiples in these small pictures, whose pixels are not much larger
 
 numbers = st.floats(-1, 1, allow_nan=False)
 
@@ -42,9 +43,10 @@ def test_the_point_under_the_pointer_stays_there():
     (old,), (new,) = scene().spheres, session.state.scene.spheres
     assert session.state.element is new
     offset = [b - a for a, b in zip(old.centre, new.centre, strict=True)]
-    assert dot(offset, PROJECTION.forward) == pytest.approx(0, abs=1e-9)
+    assert dot(offset, PROJECTION.forward) == pytest.approx(0, abs=STEP)
+    assert all(round(each, 2) == each for each in new.centre)
     moved = tuple(a + b for a, b in zip(pick(scene(), WIDTH, HEIGHT, *FROM)[1], offset, strict=True))
-    assert PROJECTION.pixel(moved) == pytest.approx([each + HALF for each in TO], abs=1e-3)
+    assert PROJECTION.pixel(moved) == pytest.approx([each + HALF for each in TO], abs=HALF)
 
 
 @pytest.mark.parametrize(("presses", "axis"), [(1, 0), (2, 1), (3, 2)])
@@ -63,7 +65,7 @@ def test_a_drag_along_an_axis_changes_one_coordinate(presses, axis):
         along = dot(offset, projection.ray(40.5, 20.5))
         return dist(offset, [along * each for each in projection.ray(40.5, 20.5)])
 
-    assert distance(0) < min(distance(0.02), distance(-0.02))
+    assert distance(0) < min(distance(2 * STEP), distance(-2 * STEP))
 
 
 def test_a_drag_on_nothing_looks_around():
@@ -115,9 +117,9 @@ SKY = "sp 0,0,0 9000 9,9,9\n"  # around everything
 @pytest.mark.parametrize("text", [TEXT, TEXT + SKY])
 @pytest.mark.parametrize("start", [(40, 24), (10, 40), (10, 10)])
 def test_the_camera_orbits_what_is_under_the_pointer_or_in_the_middle(start, text, lines):
-    """On the cylinder, on the plane, and on the sky: then it is the sphere in the middle, whatever is selected."""
+    """On the cylinder; on the plane and on the sky it is the sphere in the middle, whatever is selected."""
     state = played(*lines, text=text).state
-    _, pivot = pick(scene(), WIDTH, HEIGHT, *(start if start != (10, 10) else (WIDTH // 2, HEIGHT // 2)))
+    _, pivot = pick(scene(), WIDTH, HEIGHT, *(start if start == (40, 24) else (WIDTH // 2, HEIGHT // 2)))
     x, y = start
     after = played(*lines, f"drag {x},{y} {x + 12},{y + 6} right", text=text).state
     old, new = state.scene.camera, after.scene.camera

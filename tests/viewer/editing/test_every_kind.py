@@ -62,7 +62,7 @@ def holding(kind: type[Element], path: Path) -> State:
     existing = [each for each in state.scene.elements if type(each) is kind]
     if existing:
         return state.select(index_of(state.scene, existing[0]))
-    return next(each for each in choices(state, ELEMENT) if type(each.element) is kind).end_merging()
+    return next(each for _, each in choices(state, ELEMENT) if type(each.element) is kind).end_merging()
 
 
 def tilted(state: State) -> State:
@@ -245,7 +245,7 @@ def test_every_number_can_be_typed_and_is_saved(kind: type[Element], path: Path)
 def test_every_attribute_is_added_changed_and_removed(kind: type[Element], name: str, path: Path) -> None:
     start = holding(kind, path)
     names = [each for of, each in KEYED if of is kind]
-    state = checked(list(choices(start, ATTRIBUTE))[names.index(name)])
+    state = checked(list(choices(start, ATTRIBUTE))[names.index(name)][1])
     assert getattr(state.element, name) is not None
     assert [each for each in names if getattr(state.element, each) is not None] == [name]
     assert state.active.field.name == name
@@ -271,7 +271,7 @@ def test_every_attribute_is_added_changed_and_removed(kind: type[Element], name:
 @pytest.mark.parametrize("kind", [kind for kind in EDITABLE if issubclass(kind, Shape)], ids=lambda kind: kind.code)
 def test_all_attributes_can_be_combined(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
-    while added := next(choices(state, ATTRIBUTE), None):
+    while added := next(choices(state, ATTRIBUTE), ("", None))[1]:
         state = checked(added).end_merging()
     assert all(getattr(state.element, name) is not None for of, name in KEYED if of is kind)
     for _ in values(state.element):
@@ -282,7 +282,7 @@ def test_all_attributes_can_be_combined(kind: type[Element], path: Path) -> None
 def test_attributes_with_pictures_need_a_picture_beside_the_scene(tmp_path: Path) -> None:
     scene = parse(BARE + "sp 0,0,0 1 9,9,9\n").scene
     state = initial_state(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
-    names = {each.active.field.name for each in choices(state, ATTRIBUTE)}
+    names = {each.active.field.name for _, each in choices(state, ATTRIBUTE)}
     with_picture = {"texture", "bump", "normal_map"}
     assert names == {name for kind, name in KEYED if kind is ELEMENTS["sp"]} - with_picture
     sky = apply(state.select(3), "grow")
@@ -292,8 +292,8 @@ def test_attributes_with_pictures_need_a_picture_beside_the_scene(tmp_path: Path
 
 def test_an_attribute_is_removed_from_an_element_that_has_it() -> None:
     state = apply(initial_state(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene), "select next")
-    shiny = apply(next(choices(state, ATTRIBUTE)), "grow")
-    both = next(choices(shiny, ATTRIBUTE))
+    shiny = apply(next(choices(state, ATTRIBUTE))[1], "grow")
+    both = next(choices(shiny, ATTRIBUTE))[1]
     assert (both.element.specular, both.element.mirror) == (shiny.element.specular, Mirror(0.3))
     assert shiny.element.specular.share == pytest.approx(0.55)
     assert apply(shiny.select(0), "remove attribute").message == "ambient light needs its brightness"
@@ -310,7 +310,7 @@ def test_the_size_of_a_mesh_comes_before_its_file_which_can_be_changed(path: Pat
         assert state.element.file.name == name
     (path.parent / "a.obj").unlink()
     assert "no other mesh" in apply(state, "grow").message
-    *others, last = (type(each.element) for each in choices(state, ELEMENT))
+    *others, last = (type(each.element) for _, each in choices(state, ELEMENT))
     assert last is Mesh
     (path.parent / "more" / "b.obj").unlink()
-    assert [type(each.element) for each in choices(state, ELEMENT)] == others
+    assert [type(each.element) for _, each in choices(state, ELEMENT)] == others

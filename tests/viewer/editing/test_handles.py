@@ -80,7 +80,7 @@ def test_the_square_moves_in_the_level_plane_under_the_pointer() -> None:
     moved = [eye + depth * part + way for eye, part, way in zip(view.eye, ray, offset, strict=True)]
     pixel = view.pixel((moved[0], moved[1], moved[2]))
     assert pixel
-    assert dist(pixel, (int(start[0] + 60) + 0.5, int(start[1] - 25) + 0.5)) < 0.1
+    assert dist(pixel, (int(start[0] + 60) + 0.5, int(start[1] - 25) + 0.5)) < 0.5
 
 
 @pytest.mark.parametrize("axis", range(3))
@@ -142,7 +142,7 @@ def test_shift_makes_a_tenth_of_what_a_handle_does_from_then_on(kind: str, axis:
     whole, tenth = change(moves[0]), change("down Shift", moves[0])
     assert tenth == pytest.approx(whole / 10, rel=0.15)
     assert change(moves[0], "down Shift") == whole
-    assert change(moves[0], "down Shift", moves[1]) == pytest.approx(whole * 1.1, rel=0.03)
+    assert change(moves[0], "down Shift", moves[1]) == pytest.approx(whole * 1.1, abs=0.005)  # half a pixel
     assert change("down Shift", moves[0], "up Shift", moves[1]) == pytest.approx(whole * 1.1, rel=0.15)
 
 

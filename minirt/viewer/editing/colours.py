@@ -1,0 +1,67 @@
+"""Words for colours: what a colour is called, and the colours that an element can be given by a word."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from minirt.element import Element, fields_of
+from minirt.fields import Colour, Triple
+from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import Value, values
+
+WHITE = 255, 255, 255
+COLOUR = "colour"  # kind of the changes that give colours by words, see `State.change`
+COLOURS: dict[str, Triple] = {
+    "black": (0, 0, 0),
+    "dark grey": (70, 70, 70),
+    "grey": (130, 130, 130),
+    "light grey": (195, 195, 195),
+    "white": (255, 255, 255),
+    "dark red": (120, 10, 10),
+    "red": (230, 30, 30),
+    "pink": (255, 160, 190),
+    "beige": (240, 220, 180),
+    "brown": (130, 75, 30),
+    "orange": (255, 140, 0),
+    "yellow": (255, 235, 40),
+    "dark green": (10, 90, 20),
+    "green": (40, 180, 50),
+    "light green": (150, 230, 140),
+    "turquoise": (50, 195, 190),
+    "light blue": (150, 195, 255),
+    "blue": (30, 80, 210),
+    "dark blue": (25, 40, 110),
+    "purple": (140, 40, 190),
+}
+
+
+def colour_word(colour: Triple) -> str:
+    """Return the word whose colour is nearest."""
+    return min(COLOURS, key=lambda word: sum((a - b) ** 2 for a, b in zip(COLOURS[word], colour, strict=True)))
+
+
+def colour_value(element: Element, active: Value | None = None) -> Value | None:
+    """Return the active value if it is a colour, or else the first colour of an element; None where it has none."""
+    every = [each for each in (active, *values(element)) if each and isinstance(each.leaf, Colour)]
+    return every[0]._replace(channel=None) if every else None
+
+
+def own_colour(element: Element, otherwise: Triple = WHITE) -> Triple:
+    """Return the first colour that an element has for itself, not by an attribute, in levels from 0 to 255."""
+    own = (getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour))
+    return next((each for each in own if isinstance(each, tuple)), otherwise)
+
+
+def colours(state: State) -> Iterator[tuple[str, State]]:
+    """Yield the selected elements as they are, and in each colour, with its word."""
+    if colour_value(state.element) is None:
+        return
+    yield "as it is", state.change(state.scene, COLOUR, 0.0)
+    for word, levels in COLOURS.items():
+        scene = state.scene
+        for index in state.chosen:
+            element = scene.elements[index]
+            if value := colour_value(element, state.active if index == state.selected else None):
+                painted = element.replace(**{value.field.name: value.replaced(element, levels)})
+                scene = scene.edit(index, painted)
+        yield word, state.change(scene, COLOUR, 0.0)
