@@ -14,6 +14,7 @@ from typing import NamedTuple
 from minirt.fields import Triple
 from minirt.mlx import Button, Key
 from minirt.scene.names import element_name
+from minirt.viewer.app.explaining import WHEEL
 from minirt.viewer.app.menu import MENU, menu_of
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import ENTER
@@ -36,7 +37,6 @@ TITLES = {  # of these lists, and what is said where they are empty
     COLOUR: ("colour", "{} has no colour"),
 }
 HINT = "type, arrows, click or Enter    Esc: none"
-WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}
 
 
 class Row(NamedTuple):

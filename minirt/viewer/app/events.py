@@ -75,7 +75,7 @@ class EventDispatcher:
         match event, arguments:
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if screen.has_tab and screen.is_on_tab(x, y):
                 self.toggle_panel()
-            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if choose_row(session, x, y):
+            case Event.BUTTON_PRESS, (button, x, y) if choose_row(session, button, x, y):
                 pass
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if not self.choosing.row_at(x, y) and screen.tool_at(x, y):
                 self.use_tool(x, y)

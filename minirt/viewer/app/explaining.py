@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from minirt.mlx import Button
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.explained import explained
 from minirt.viewer.display.lists import layout_of
 from minirt.viewer.display.views import next_view
 
+WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}  # rows to go
 LOOKS = {"": "colours", "normals": "normals", "depth": "depth", "ids": "a colour for each shape"}  # names of views
 
 
@@ -27,15 +29,16 @@ def explain_pixel(session: Session) -> None:
     session.say(screen.explained.parts[0].details)
 
 
-def choose_row(session: Session, x: int, y: int) -> bool:
-    """Choose the row at a pixel of the list of rays, whose numbers are then shown; False beside the list."""
+def choose_row(session: Session, button: int, x: int, y: int) -> bool:
+    """Choose the row at a pixel of the list of rays, or the next by the wheel; its numbers are shown. False beside the
+    list."""
     screen, shown = session.screen, session.screen.explained
-    if not shown or screen.list_box or screen.help or not screen.level:
+    if not shown or screen.list_box or screen.help or not screen.level or button not in (Button.LEFT, *WHEEL):
         return False
-    box = layout_of(shown.box, *screen.size, screen.text_size)
-    row = box.row_at(x, y)
+    row = layout_of(shown.box, *screen.size, screen.text_size).row_at(x, y)
     if row is None:
         return False
+    row = min(max(shown.chosen + WHEEL[button], 0), len(shown.parts) - 1) if button in WHEEL else row
     screen.explained = shown._replace(chosen=row)
     session.say(shown.parts[row].details)
     session.show(session.state)

@@ -18,7 +18,7 @@ MENU = {  # its rows: actions, and what they are called there
     "duplicate": "duplicate",
     "delete": "delete",
     "drop": "drop onto what lies beneath",
-    "look at": "bring into view",
+    "look at": "bring into view; again: all",
     "look through": "look through",
     "focus": "focus here",
     "explain pixel": "explain this pixel",

@@ -25,6 +25,7 @@ from minirt.viewer.editing.state import State, index_of
 
 NEARER = 0.7  # of the picture's height: where the tool row puts an element
 CLICK_SLACK = 3  # pixels that the pointer may move during a click
+ARROW = "arrow"  # the action of a press on an arrow at the edge
 SLIDING = "slide by hand"  # the drag that leaves handles alone, as its chords may be those of a handle, too
 DOUBLE_CLICK = 0.4  # seconds between its presses
 SHIFT_DRAG = "turn by hand"  # the drag with Shift, without which the press selects several
@@ -98,8 +99,8 @@ class Mouse:
         for owner, way in arrows(state.scene, state.chosen, session.view, screen.icons).items():
             tip = arrow_tip(way, *screen.size, screen.scale)
             if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
-                message = f"{element_name(state.scene, owner)} is in the middle now"
-                session.show(look_at(state.select(owner), 1.0, session.now).with_message(message))
+                start = DragStart(session.view, x, y, state.element, state.scene.camera, None, Button.LEFT, ARROW)
+                session.pressed = start._replace(owner=owner)
                 return True
         shown = bool(state.others), screen.handle_kind
         handles = handles_of(state.element, session.view, screen.scale, *shown) if screen.handles else []
@@ -118,6 +119,8 @@ class Mouse:
             right, down = pressed.reach
             reach = right + (x - from_x) * session.step, down + (y - from_y) * session.step
             session.pressed = pressed = pressed._replace(reach=reach)
+        if pressed and pressed.action == ARROW:
+            return
         if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
@@ -143,9 +146,17 @@ class Mouse:
             elif not pressed.dragging and not pressed.handle:
                 self.session.show(self.selection_after(pressed))
 
+    def framed(self, owner: int) -> State:
+        """Return the state after a click on the arrow to an element, which brings that into view."""
+        state = self.session.state
+        message = f"{element_name(state.scene, owner)} is in the middle now"
+        return look_at(state.select(owner), 1.0, self.session.now).with_message(message)
+
     def selection_after(self, pressed: DragStart) -> State:
         """Return the state after a click of the left button: on nothing the camera is selected."""
         state, owner = self.session.state, pressed.owner
+        if owner is not None and pressed.action == ARROW:
+            return self.framed(owner)
         is_with_shift = pressed.action == SHIFT_DRAG
         if owner is None:
             camera = index_of(state.scene, state.scene.camera)

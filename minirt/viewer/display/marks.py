@@ -12,8 +12,10 @@ from minirt.fields import Triple
 from minirt.mlx.text import draw_text, measure
 from minirt.scene import Lamp, Scene
 from minirt.scene.elements import linear_combination
+from minirt.scene.names import element_name
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
+from minirt.viewer.display.lists import draw_on_dark
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.colours import own_colour
@@ -22,6 +24,7 @@ from minirt.viewer.editing.dragging import SIZE as RESIZE
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, position_of, projection_of, subtract
 from minirt.viewer.editing.state import Frame, State, can_edit
+from minirt.viewer.language import translated
 
 GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
 ORANGE = 0xFFE8862E  # of selected elements beside the primary one, which is golden
@@ -78,8 +81,8 @@ def draw_marks(
                 draw_line(pixels, start, end, AXIS_COLOURS[state.frame])
         for handle in handles_of(element, view, scale, bool(others), kind) if handles else []:
             draw_handle(pixels, handle, view.pixel(handle.centre), scale)
-    for direction in arrows(scene, colours, view, icons).values():
-        draw_arrow(pixels, direction, scale)
+    for owner, direction in arrows(scene, colours, view, icons).items():
+        draw_arrow(pixels, direction, scale, element_name(scene, owner, translated) if owner in colours else "")
     for icon in visible_icons(scene, colours, view, scale, icons):
         draw_icon(pixels, icon, scale, colours.get(icon.owner, BLACK))
 
@@ -203,11 +206,17 @@ def arrow_tip(direction: tuple[float, float], width: int, height: int, scale: fl
     return width / 2 + reach * direction[0], top + room[1] + reach * direction[1]
 
 
-def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> None:
-    """Draw an arrow in this direction, with its tip at the border of the picture."""
+def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float, name: str = "") -> None:
+    """Draw an arrow in this direction, with its tip at the border of the picture, and the name of what is there."""
     height, width = pixels.shape[:2]
     tip = arrow_tip(direction, width, height, scale)
     size = LENGTH * scale
+    if name:
+        (breadth, line), font = measure(name, round(size)), round(size)
+        left, middle = (at - 1.5 * size * way for at, way in zip(tip, direction, strict=True))
+        left -= breadth * (1 + direction[0]) / 2  # beside the arrow, on the side of the middle of the picture
+        place = round(min(max(left, 0), width - breadth)), round(middle - line / 2)
+        draw_on_dark(pixels, *place, name, GOLD, size=font)
     left, top = (max(0, int(at - 2 * size)) for at in tip)
     pixels = pixels[top : int(tip[1] + 2 * size), left : int(tip[0] + 2 * size)]  # all of them would take 24 ms
     y, x = np.ogrid[top : top + pixels.shape[0], left : left + pixels.shape[1]]

@@ -34,6 +34,7 @@ TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow wind
 TIPS = """drag an object to move it, or nothing to look around    wheel: zoom    right drag: turn around
 right click: add, copy, delete and more
 H: all keys    F1: panel    Ctrl+Z: undo    Ctrl+S: save    Esc: quit"""
+BEYOND = "not on the picture of the whole window"
 GRID_COLOUR = (84, 75, 68, 255)  # BGRA
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
@@ -142,7 +143,7 @@ class Screen:
             if picture and picture.job.size == self.size:  # not an old one, stretched
                 self.draw_over(clear, state, picture, handles)
             if self.covered:
-                darken_beyond(clear, self.window.width)
+                darken_beyond(clear, self.window.width, size)
             if self.handles:
                 draw_tools(clear, scale, size, self.tool, self.handle_kind, self.keymap.layout)
             bottom = overlay.draw_hud(clear, state, picture, self.level, rate, size)
@@ -201,12 +202,18 @@ def give_back_memory() -> None:
             ctypes.CDLL(None).malloc_trim(ctypes.c_size_t(0))
 
 
-def darken_beyond(pixels: Pixels, width: int) -> None:
-    """Darken the rows above and below what a picture shows without the panel, which has the same height and a width."""
+def darken_beyond(pixels: Pixels, width: int, size: int) -> None:
+    """Darken the rows above and below what a picture shows without the panel, which has the same height and a width.
+
+    Where there is room the rows below say so, in text of a size.
+    """
     height = pixels.shape[0]
     border = (height - height * pixels.shape[1] // width) // 2
     for rows in (slice(border), slice(height - border, None)):
         pixels[rows, :, :3] -= pixels[rows, :, :3] >> 2
+    text_width, text_height = measure(words := translated(BEYOND), size)
+    if text_height < border and text_width + 2 * MARGIN < pixels.shape[1]:
+        draw_text(pixels, pixels.shape[1] - text_width - MARGIN, height - border, words, TEXT_COLOUR, size=size)
 
 
 def draw_help(pixels: Pixels, layout: str, search: str, max_size: int, number: int) -> None:

@@ -29,7 +29,7 @@ PIXEL_CENTRE = 0.5  # pixels
 CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
 SNAP_ANGLE = 15.0  # degrees
 LEVEL = 1e-6  # in place of the slope of a level ray
-FINE = 0.1  # of a pixel, with Shift
+FINE = 0.1  # of a pixel or a degree, with Shift
 TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
 
 # Handles: arrows along the axes move the element, a square in two; rings turn it, boxes resize it.
@@ -131,8 +131,10 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
         column, row = view.pixel(centre) or (0.0, 0.0)
         first, last = (degrees(atan2(down - row, at - column)) for at, down in ends)
         facing = copysign(motion.handedness(start.camera), dot(axis, subtract(view.eye, centre)))
-        angle = snapped((first - last) * facing, SNAP_ANGLE * start.snaps)
-        return motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
+        step = SNAP_ANGLE if start.snaps else FINE if start.fine else 1.0
+        angle = snapped((first - last) * facing, step)
+        turned = motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
+        return turned.with_message(f"turned by {angle:.3g} degrees    Ctrl: by steps of {SNAP_ANGLE:g}")
     if handle.kind == SLIDE:  # in the level plane
         depths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in (view.ray(*at) for at in ends)]
         ways = [linear_combination(depth, view.ray(*at), 0.0, centre) for depth, at in zip(depths, ends, strict=True)]

@@ -52,7 +52,7 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     if normal:
         point, normal = on_grid(shape, point, normal, nice_number(min(STEP_SHARE * size, length / 2)))
         length = length_at(view, shape, point, normal)
-    return Aim(view.eye, point, normal, length)
+    return Aim(view.eye, point, normal, length, beneath(shape, normal))
 
 
 def aim_at_top(view: Projection, shape: Shape) -> Aim:
@@ -61,7 +61,12 @@ def aim_at_top(view: Projection, shape: Shape) -> Aim:
     assert box
     found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
     point, normal = found or ((x, box[1][1], z), UP)
-    return Aim(view.eye, point, normal, length_at(view, shape, point, normal))
+    return Aim(view.eye, point, normal, length_at(view, shape, point, normal), beneath(shape, normal))
+
+
+def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:
+    """The shape, if it is bounded and its surface there is its top."""
+    return shape if shape and normal and normal[1] > TOP and shape.bounds() else None
 
 
 def length_at(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
@@ -70,7 +75,7 @@ def length_at(view: Projection, shape: Shape | None, point: Triple, normal: Trip
     box = shape.bounds() if shape and normal else None
     if box and normal:
         breadth = sorted(subtract(box[1], box[0]))[1]
-        length = min(abs(length), breadth * (TOP_SHARE if normal[1] > TOP else SIDE_SHARE))
+        length = min(abs(length), breadth * (TOP_SHARE if beneath(shape, normal) else SIDE_SHARE))
     return clamp_length(length)
 
 
@@ -157,8 +162,8 @@ def lift_of(shape: Shape, normal: Triple) -> float:
 def keep_standing(state: State, old: Element, changed: Element) -> Element:
     """The changed selected element, which was `old`: unless it is moved or turned, it stands where it stood.
 
-    One that still is where it was added stands there again. Any other one that stands on something, and whose position
-    is not in its middle, keeps its lower end: a cone grows upwards.
+    One that still is where it was added stands there again. Any other one that stands on something keeps its lower end:
+    it grows upwards.
     """
     if not isinstance(old, Shape) or not isinstance(changed, Shape) or old.bounds() is None:
         return changed
@@ -174,27 +179,9 @@ def keep_standing(state: State, old: Element, changed: Element) -> Element:
         if near and there.replace(**points) == old:
             return settled(changed, state.aim, scene, stride)
     changed = round_changes(old, changed, stride)  # so that the end does not drift by what is rounded later
-    way, growth = growth_below(old, changed)
-    if not growth or abs(gap_below(old, state.scene.edit(state.selected).shapes)) > SAME * stride:
-        return changed
-    return shifted(changed, way, growth)
-
-
-def growth_below(old: Shape, changed: Shape) -> tuple[Triple, float]:
-    """The axis of a shape, upwards, and by how much its lower end has moved down along it.
-
-    0 for one that lies on its side or has its position in its middle.
-    """
-    field, position = direction_of(old), position_of(old)
-    axis: Triple = getattr(old, field.name) if field else UP
-    if field is None or position is None or abs(axis[1]) < LEVEL:
-        return axis, 0.0
-    sign = copysign(1.0, axis[1])
-    before, after = (each.replace(**{field.name: (0.0, sign, 0.0)}) for each in (old, changed))
-    (_, middle, _), radius = middle_of(before)
-    off_middle = abs(middle - position[1]) > SAME * radius
-    growth = lowest_along(before, UP) - lowest_along(after, UP) if off_middle else 0.0
-    return linear_combination(sign, axis, 0.0, axis), growth
+    growth = lowest_along(old, UP) - lowest_along(changed, UP)
+    stands = growth and abs(gap_below(old, state.scene.edit(state.selected).shapes)) <= SAME * stride
+    return shifted(changed, UP, growth) if stands else changed
 
 
 def gap_below(shape: Shape, others: Sequence[Shape]) -> float:

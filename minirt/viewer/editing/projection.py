@@ -156,3 +156,4 @@ class Aim(NamedTuple):
     point: Triple
     normal: Triple | None  # of the surface there, towards the eye; None in the air
     size: float  # of an element there: it fills SHARE of the picture, and is a share of what it stands on
+    beneath: Shape | None = None  # the bounded shape whose top the place is on

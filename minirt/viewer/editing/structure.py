@@ -32,6 +32,7 @@ from minirt.viewer.files import usable_files
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
+STACKED = 1.5  # times the usual size on top of another shape: of a shape of the same kind
 LAMP_SHARE = 0.4  # of the distance to a surface: where a new lamp hangs in front of it
 SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
@@ -152,6 +153,9 @@ def default_element(kind: type[Element], state: State) -> Element:
     if issubclass(kind, Camera):  # which sees what is seen now
         return state.scene.camera.as_kind(kind)
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
+    if type(aim.beneath) is kind:  # a ball on a ball is of its colour, and not much smaller
+        like = default_record(kind, state, round_length(STACKED * aim.size))
+        return settled(like.replace(colour=aim.beneath.colour), aim, state.scene, state.stride)
     made = default_record(kind, state, one_digit(aim.size))
     return settled(made, aim, state.scene, state.stride) if isinstance(made, Shape) else made
 

@@ -19,7 +19,7 @@ from minirt.viewer.language import translated
 from minirt.viewer.panel.numbers import TYPING, Numbers
 from minirt.viewer.panel.style import GOLD, rgba
 
-ALL_THREE = "or 1 2 3"  # in place of the name of three numbers while one of them is typed
+ALL_THREE = "1 2 3"  # beside the name of three numbers while one of them is typed, as all can be typed at once
 LABEL = 0.3  # of the width: the name of a value
 COLOUR_OR = "colour"  # what stands for a colour among the pictures
 HEX = re.compile("#?([0-9a-fA-F]{6})")
@@ -46,8 +46,10 @@ class Rows(Numbers):
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
         imgui.push_id(f"{self.index} {value.name}")  # what is typed is that of no other element
         imgui.align_text_to_frame_padding()
-        types_part = self.typing == (self.index, value)
-        imgui.text(translated(ALL_THREE if types_part else leaf.title))
+        title = longer = translated(leaf.title)
+        if self.typing == (self.index, value):
+            longer = f"{title}: {ALL_THREE}"
+        imgui.text(longer if imgui.calc_text_size(longer)[0] < LABEL * width else title)
         self.gui.hint(leaf.doc, leaf.range)
         if imgui.get_item_rect_size()[0] < LABEL * width:
             imgui.same_line()

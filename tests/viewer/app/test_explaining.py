@@ -56,11 +56,14 @@ def test_a_click_on_a_row_shows_its_numbers_and_edits_nothing() -> None:
     box = shown(before).box
     assert len(box.rows) == 2  # the ray, and that to the light
     at = layout_of(box, *SIZE, before.screen.text_size)
-    after = play(MIDDLE, "press Y", f"click {at.text_left},{at.rows_top + at.line + 2}")
-    assert shown(after).chosen == 1
-    assert after.state.message == shown(after).parts[1].details
-    assert "cosine" in after.state.message
-    assert after.state.selected == before.state.selected
+    on_list = f"{at.text_left},{at.rows_top + at.line + 2}"
+    for lines in ([f"click {on_list}"], [f"move {on_list}", "wheel down 3"]):
+        after = play(MIDDLE, "press Y", *lines)
+        assert shown(after).chosen == 1
+        assert after.state.message == shown(after).parts[1].details
+        assert "cosine" in after.state.message
+        assert after.state.selected == before.state.selected
+        assert after.state.scene.camera == before.state.scene.camera
 
 
 def test_rays_stay_while_the_camera_moves_and_go_with_the_shapes_that_they_met() -> None:

@@ -64,12 +64,12 @@ def test_a_right_click_shows_what_can_be_done_with_the_element_there() -> None:
     assert not rows(play("drag 320,240 400,300 right"))  # which looks around
 
 
-@pytest.mark.parametrize(("row", "spheres"), [("duplicate", 2), ("delete", 0), ("bring into view", 1)])
+@pytest.mark.parametrize(("row", "spheres"), [("duplicate", 2), ("delete", 0), ("bring into view; again: all", 1)])
 def test_a_click_on_a_row_does_what_its_key_does(row: str, spheres: int) -> None:
     session = clicked(right_click(AT_SPHERE), row=row)
     assert len(session.state.scene.spheres) == spheres
     assert not rows(session)
-    keys = {"duplicate": "press Ctrl+D", "delete": "press Delete", "bring into view": "press F"}
+    keys = {"duplicate": "press Ctrl+D", "delete": "press Delete", "bring into view; again: all": "press F"}
     by_key = play("click 320,240", keys[row])
     assert session.state.scene.items == by_key.state.scene.items
 

@@ -1,4 +1,4 @@
-"""A shape that stands on something stays on it while its size changes, if its position is not in its middle."""
+"""A shape that stands on something stays on it while its size changes, wherever its position is."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ LINES = {
     "co 0,5,0 0,-1,0 2 3 9,9,9\nsp 0,1,0 2 9,9,9": (0, 6, 0),
     "co 0,5,0 0,-1,0 2 3 9,9,9\npl 0,0,0 0,1,0 9,9,9": (0, 5, 0),  # on nothing
     "co 0,3,0 1,0,0 2 3 9,9,9": (0, 3, 0),  # on its side
-    "cy 0,1.5,0 0,1,0 2 3 9,9,9": (0, 1.5, 0),  # its position is its middle
+    "cy 0,1.5,0 0,1,0 2 3 9,9,9": (0, 2, 0),  # its position is its middle
+    "cy 0,1.6,0 0,1,0 2 3 9,9,9": (0, 1.6, 0),  # on nothing
 }
 
 
@@ -51,6 +52,13 @@ def test_steps_leave_the_base_where_it_is(lines: tuple[str, ...]) -> None:
 
 def test_a_wider_one_stays_where_it_is() -> None:
     assert edited(CONE, "press Shift+V", "press +").element.apex == (0, 3, 0)
+
+
+@pytest.mark.parametrize(("height", "rest"), [(1, 1.5), (2, 2), (1.01, 1.01)])
+def test_a_ball_that_stands_grows_upwards(height: float, rest: float) -> None:
+    text = f"{HEAD}sp 0,{height},0 2 9,9,9\n"
+    ball = played("press Tab", "text 3", "press Return", text=text).state.element
+    assert (ball.diameter, ball.centre) == (3, (0, rest, 0))
 
 
 @pytest.mark.parametrize("added", [False, True])
