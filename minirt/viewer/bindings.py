@@ -160,7 +160,7 @@ BINDINGS = (
     once(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
     once(WINDOW, "toggle handles", "handles on the selected element, on or off", "K"),
     once(WINDOW, "toggle help", "this help, or the picture", "H", "?"),
-    once(WINDOW, "toggle panel", "panel of elements, values, history and pictures, or no panel", "F1"),
+    once(WINDOW, "toggle panel", "panel of elements, values, history, pictures and films, or no panel", "F1"),
     once(WINDOW, "larger text", "larger text and icons", "Ctrl++", "Ctrl+="),
     once(WINDOW, "smaller text", "smaller text and icons", "Ctrl+-"),
     once(WINDOW, "usual text", "text of the usual size", "Ctrl+0"),

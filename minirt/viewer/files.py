@@ -25,12 +25,13 @@ PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".
 MESH_SUFFIXES = {".obj", *BY_TRIMESH}
 
 
-def title_of(path: Path, scene: Scene) -> str:
-    """Return the title of the window; it tells that the file is not there yet, or which shapes could not be read."""
+def title_of(path: Path, scene: Scene, is_unsaved: bool = False) -> str:
+    """Return the title of the window; it tells that the file is not there yet, which shapes could not be read, and by
+    a star that there are unsaved changes."""
     new = "" if file_io.found(path) else f" ({translated('new')})"
     names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
     count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
-    return f"miniRT - {path.name}{new}" + (f": {count}: {names}" if names else "")
+    return f"miniRT - {path.name}{new}{' *' * is_unsaved}" + (f": {translated(count)}: {names}" if names else "")
 
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:

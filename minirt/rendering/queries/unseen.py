@@ -169,8 +169,11 @@ def rectangles(camera: Camera, size: tuple[int, int], boxes: np.ndarray) -> np.n
     return np.stack([np.select(ends, [places.min(1), -1.0], 0.0), np.select(ends, [places.max(1), -1.0], 1.0)])
 
 
-def showing_camera(scene: Scene, size: tuple[int, int]) -> Camera | None:
-    """Return the first camera that shows most of the bounded shapes, if there are any; None where none shows one."""
+def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = False) -> Camera | None:
+    """Return the first camera that shows most of the bounded shapes, if there are any; None where none shows one.
+
+    `straight`: prefer the direction of the scene's camera.
+    """
     arrays = arrays_of(scene)
     if not arrays or not len(arrays.shapes):
         return None
@@ -178,15 +181,16 @@ def showing_camera(scene: Scene, size: tuple[int, int]) -> Camera | None:
     wanted = bounded | ~bounded.any()
     low, high = arrays.boxes[wanted, 0].min(axis=0), arrays.boxes[wanted, 1].max(axis=0)
     x, y, z = ((low + high) / 2).tolist()
-    cameras = candidates(scene.camera, (x, y, z), dist(low, high) / 2 or 1.0, size[1] / size[0])
+    cameras = candidates(scene.camera, (x, y, z), dist(low, high) / 2 or 1.0, size[1] / size[0], straight)
     cameras = cameras[: max(1, TESTS // (len(MANY) * len(arrays.slots)))]
     shown = [wanted[visible_shapes(arrays, camera, size)].sum() for camera in cameras]
     return cameras[np.argmax(shown)] if max(shown, default=0) else None
 
 
-def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> list[Camera]:
+def candidates(camera: Camera, centre: Triple, radius: float, aspect: float, straight: bool) -> list[Camera]:
     """Return cameras all around a ball that see it whole, those near to where the camera is first, and none beyond the
-    range of coordinates; the last one turns to the ball where the camera is."""
+    range of coordinates; the last one turns to the ball where the camera is. `straight`: the first one does not turn.
+    """
     fov = camera.fov if NARROWEST <= camera.fov <= WIDEST else USUAL
     half = tan(radians(fov) / 2) * min(1.0, aspect)
     distance = MARGIN * radius / sin(atan2(half, 1.0))
@@ -194,14 +198,16 @@ def candidates(camera: Camera, centre: Triple, radius: float, aspect: float) -> 
     start = atan2(x, z) if x or z else pi
     digits = DIGITS - 1 - floor(log10(radius))
     turns = [(-1) ** i * ceil(i / 2) * 2 * pi / AZIMUTHS for i in range(AZIMUTHS)]
-    cameras = []
+    x, y, z = camera.direction
+    ways = [(-x, -y, -z)] if straight else []
     for elevation in map(radians, ELEVATIONS):
-        for azimuth in (start + turn for turn in turns):
-            towards = cos(elevation) * sin(azimuth), sin(elevation), cos(elevation) * cos(azimuth)
-            eye = tuple(round(a + distance * b, digits) for a, b in zip(centre, towards, strict=True))
-            if max(map(abs, eye)) > FARTHEST:
-                continue
-            direction = tuple(round(-b, PLACES) for b in towards)
+        level = ((cos(elevation) * sin(start + turn), cos(elevation) * cos(start + turn)) for turn in turns)
+        ways += [(x, sin(elevation), z) for x, z in level]
+    cameras = []
+    for way in ways:
+        eye = tuple(round(a + distance * b, digits) for a, b in zip(centre, way, strict=True))
+        if max(map(abs, eye)) <= FARTHEST:
+            direction = tuple(round(-b, PLACES) for b in way)
             cameras.append(camera.replace(position=eye, direction=direction, fov=fov, roll=0.0))
     if away := dist(centre, camera.position):  # walls may hide the scene from all sides
         direction = tuple(round((b - a) / away, PLACES) for a, b in zip(camera.position, centre, strict=True))

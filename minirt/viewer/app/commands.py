@@ -21,7 +21,7 @@ from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.state import initial_state, state_after_reading, with_edited_cameras
-from minirt.viewer.files import contents_differ, looks, title_of
+from minirt.viewer.files import contents_differ, looks
 from minirt.viewer.recovery import FoundChanges, find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
@@ -106,7 +106,6 @@ def save_scene(session: Session) -> None:
     session.saved, session.lenient = session.state.scene, False
     session.screen.banner = ""
     session.found_changes = None
-    session.mlx.mlx_set_window_title(session.window, title_of(session.path, session.saved))
     kept = f"; what another program had written is in {copy}" if copy else ""
     session.say(f"saved: {session.path}{kept}")
 
@@ -166,7 +165,6 @@ def open_another(session: Session, path: Path) -> None:
         kept = f"; the changes that were not saved are in {files.save_recovery(session.state.scene, session.path)}"
     session.file.close()
     session.watch_file(path)
-    session.mlx.mlx_set_window_title(session.window, title_of(path, scene))
     session.show_file(initial_state(scene).with_message(f"opened: {path}{kept}"), scene)
     tell_dialect(session)
 

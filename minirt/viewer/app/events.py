@@ -70,6 +70,7 @@ class EventDispatcher:
             if event == Event.BUTTON_PRESS:  # a click beside a list or a typed value closes it
                 self.typing.end()
                 self.choosing.end()
+            self.session.screen.tool = None
             return
         session, screen = self.session, self.session.screen
         match event, arguments:
@@ -231,6 +232,10 @@ class EventDispatcher:
             session.attempt(COMMANDS[action])
         session.show(session.state)
 
+    def perform_for_panel(self, binding: Binding) -> None:
+        """Perform the action of a button of the panel; a list that it opens is beside the panel."""
+        self.choosing.perform_at((self.session.screen.size[0], 0), binding.action)
+
     def toggle_panel(self, has_keys: bool = True) -> None:
         """Open the panel, which then `has_keys`, or close it; slimgui is imported when it opens first."""
         session = self.session
@@ -243,7 +248,7 @@ class EventDispatcher:
             session.say(NO_PANEL)
             session.refresh()
         else:
-            self.panel = self.panel or Panel(session, self.perform)
+            self.panel = self.panel or Panel(session, self.perform_for_panel)
             self.panel.open(not self.panel.is_open, has_keys)
         if session.recovery:
             remember_panel(is_open=bool(self.panel and self.panel.is_open))

@@ -72,7 +72,7 @@ class Mouse:
         if button == Button.LEFT and self.looks_through(owner):
             return
         if button == Button.LEFT and drag.action != SHIFT_DRAG:
-            state = session.state.with_message("there is nothing" if owner is None else "")
+            state = session.state.with_message("nothing is there: the camera is selected" if owner is None else "")
             session.show(state if owner is None else state.make_primary(owner))
         state = session.state
         element = state.element if owner is None or button != Button.LEFT else state.scene.elements[owner]
@@ -227,8 +227,8 @@ class Mouse:
         (x, y), (width, height) = at or session.window.pointer, session.screen.size
         is_elsewhere = (x, y) == (0, 0) or not self.inside or not session.screen.shows_picture_at(x, y)
         if is_elsewhere and not at:
-            if isinstance(element, Shape) and element.bounds():
-                return aim_at_top(session.view, element)
+            if isinstance(element, Shape) and element.bounds() and (top := aim_at_top(session.view, element)):
+                return top
             x, y = width // 2, int((NEARER if session.screen.tool_at(x, y) else AHEAD) * height)
         try:
             hit = session.surface_at(x, y)

@@ -81,7 +81,9 @@ class Session:
         self.full_screen = False
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
-        self.window = mlx.mlx_new_window(display, *size, title_of(path, scene), resizable=True)
+        self._title = title_of(path, scene)
+        self._entitled: tuple[object, ...] = ()  # what the title was last made from
+        self.window = mlx.mlx_new_window(display, *size, self._title, resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), samples)
         self.keymap = Keymap(keys, self.window.letter_at)
         self.screen = Screen(mlx, self.window, self.keymap)
@@ -106,9 +108,20 @@ class Session:
         """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
         if self.recovery:
             self.recovery.keep(Version(self.state.scene, self.saved, self.path))
+        self.show_title()
         moving = bool(self.held_keys) or self.slides
         size = self.window_size if self.screenshot_pending and not moving else self.screen.size
         self.refinement.request_missing(self.shown_scene, size, moving=moving)
+
+    def show_title(self) -> None:
+        """Show the title of the window, if it is another one."""
+        told = self.state.scene, self.saved, self.path
+        if told != self._entitled:
+            self._entitled = told
+            title = title_of(self.path, self.saved, contents_differ(self.state.scene, self.saved))
+            if title != self._title:
+                self._title = title
+                self.mlx.mlx_set_window_title(self.window, title)
 
     def refresh(self) -> None:
         """Draw the window, unless words wait for their picture and it has not come, for at most WORDS_DELAY."""

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from colorsys import rgb_to_hsv
+from math import hypot, inf
 
 from minirt.element import Element, fields_of
 from minirt.fields import Colour, Triple
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value, values
 
+GREY = 0.15  # saturation, or brightness, below which a colour is a grey
+HUES = 5  # brightnesses that are as far from each other as the two ends of the circle of hues
 WHITE = 255, 255, 255
 COLOUR = "colour"  # kind of the changes that give colours by words, see `State.change`
 COLOURS: dict[str, Triple] = {
@@ -36,8 +40,18 @@ COLOURS: dict[str, Triple] = {
 
 
 def colour_word(colour: Triple) -> str:
-    """Return the word whose colour is nearest."""
-    return min(COLOURS, key=lambda word: sum((a - b) ** 2 for a, b in zip(COLOURS[word], colour, strict=True)))
+    """Return the word whose colour is nearest: of the greys in brightness, of the others in hue before brightness."""
+    hue, saturation, brightness = rgb_to_hsv(*(level / 255 for level in colour))
+    is_grey = saturation < GREY or brightness < GREY
+
+    def distance(word: str) -> float:
+        other, share, light = rgb_to_hsv(*(level / 255 for level in COLOURS[word]))
+        if is_grey or share < GREY:
+            return abs(light - brightness) if is_grey and share < GREY else inf
+        turn = abs(hue - other)
+        return hypot(min(turn, 1 - turn) * HUES, light - brightness, (share - saturation) / 2)
+
+    return min(COLOURS, key=distance)
 
 
 def colour_value(element: Element, active: Value | None = None) -> Value | None:

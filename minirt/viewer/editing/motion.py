@@ -154,7 +154,7 @@ def look_at(state: State, _amount: float, now: float) -> State:
     if after is not state:
         return after.with_message("again: the whole scene")
     if bounds or isinstance(element, Camera):
-        showing = showing_camera(state.scene, USUAL_SIZE)
+        showing = showing_camera(state.scene, USUAL_SIZE, straight=True)
         return state.edit_camera(showing, "", now) if showing else state
     return state.with_message(f"select an element with a position to look at: {element.title} has none")
 

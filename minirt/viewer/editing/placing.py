@@ -29,7 +29,8 @@ AHEAD = 0.55  # of the picture's height: where an element goes while there is no
 PICTURE = 640, 360  # pixels of a usual window, where none is known
 BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
 SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
-TOP = 0.7  # cosine of the slope, of 45 degrees, up to which a surface is the top of its shape
+TOP = 0.5  # cosine of the slope, of 60 degrees, up to which a surface is the top of its shape
+TINY = 1 / 8  # of the usual size of an element that stands on nothing
 TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a new element on its top, or elsewhere
 
 
@@ -52,16 +53,17 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     if normal:
         point, normal = on_grid(shape, point, normal, nice_number(min(STEP_SHARE * size, length / 2)))
         length = length_at(view, shape, point, normal)
-    return Aim(view.eye, point, normal, length, beneath(shape, normal))
+    return Aim(view.eye, point, normal, length, length_at(view, None, point, None), beneath(shape, normal))
 
 
-def aim_at_top(view: Projection, shape: Shape) -> Aim:
-    """Aim at the top of a bounded shape, above its middle."""
+def aim_at_top(view: Projection, shape: Shape) -> Aim | None:
+    """Aim at the top of a bounded shape, above its middle; None where what stands there would hardly be seen."""
     box, ((x, _, z), radius) = shape.bounds(), middle_of(shape)
     assert box
     found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
     point, normal = found or ((x, box[1][1], z), UP)
-    return Aim(view.eye, point, normal, length_at(view, shape, point, normal), beneath(shape, normal))
+    length, usual = length_at(view, shape, point, normal), length_at(view, None, point, None)
+    return Aim(view.eye, point, normal, length, usual, beneath(shape, normal)) if length >= TINY * usual else None
 
 
 def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import dist, hypot
+from math import dist, hypot, inf
 from statistics import median
 from typing import Any, NamedTuple
 
@@ -156,4 +156,5 @@ class Aim(NamedTuple):
     point: Triple
     normal: Triple | None  # of the surface there, towards the eye; None in the air
     size: float  # of an element there: it fills SHARE of the picture, and is a share of what it stands on
+    usual: float = inf  # size of an element there that stands on nothing
     beneath: Shape | None = None  # the bounded shape whose top the place is on

@@ -17,12 +17,13 @@ from math import isfinite
 from operator import add, mul, neg, pos, sub, truediv
 from typing import Any
 
+from minirt.element import Element
 from minirt.errors import ElementError, FieldError
-from minirt.fields import Colour, Three, Whole
+from minirt.fields import Colour, Direction, Three, Whole
 from minirt.fields.scalars import found, number
 from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import Value
+from minirt.viewer.editing.values import Value, values
 
 OPERATIONS: dict[Any, Any] = {ast.Mult: mul, ast.Div: truediv, ast.Add: add, ast.Sub: sub, ast.USub: neg, ast.UAdd: pos}
 CHARACTERS = "0123456789.,+-*/=()"  # of which typed values are made
@@ -33,7 +34,7 @@ CHANGES: dict[str, Callable[[float, float], float]] = {"+=": add, "-=": sub, "*=
 def set_typed(state: State, value: Value, text: str, now: float) -> State:
     """The state whose selected element has what was typed as a value, or which says what is wrong with it."""
     try:
-        return with_value(state, value, typed(value, value.get(state.element), value.current(state.element), text), now)
+        return with_value(state, value, lambda element: typed(value, element, text), now)
     except FieldError as error:
         reason = f"{value.name} {error}"
     except ElementError as error:  # of the element, or of the record that is the value of its field
@@ -41,19 +42,28 @@ def set_typed(state: State, value: Value, text: str, now: float) -> State:
     return state.with_message(f"{state.element.title} {reason}")
 
 
-def with_value(state: State, value: Value, new: Any, now: float) -> State:
-    """The state whose selected element has another value, of a part also a whole triple; ValueError out of range."""
-    whole = value._replace(channel=None) if isinstance(new, tuple) else value
-    changed = state.element.replace(**{value.field.name: whole.replaced(state.element, new)})
-    changed = keep_standing(state, state.element, changed)
-    return state.end_merging().edit_element(changed, f"typed {value.name}", now).end_merging()
+def with_value(state: State, value: Value, new: Callable[[Element], Any], now: float) -> State:
+    """The state whose selected elements have another value, as far as they have such a value; ValueError out of range.
 
-
-def typed(value: Value, old: Any, current: Any, text: str) -> Any:
-    """The number or triple that `text` asks for, in range or not. FieldError if it is no number.
-
-    `old`: the whole present value; `current`: the part of it that is active, if one is.
+    `new` gives the value of an element, of a part also a whole triple.
     """
+    changed = dict[int, Element]()
+    for index in state.chosen:
+        element, primary = state.scene.elements[index], state if index == state.selected else state.select(index)
+        if value in {*values(element)} or element is state.element:
+            given = new(element)
+            whole = value._replace(channel=None) if isinstance(given, tuple) else value
+            after = element.replace(**{value.field.name: whole.replaced(element, given)})
+            changed[index] = keep_standing(primary, element, after)
+    return state.end_merging().edit_elements(changed, f"typed {value.name}", now).end_merging()
+
+
+def typed(value: Value, element: Element, text: str) -> Any:
+    """The number or triple that `text` asks for as a value of an element, in range or not. FieldError if it is none.
+
+    A direction may have any length.
+    """
+    old, current = value.get(element), value.current(element)
     presents = current if isinstance(current, tuple) else (current,)
     if any(isinstance(part, bool) or not isinstance(part, int | float) for part in presents):
         raise FieldError("is not a number: + and - change it")
@@ -74,6 +84,9 @@ def typed(value: Value, old: Any, current: Any, text: str) -> Any:
     given: list[Any] = [sum_of(each, change, present) for each, present in zip(texts, presents, strict=True)]
     if isinstance(value.leaf, Colour | Whole):
         given = [round(part) for part in given]
+    if isinstance(value.leaf, Direction) and len(given) > 1:
+        longest = max(1.0, *map(abs, given))
+        given = [part / longest for part in given]
     return tuple(given) if len(given) > 1 else given[0]
 
 

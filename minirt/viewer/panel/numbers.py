@@ -43,6 +43,7 @@ class Numbers:
         self.index = 0  # of the element whose rows are shown
         self._typing: tuple[int, Value] | None = None  # the number that is typed, after the index of its element
         self._shows_typing = False  # whether the last frame shows it
+        self._goes_on = False  # whether Tab has left a number that was typed for another one
         self._again = ""  # or AGAIN: a part of the name of its widget
         self._text, self._first = "", ""  # what is typed, and the character that began it
         self.pressed = ""  # name of the number under the button that is down
@@ -65,6 +66,7 @@ class Numbers:
         if not self._first and not self._shows_typing:
             self._typing = None
         self._shows_typing = False
+        self._goes_on &= imgui.is_key_down(imgui.Key.KEY_TAB)
         self.session.slides = bool(self.pressed) and imgui.is_mouse_down(imgui.MouseButton.LEFT)
 
     def number(self, value: Value, width: float, prefix: str = "") -> None:
@@ -81,7 +83,7 @@ class Numbers:
             self.session.state = self.session.state.end_merging()
         if self.pressed == value.name:
             self.drag(value)
-        if entered and not self._slid:
+        if (entered and not self._slid) or (self._goes_on and imgui.is_item_focused()):
             self.begin_typing(value, "")
         elif imgui.is_item_focused() and self.gui.typed and self.gui.typed in CHARACTERS and not self.gui.types:
             self.begin_typing(value, self.gui.typed)
@@ -98,6 +100,7 @@ class Numbers:
 
     def begin_typing(self, value: Value, first: str) -> None:
         """Turn a number into a text, all of it selected; `first` replaces it."""
+        self._goes_on = False
         self._typing, self._text, self._first = (self.index, value), spelled(value.current(self.element)), first or " "
         self.gui.unsettled = TO_TYPE
 
@@ -116,6 +119,8 @@ class Numbers:
             self.gui.io.add_input_characters_utf8(self._first.strip())
             self._first = ""
         left = imgui.is_item_deactivated_after_edit() and not imgui.is_key_down(imgui.Key.KEY_ESCAPE)
+        if imgui.is_item_deactivated() and imgui.is_key_down(imgui.Key.KEY_TAB):
+            self._goes_on, self.gui.unsettled = True, TO_TYPE
         if entered or left:
             self.apply(lambda state: set_typed(state, value, self._text.strip(), self.session.now), value.name)
         if entered or (not self._first and not imgui.is_item_active()):
@@ -139,7 +144,7 @@ class Numbers:
 
     def set(self, value: Value, new: Any) -> None:
         """Set a value at once, as one step of undo."""
-        self.apply(lambda state: with_value(state, value, new, self.session.now), value.name)
+        self.apply(lambda state: with_value(state, value, lambda _: new, self.session.now), value.name)
 
     def apply(self, edit: Callable[[State], State], name: str = "") -> None:
         """Select the element and edit it; a change that is refused is told below the row of the value `name`."""

@@ -91,7 +91,8 @@ class Pages:
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
         if FILMS[self._format].is_lossy:
             self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
-        imgui.text(f"{self._pictures / FPS:g} s")
+        length = f"once around the scene, in {self._pictures / FPS:g} s, as large as the window"
+        imgui.text_wrapped(translated(length))
         if imgui.button(translated("stop" if self._is_running else "save a film") + "###film"):
             self._is_stopped = self._is_running
             if not self._is_running:
@@ -133,7 +134,7 @@ class Pages:
                 raise MiniRTError("the film was stopped")
             yield render(view, *size, samples=samples)
             self._share = number / total
-            self.say(f"{number} of {total} pictures")
+            self.say("the file is written" if number == total else f"{number} of {total} pictures")
 
     def say(self, text: str) -> None:
         """Show what became of the film, from its thread."""

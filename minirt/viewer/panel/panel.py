@@ -99,6 +99,7 @@ class Panel(Gui):
                     imgui.end_tab_item()
             if imgui.tab_item_button(">###close", imgui.TabItemFlags.TRAILING):
                 self.wanted = "toggle panel"
+            self.hint("close the panel")
             imgui.end_tab_bar()
         self.has_popup = imgui.is_popup_open("", ANY_POPUP)
         imgui.end()

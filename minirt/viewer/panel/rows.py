@@ -17,7 +17,7 @@ from minirt.viewer.editing.values import CHANNELS, Value, part_names, values_of_
 from minirt.viewer.files import usable_files
 from minirt.viewer.language import translated
 from minirt.viewer.panel.numbers import TYPING, Numbers
-from minirt.viewer.panel.style import GOLD, rgba
+from minirt.viewer.panel.style import GOLD, TEXT, rgba
 
 ALL_THREE = "1 2 3"  # beside the name of three numbers while one of them is typed, as all can be typed at once
 LABEL = 0.3  # of the width: the name of a value
@@ -49,8 +49,15 @@ class Rows(Numbers):
         title = longer = translated(leaf.title)
         if self.typing == (self.index, value):
             longer = f"{title}: {ALL_THREE}"
-        imgui.text(longer if imgui.calc_text_size(longer)[0] < LABEL * width else title)
-        self.gui.hint(leaf.doc, leaf.range)
+        index, name, reason = self.error
+        is_refused = index == self.index and name.startswith(value.name)
+        imgui.push_style_color(imgui.Col.TEXT, rgba(GOLD if is_refused else TEXT))
+        imgui.text(f"{'! ' * is_refused}{longer if imgui.calc_text_size(longer)[0] < LABEL * width else title}")
+        imgui.pop_style_color()
+        if is_refused:
+            self.gui.hint(reason)
+        else:
+            self.gui.hint(leaf.doc, leaf.range)
         if imgui.get_item_rect_size()[0] < LABEL * width:
             imgui.same_line()
         room = (1 - LABEL) * width
@@ -67,11 +74,6 @@ class Rows(Numbers):
             self.show_triple(value, room)
         elif isinstance(old, int | float):
             self.number(value, room)
-        index, name, reason = self.error
-        if index == self.index and name.startswith(value.name):
-            imgui.push_style_color(imgui.Col.TEXT, rgba(GOLD))
-            imgui.text_wrapped(f"! {translated(reason)}")
-            imgui.pop_style_color()
         imgui.pop_id()
 
     def show_triple(self, value: Value, room: float) -> None:
@@ -108,7 +110,7 @@ class Rows(Numbers):
         self.swatches(value, imgui.get_item_rect_size()[0])
         entered, text = imgui.input_text(f"hex###{value.name} hex", bytes(colour).hex().upper(), TYPING)
         if entered or imgui.is_item_deactivated_after_edit():
-            self.apply(lambda state: with_value(state, value, levels_of(text), self.session.now), value.name)
+            self.apply(lambda state: with_value(state, value, lambda _: levels_of(text), self.session.now), value.name)
         imgui.end_popup()
 
     def swatches(self, value: Value, width: float) -> None:

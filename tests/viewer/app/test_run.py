@@ -187,7 +187,7 @@ def test_clicks_select_elements_on_nothing_the_camera_and_comments_are_skipped()
     assert played("click 32,24").state.element.title == "sphere"
     assert played("click 32,40").state.element.title == "plane"
     nothing = played("press Tab", "click 1,1").state
-    assert (nothing.element.title, nothing.message) == ("camera", "there is nothing")
+    assert (nothing.element.title, nothing.message) == ("camera", "nothing is there: the camera is selected")
 
 
 def test_quitting_the_session_ends_the_replay():
