@@ -56,7 +56,7 @@ class Mirror(Secondary):
     """
 
     title = "mirror"
-    share: float = declare(Real, "share of mirrored light", low=0.0, high=1.0, step=0.05, initial=0.3)
+    share: float = declare(Real, "share of mirrored light", low=0.0, high=1.0, step=0.05, initial=0.8)
     fade: float = declare(Fade, "distance at which mirrored light is gone", default=0.0, placeholder="range")
 
 

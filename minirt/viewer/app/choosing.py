@@ -19,7 +19,7 @@ from minirt.viewer.app.menu import MENU, menu_of
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
-from minirt.viewer.display.lists import ListBox, layout_of
+from minirt.viewer.display.lists import MARGIN, ListBox, layout_of
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.colours import COLOUR, colours
 from minirt.viewer.editing.state import State
@@ -236,5 +236,6 @@ class Choosing:
             layout = self.session.keymap.layout
             keys = [keys_of(row.action, layout)[0] for row in rows if row.action]
             titles = tuple(row.title for row in rows)
-            screen.list_box = ListBox(title, titles, self.index_in(rows), tuple(map(translated, keys)), self._place)
+            place, left = self._place, MARGIN + screen.tools_width
+            screen.list_box = ListBox(title, titles, self.index_in(rows), tuple(map(translated, keys)), place, left)
         self.session.refresh()

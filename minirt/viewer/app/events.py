@@ -13,13 +13,15 @@ from minirt.mlx.events import MODIFIER_KEYS, Button, Event
 from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.explaining import choose_row
+from minirt.viewer.app.holding import advance, hold, release
+from minirt.viewer.app.judging import Judge
 from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import BEGUN, Typing
 from minirt.viewer.bindings import Binding
-from minirt.viewer.editing.editor import EDITS, FIRST_PART, HeldKey, apply
+from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.recovery import remember_panel
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 PANEL = "toggle panel"  # the action that opens the panel
 NO_PANEL = "the panel needs a window of its own, and slimgui: pip install 'minirt[panel]'"
 BESIDE = 30  # pixels from the pointer on a tool to the list that it opens
+BELOW = 3  # sizes of text from the top to a list beside the panel
 NEAR = 3.0  # sizes of the tab of the panel: a pointer so close to it shows it
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
@@ -39,6 +42,7 @@ class EventDispatcher:
         self.session = session
         self.mouse = Mouse(session, self.perform)
         self.typing = Typing(session)
+        self.judge = Judge(session)
         self.choosing = Choosing(session, self.perform)
         self.panel: Panel | None = None  # once it was opened
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
@@ -86,7 +90,7 @@ class EventDispatcher:
                 handler(x, y)
                 is_busy = session.pressed or (self.panel and self.panel.is_open)
                 near = not is_busy and screen.is_on_tab(x, y, NEAR)
-                tool = None if session.pressed else screen.tool_at(x, y)
+                tool = None if session.pressed or screen.list_box else screen.tool_at(x, y)
                 if (near, tool) != (screen.has_tab, screen.tool):
                     screen.has_tab, screen.tool = near, tool
                     session.refresh()
@@ -123,7 +127,7 @@ class EventDispatcher:
             self.typing.end()
             self.choosing.end()
             if pressed.held:
-                self.hold(pressed, code)
+                hold(session, pressed, code)
             else:
                 self.perform(pressed)
 
@@ -155,24 +159,17 @@ class EventDispatcher:
             if binding.action not in REPEATED or key is None:
                 self.perform(binding)
             elif key not in session.held_keys:
-                self.hold(binding, key, is_typed=True)
+                hold(session, binding, key, is_typed=True)
 
     def on_release(self, code: int) -> None:
         """A key goes up: its last steps are done, and a still picture is requested."""
-        session = self.session
-        if held := session.held_keys.pop(code, None):
-            steps = max(1.0, held.steps(session.now))
-            session.show(held.advance(session.state, steps, session.step, session.now))
+        release(self.session, code)
         self._unbound = None if code == self._unbound else self._unbound
-        session.update()
+        self.session.update()
 
     def on_tick(self) -> None:
         """A sixtieth of a second passed while a key is held or words wait for their picture."""
-        session = self.session
-        state, now = session.state, session.now
-        for held in session.held_keys.values():
-            state = held.advance(state, held.steps(now), session.step, now)
-        session.show(state)
+        advance(self.session)
         if self.panel and self.panel.is_busy:
             self.panel.frame()
 
@@ -185,7 +182,7 @@ class EventDispatcher:
         for error in session.refinement.collect():
             session.show_error(error)
         session.attempt(Session.take_screenshot)
-        session.judge_view()
+        self.judge.judge()
         session.refresh()
         session.update()
         session.give_back_memory()
@@ -234,7 +231,7 @@ class EventDispatcher:
 
     def perform_for_panel(self, binding: Binding) -> None:
         """Perform the action of a button of the panel; a list that it opens is beside the panel."""
-        self.choosing.perform_at((self.session.screen.size[0], 0), binding.action)
+        self.choosing.perform_at((self.session.screen.size[0], BELOW * self.session.screen.text_size), binding.action)
 
     def toggle_panel(self, has_keys: bool = True) -> None:
         """Open the panel, which then `has_keys`, or close it; slimgui is imported when it opens first."""
@@ -253,13 +250,6 @@ class EventDispatcher:
         if session.recovery:
             remember_panel(is_open=bool(self.panel and self.panel.is_open))
 
-    def hold(self, binding: Binding, key: int, is_typed: bool = False) -> None:
-        """Begin the action of a key that goes on while the key is held."""
-        session = self.session
-        session.release_button()
-        session.held_keys[key] = held = HeldKey(binding.action, session.now, session.step, is_typed)
-        session.show(held.advance(session.state, FIRST_PART, session.step, session.now))
-
     def as_hook(self, handler: Callable[..., object]) -> Callable[..., object]:
         """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.
 
@@ -275,6 +265,7 @@ class EventDispatcher:
                 raise
             except Exception as error:
                 session.show_error(error)
+            self.judge.judge()  # a list that hid what is to be said may be closed now
             if panel:
                 panel.follow()
             ticks = session.held_keys or session.words_wait or (panel and panel.is_busy)

@@ -119,9 +119,10 @@ class Mouse:
             right, down = pressed.reach
             reach = right + (x - from_x) * session.step, down + (y - from_y) * session.step
             session.pressed = pressed = pressed._replace(reach=reach)
-        if pressed and pressed.action == ARROW:
-            return
-        if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
+        is_drag = pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK)
+        if pressed and is_drag and pressed.action == ARROW:
+            session.pressed = pressed._replace(dragging=True)
+        elif pressed and is_drag:
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
                 looks_around = pressed.action == "move by hand" and pressed.moves_camera

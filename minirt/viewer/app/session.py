@@ -7,7 +7,6 @@ newer than the picture: those of a new scene are drawn with its first picture, o
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import islice
 from pathlib import Path
 
 from minirt.errors import MiniRTError, RenderError
@@ -18,7 +17,6 @@ from minirt.rendering.queries.pick import Picked
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.bindings import Keymap
-from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
@@ -30,8 +28,6 @@ from minirt.viewer.files import WatchedFile, contents_differ, create_numbered, e
 from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 FINE_STEP = 0.1  # of a step, while Shift is held
-NO_SHAPES = "the scene has no shapes; the grid marks the ground y = 0, and is on no picture"
-MOST_JUDGED = 200  # shapes of a scene whose pictures are judged after edits, in some hundredths of a second
 WORDS_DELAY = 0.04  # seconds in which words wait for their picture, which drawing them twice would delay
 
 
@@ -91,9 +87,6 @@ class Session:
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
         self._current_at = self.now  # when the window last got a frame, or last had the words of the current scene
-        self._judged: Scene | None = None  # the last scene whose picture was judged
-        self._of_file: Scene | None = None  # what the file held then
-        self._told = set[str]()  # what was noticed about it
         self.watch_file(path)
 
     def show(self, state: State) -> None:
@@ -152,29 +145,6 @@ class Session:
         if self.has_unused_memory and self.refinement.complete:
             self.has_unused_memory = False
             give_back_memory()
-
-    def judge_view(self) -> None:
-        """Say what the first picture of a file does not show, and what the final one after an edit does not any more,
-        and what to do."""
-        latest = self.refinement.latest
-        if latest is None or latest.preview or latest.pixels is None or latest.job.scene is self._judged:
-            return
-        scene, is_first = latest.job.scene, self._of_file is not self.saved
-        if is_first and scene is not self.saved and scene is not self.opened:
-            return
-        if not is_first and (not self.refinement.complete or self.pressed or len(scene.shapes) > MOST_JUDGED):
-            return
-        self._judged, self._of_file, told = scene, self.saved, set[str]() if is_first else self._told
-        from minirt.rendering.notices import notices_about
-        from minirt.rendering.queries.unseen import SHOWN_BY
-
-        height, width = latest.pixels.shape[:2]
-        notices = notices_about(scene, latest.pixels[..., :3], (width, height)) if scene.runs else iter([NO_SHAPES])
-        reasons = [notice.partition(SHOWN_BY)[:2] for notice in notices]
-        self._told = {why for why, _ in reasons}
-        before = f"{self.state.message}\n" if self.state.message else ""
-        for why, can_be_shown in islice((each for each in reasons if each[0] not in told), 1):
-            self.say(before + why + (f"; {named('F')} brings the scene into view" if can_be_shown else ""))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""

@@ -29,6 +29,7 @@ class ListBox(NamedTuple):
     chosen: int = 0
     keys: tuple[str, ...] = ()  # of the rows, in a column at their right
     place: tuple[int, int] | None = None  # pixel of its upper left corner; None: below the information
+    left: int = MARGIN  # border there, in pixels
 
 
 class Layout(NamedTuple):
@@ -58,7 +59,7 @@ def layout_of(box: ListBox, width: int, height: int, size: int) -> Layout:
     breadth = mark + rows_width + (keys_width + 4 * PADDING if keys_width else 0)
     head = line + 2 * PADDING  # height of the title
     if box.place is None:
-        left, top = MARGIN, MARGIN + TOP * line
+        left, top = box.left, MARGIN + TOP * line
         most = (height - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM
     else:
         most = (height - 2 * MARGIN - head) // line

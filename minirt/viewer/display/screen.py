@@ -104,6 +104,11 @@ class Screen:
         is_shown = self.handles and self.level and not self.help
         return tool_at(x, y, *self.size, self.scale) if is_shown else None
 
+    @property
+    def tools_width(self) -> int:
+        """Columns at the left that the tool row covers."""
+        return tool_row.layout(*self.size, self.scale)[0] if self.handles and self.level else 0
+
     def shows_picture_at(self, x: int, y: int) -> bool:
         """Whether neither the panel nor the tool row covers the picture at a pixel."""
         return x < self.size[0] and not self.tool_at(x, y)

@@ -34,7 +34,7 @@ CHANGES: dict[str, Callable[[float, float], float]] = {"+=": add, "-=": sub, "*=
 def set_typed(state: State, value: Value, text: str, now: float) -> State:
     """The state whose selected element has what was typed as a value, or which says what is wrong with it."""
     try:
-        return with_value(state, value, lambda element: typed(value, element, text), now)
+        return with_value(state, value, lambda element, own: typed(own, element, text), now)
     except FieldError as error:
         reason = f"{value.name} {error}"
     except ElementError as error:  # of the element, or of the record that is the value of its field
@@ -42,20 +42,25 @@ def set_typed(state: State, value: Value, text: str, now: float) -> State:
     return state.with_message(f"{state.element.title} {reason}")
 
 
-def with_value(state: State, value: Value, new: Callable[[Element], Any], now: float) -> State:
-    """The state whose selected elements have another value, as far as they have such a value; ValueError out of range.
-
-    `new` gives the value of an element, of a part also a whole triple.
+def with_value(state: State, value: Value, new: Callable[[Element, Value], Any], now: float) -> State:
+    """The state whose selected elements have another value, as far as they have one of that name; ValueError out of
+    range. `new` gives the value of an element, of a part also a whole triple.
     """
     changed = dict[int, Element]()
     for index in state.chosen:
         element, primary = state.scene.elements[index], state if index == state.selected else state.select(index)
-        if value in {*values(element)} or element is state.element:
-            given = new(element)
-            whole = value._replace(channel=None) if isinstance(given, tuple) else value
-            after = element.replace(**{value.field.name: whole.replaced(element, given)})
+        own = value if primary is state else next((each for each in values(element) if is_like(each, value)), None)
+        if own:
+            given = new(element, own)
+            whole = own._replace(channel=None) if isinstance(given, tuple) else own
+            after = element.replace(**{own.field.name: whole.replaced(element, given)})
             changed[index] = keep_standing(primary, element, after)
     return state.end_merging().edit_elements(changed, f"typed {value.name}", now).end_merging()
+
+
+def is_like(one: Value, other: Value) -> bool:
+    """Whether two values have the same name and are spelled in the same way."""
+    return one.name == other.name and type(one.leaf) is type(other.leaf)
 
 
 def typed(value: Value, element: Element, text: str) -> Any:
@@ -70,9 +75,7 @@ def typed(value: Value, element: Element, text: str) -> Any:
     body = text.removeprefix("=").strip()
     change = CHANGES.get(body[:2])
     body = body[2:].strip() if change else body
-    words = body.split()
-    are_three = len(words) == Three.width and "," not in body and all(any(map(str.isdigit, each)) for each in words)
-    texts = words if are_three else body.split(",")
+    texts = three_words(body) or body.split(",")
     if len(texts) == Three.width and isinstance(old, tuple):
         presents = old
     elif len(presents) == 1 and (len(texts) == 2 or any(each in body[1:] for each in SIGNS)):
@@ -88,6 +91,12 @@ def typed(value: Value, element: Element, text: str) -> Any:
         longest = max(1.0, *map(abs, given))
         given = [part / longest for part in given]
     return tuple(given) if len(given) > 1 else given[0]
+
+
+def three_words(text: str) -> list[str]:
+    """The words of a text of three numbers, with commas or blanks between them; none of any other, such as 1 + 2."""
+    words = text.replace(",", " ").split()
+    return words if len(words) == Three.width and all(any(map(str.isdigit, each)) for each in words) else []
 
 
 def sum_of(text: str, change: Callable[[float, float], float] | None, present: float) -> float:

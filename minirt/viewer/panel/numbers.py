@@ -17,7 +17,7 @@ from minirt.fields import Three, spelled
 from minirt.viewer.app.session import FINE_STEP, Session
 from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.typed import CHARACTERS, set_typed, with_value
+from minirt.viewer.editing.typed import CHARACTERS, set_typed, three_words, with_value
 from minirt.viewer.editing.values import Value
 from minirt.viewer.panel.gui import Gui
 
@@ -76,7 +76,9 @@ class Numbers:
             return
         texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
         text = next((each for each in texts if imgui.calc_text_size(each)[0] < room), texts[-1])
+        imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, self.is_typed_with_others(value))
         entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
+        imgui.pop_item_flag()
         self.gui.hint(HINTS[isinstance(value.leaf, Three)])
         if imgui.is_item_activated():
             self.pressed, self._start, self._slid = value.name, self.element, 0.0
@@ -90,6 +92,11 @@ class Numbers:
         if self.pressed == value.name and not imgui.is_item_active():
             self.pressed = ""
             self.gui.show(self.session.state.end_merging())
+
+    def is_typed_with_others(self, value: Value) -> bool:
+        """Whether a part gets its number from a text of three numbers that is typed, so that Tab passes it."""
+        is_same = self.typing == (self.index, value._replace(channel=None))
+        return is_same and bool(three_words(self._text))
 
     def drag(self, value: Value) -> None:
         """Slide the number under the button that is down, to the right or upwards to increase it."""
@@ -144,7 +151,7 @@ class Numbers:
 
     def set(self, value: Value, new: Any) -> None:
         """Set a value at once, as one step of undo."""
-        self.apply(lambda state: with_value(state, value, lambda _: new, self.session.now), value.name)
+        self.apply(lambda state: with_value(state, value, lambda *_: new, self.session.now), value.name)
 
     def apply(self, edit: Callable[[State], State], name: str = "") -> None:
         """Select the element and edit it; a change that is refused is told below the row of the value `name`."""

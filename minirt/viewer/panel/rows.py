@@ -110,7 +110,7 @@ class Rows(Numbers):
         self.swatches(value, imgui.get_item_rect_size()[0])
         entered, text = imgui.input_text(f"hex###{value.name} hex", bytes(colour).hex().upper(), TYPING)
         if entered or imgui.is_item_deactivated_after_edit():
-            self.apply(lambda state: with_value(state, value, lambda _: levels_of(text), self.session.now), value.name)
+            self.apply(lambda state: with_value(state, value, lambda *_: levels_of(text), self.session.now), value.name)
         imgui.end_popup()
 
     def swatches(self, value: Value, width: float) -> None:

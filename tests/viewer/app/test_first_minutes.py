@@ -1,0 +1,201 @@
+"""What people try in their first minutes: colours by words, three numbers at once, several elements, a look at all."""
+
+from __future__ import annotations
+
+from math import hypot
+from pathlib import Path
+
+import pytest
+
+from minirt.fields import Triple
+from minirt.scene import Scene, dump
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.marks import arrow_tip, arrows
+from minirt.viewer.display.overlay import HudLevel
+from minirt.viewer.editing.colours import COLOURS, colour_word
+from minirt.viewer.editing.state import State, initial_state
+from minirt.viewer.editing.structure import ATTRIBUTE, choices
+from minirt.viewer.editing.typed import set_typed
+from minirt.viewer.editing.values import values
+from tests.viewer.app.test_lists import AT_SPHERE, clicked, play, right_click, rows
+from tests.viewer.fake import TEXT, played, scene
+from tests.viewer.session_harness import SessionHarness
+
+PAIR = "A 0.2 255,255,255\nC 0,2,9 0,-0.1,-1 60\nL 5,5,5 0.6\nsp -2,1,0 2 255,0,0\ncy 2,1,0 0,1,0 1 2 0,0,255\n"
+LAMP_OUTSIDE = "A 0.2 255,255,255\nC 0,2,9 0,-0.1,-1 60\nL 0,5,0 0.6\nsp 0,1,0 2 255,0,0\npl 0,0,0 0,1,0 9,99,9\n"
+
+
+def both(text: str = PAIR) -> State:
+    """The state in which sphere and cylinder are selected, the sphere as the primary one."""
+    state = initial_state(scene(text))
+    return state.select(4).add_or_remove(3)
+
+
+def typed(state: State, name: str, text: str) -> State:
+    """The state after a text was typed for a value of the primary element."""
+    (value,) = (each for each in values(state.element) if each.name == name)
+    return set_typed(state, value, text, 0.0)
+
+
+# Colours.
+
+
+@pytest.mark.parametrize("word", COLOURS)
+def test_each_colour_of_the_list_has_its_own_word(word: str) -> None:
+    assert colour_word(COLOURS[word]) == word
+
+
+@pytest.mark.parametrize(
+    ("colour", "word"),
+    [((125, 150, 110), "light green"), ((128, 128, 128), "grey"), ((255, 250, 240), "white"), ((60, 0, 0), "dark red")],
+)
+def test_a_pale_colour_is_not_called_grey(colour: Triple, word: str) -> None:
+    assert colour_word(colour) == word
+
+
+def test_a_list_of_words_colours_all_that_is_selected_as_one_step() -> None:
+    assert "colour >" in rows(play(right_click(AT_SPHERE)))
+    opened = (right_click(AT_SPHERE), "press U", "press w", "press h")
+    listed = play(*opened)
+    assert rows(listed) == ("white",)
+    assert listed.state.element.colour == (255, 255, 255)
+    assert play(*opened, "press Escape").state.scene.items == scene().items
+    taken = clicked(*opened, row="white").state
+    assert len(taken.undo_stack) == 1
+    kept = play(right_click(AT_SPHERE), "press U", "press Return").state  # the first row: as it is
+    assert (kept.scene.items, kept.undo_stack) == (scene().items, ())
+    two = played("press Tab", "press Tab", "press Shift+Tab", "press U").state
+    assert two.message or two.element  # a light has a colour, too
+    no_colour = played("press U").state  # of the camera
+    assert no_colour.message == "camera has no colour"
+
+
+def test_the_active_colour_is_the_one_that_changes() -> None:
+    text = TEXT.replace("255,0,0", "255,0,0 checker:1,10,10,10")
+    painted = played(
+        "press Tab", "press Tab", *["press V"] * 3, "press U", "press w", "press h", "press Return", text=text
+    )
+    sphere = painted.state.scene.spheres[0]
+    assert (sphere.colour, sphere.checker.colour) == ((255, 0, 0), (255, 255, 255))
+
+
+# Typed values.
+
+
+@pytest.mark.parametrize("text", ["1 2 3", "1,2,3", "1, 2, 3", "=1 2 3", " 1  2 3 "])
+def test_three_numbers_are_typed_at_once_with_blanks_or_commas(text: str) -> None:
+    assert typed(initial_state(scene()).select(3), "centre: y", text).element.centre == (1, 2, 3)
+
+
+def test_a_sum_with_blanks_is_one_number() -> None:
+    assert typed(initial_state(scene()).select(3), "centre: y", "1 + 2").element.centre == (0, 3, 0)
+
+
+@pytest.mark.parametrize("text", ["-3 -4 0", "-0.6 -0.8 0", "-300,-400,0"])
+def test_a_direction_is_typed_with_any_length(text: str) -> None:
+    camera = typed(initial_state(scene()), "direction: x", text).scene.camera
+    assert camera.direction == pytest.approx((-0.6, -0.8, 0))
+
+
+def test_what_is_typed_is_given_to_all_selected_elements_that_have_it() -> None:
+    moved = typed(both(), "centre: z", "-4")
+    assert [each.centre[2] for each in (moved.scene.spheres[0], moved.scene.cylinders[0])] == [-4, -4]
+    relative = typed(both(), "centre: x", "+=1").scene
+    assert (relative.spheres[0].centre[0], relative.cylinders[0].centre[0]) == (-1, 3)
+    assert len(moved.undo_stack) == 1
+    wide = typed(both().make_primary(4), "height", "5")  # which a sphere has not
+    assert (wide.scene.spheres, wide.scene.cylinders[0].height) == (scene(PAIR).spheres, 5)
+
+
+# Looking.
+
+
+def test_a_second_press_brings_all_into_view_without_a_turn() -> None:
+    first = played("press Tab", "press Tab", "press F").state
+    second = played("press Tab", "press Tab", "press F", "press F").state
+    assert first.message == "again: the whole scene"
+    before, near, all_of_it = (each.scene.camera for each in (initial_state(scene()), first, second))
+    assert near.direction == all_of_it.direction == before.direction
+    assert near.position[2] < all_of_it.position[2]
+    assert all_of_it == played("press F").state.scene.camera  # of the camera itself
+
+
+def test_an_arrow_is_a_click_and_no_drag() -> None:
+    aside = TEXT.replace("C 0,0,10 0,0,-1", "C 0,0,10 1,0,-0.2")
+    opened = ("press Tab", "press Tab")
+    session = played(*opened, text=aside)
+    (way,) = arrows(session.state.scene, session.state.chosen, session.view, every=False).values()
+    x, y = map(int, arrow_tip(way, *session.screen.size, session.screen.scale))
+    assert session.screen.level > HudLevel.NOTHING
+    dragged = played(*opened, f"drag {x},{y} {x + 9},{y}", text=aside).state
+    assert dragged.scene.camera == session.state.scene.camera
+    clicked_on = played(*opened, f"click {x},{y}", text=aside).state
+    assert clicked_on.message.startswith("sphere 1 is in the middle now")
+
+
+def judged(*lines: str, text: str = LAMP_OUTSIDE) -> Session:
+    """The session after lines and the final picture."""
+    harness = SessionHarness(text=text, samples=1)
+    for line in ("wait 0.1", *lines):
+        harness.play(line)
+        while harness.painter.busy:
+            harness.finish(0.001)
+    return harness.session
+
+
+def test_an_edit_that_hides_a_lamp_says_so_once() -> None:
+    lamp = scene(LAMP_OUTSIDE).lights[0]
+    steps = [each.name for each in values(lamp)].index("position: x")
+    inside = ("press L", *["press V"] * steps, "text 0,1,0", "press Return")
+    session = judged(*inside)
+    assert session.state.scene.lights[0].position == (0, 1, 0)
+    assert "light 1 lights nothing: it is inside sphere 1" in session.state.message
+    assert "lights nothing" not in judged(*inside, "press C", "press D").state.message
+
+
+# Building.
+
+
+def test_a_ball_on_a_ball_has_its_colour_and_three_quarters_of_its_breadth() -> None:
+    lower = scene().spheres[0]
+    upper = play("move 320,212", "press N", text=TEXT.replace("5,5,5 0.5", "5,5,5 0.5")).state.element
+    assert upper.colour == lower.colour
+    assert upper.diameter == pytest.approx(0.75 * lower.diameter, rel=0.1)
+    assert hypot(*upper.centre) == pytest.approx((upper.diameter + lower.diameter) / 2, abs=0.01)
+    box = play("move 320,212", "press N", "press b", "press o").state.element
+    assert box.colour != lower.colour
+
+
+def test_glass_comes_with_reflections_and_goes_without_them() -> None:
+    state = initial_state(scene()).select(3)
+    with_glass = next(each for title, each in choices(state, ATTRIBUTE) if title == "glass")
+    assert (with_glass.element.glass is not None, with_glass.element.fresnel) == (True, 1)
+    assert with_glass.active.field.name == "glass"
+    assert len(with_glass.undo_stack) == 1
+
+
+def test_the_title_has_a_star_while_something_is_unsaved(tmp_path: Path) -> None:
+    path = tmp_path / "scene.rt"
+    path.write_text(TEXT)
+    assert played(path=path).window.title == "miniRT - scene.rt"
+    edit = ("press Tab", "press Tab", "press D")
+    assert played(*edit, path=path).window.title == "miniRT - scene.rt *"
+    assert played("hold d 0.2", path=path).window.title == "miniRT - scene.rt"  # looking around
+    assert played(*edit, "press Ctrl+Z", path=path).window.title == "miniRT - scene.rt"
+    assert played(*edit, "press Ctrl+S", path=path).window.title == "miniRT - scene.rt"
+
+
+def test_undo_after_lists_and_several_leads_to_the_bytes_of_the_start() -> None:
+    lines = (
+        right_click(AT_SPHERE),
+        "press U",
+        "press Return",
+        "press N",
+        "press Return",
+        "press U",
+        "press Down",
+        "press Return",
+    )
+    session = play(*lines, *["press Ctrl+Z"] * 4)
+    opened: Scene = scene()
+    assert dump(session.state.scene) == dump(opened) == TEXT
