@@ -12,7 +12,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 from minirt.cli import main
-from minirt.scene import load
+from minirt.scene import Scene, load
 from minirt.shapes import Cylinder, Sphere
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import fitting_words, hints
@@ -22,7 +22,7 @@ from tests.viewer.fake import TEXT, played, scene
 
 BLANK = "A 0.2 255,255,255\nC 0,2,9 0,-0.2,-1 60\n"
 SPHERE = ("press Tab", "press Tab")  # from the camera over the light
-KEYS = 60  # presses of keys in which a snowman is built
+KEYS, USES = 60, 39  # presses of keys, and uses of the pointer with one word typed, in which a snowman is built
 PAGE = read("minirt/viewer/README.md")
 
 
@@ -31,25 +31,52 @@ def title(session: Session) -> str:
     return session.screen.list_box.title if session.screen.list_box else ""
 
 
-@pytest.mark.parametrize(("keys", "pointer"), [("snowman-keys", 7), ("snowman-keyboard", 0)])
-def test_a_snowman_is_built_from_nothing_in_few_steps(keys: str, pointer: int, tmp_path: Path) -> None:
-    """Three balls rest on each other, the hat on them, all on the ground and in the light; eyes and nose stick out."""
-    lines = (ROOT / f"assets/{keys}.txt").read_text().splitlines()
-    words = [line.split("#")[0].split() for line in lines if line.split("#")[0].strip()]
-    assert {each[0] for each in words} <= {"wait", "press", "text", "hold", "down", "up", "move", "drag"}
-    assert sum(each[0] in ("press", "text", "hold", "down") for each in words) <= KEYS
-    assert sum(each[0] in ("move", "drag") for each in words) == pointer
-    assert all(len(each[1]) == 1 for each in words if each[0] == "text")
-
-    path, film = tmp_path / "snowman.rt", tmp_path / "snowman.gif"
-    path.write_text((ROOT / "assets/blank.rt").read_text())
+def built_by(recording: str, start: str, path: Path) -> Scene:
+    """Build a scene from the text of a file by a recording, as the page says; the film has as many pictures as its."""
+    scene_file, film = path / "snowman.rt", path / "snowman.gif"
+    scene_file.write_text(start)
     (command,) = re.findall(r"^miniRT snowman\.rt --replay (\S+) (.*) -o assets/snowman\.gif$", PAGE, re.MULTILINE)
-    recording = str(ROOT / f"assets/{keys}.txt")
-    assert main([str(path), "--replay", recording, *command[1].split(), "-o", str(film)]) == 0
+    arguments = str(ROOT / f"assets/{recording}.txt"), *command[1].split()
+    assert main([str(scene_file), "--replay", *arguments, "-o", str(film)]) == 0
     with pillow.open(ROOT / "assets/snowman.gif") as kept, pillow.open(film) as made:
         assert kept.size == made.size
-        assert not pointer or abs(kept.n_frames - made.n_frames) <= 3
-    built = load(path).scene
+        assert recording not in command[0] or abs(kept.n_frames - made.n_frames) <= 3
+    return load(scene_file).scene
+
+
+def words_of(recording: str) -> list[list[str]]:
+    """The words of the commands of a recording."""
+    lines = (line.split("#")[0].split() for line in (ROOT / f"assets/{recording}.txt").read_text().splitlines())
+    return [words for words in lines if words]
+
+
+def test_a_snowman_is_built_with_the_pointer_alone(tmp_path: Path) -> None:
+    """Three white balls rest on each other, the hat on them; eyes and nose stick out; lists need a few letters."""
+    words = words_of("snowman-pointer")
+    uses = sum(each[0] in ("click", "drag", "wheel") for each in words)
+    assert uses + any(each[0] == "press" for each in words) == USES
+    assert {each[1] for each in words if each[0] == "press"} == {*"orange"[:4], "Return"}
+    built = built_by("snowman-pointer", "", tmp_path)
+    balls = [each for each in built.spheres if each.colour == (255, 255, 255)]
+    assert balls[0].centre[1] == balls[0].diameter / 2
+    for lower, upper in pairwise(balls):
+        assert upper.centre[1] - lower.centre[1] == pytest.approx((lower.diameter + upper.diameter) / 2)
+        assert upper.centre[::2] == lower.centre[::2]
+    head, (nose,), (hat,) = balls[-1], built.cones, built.cylinders
+    eyes = [each for each in built.spheres if each.colour == (0, 0, 0)]
+    assert [dist(each.centre, head.centre) > head.diameter / 2 for each in eyes] == [True, True]
+    assert hat.centre[1] - hat.height / 2 == pytest.approx(head.centre[1] + head.diameter / 2)
+    assert hat.colour == (0, 0, 0)
+    assert dist(nose.apex, head.centre) == pytest.approx(head.diameter / 2 + nose.height, abs=1e-3)
+
+
+def test_a_snowman_is_built_from_nothing_in_few_presses(tmp_path: Path) -> None:
+    """Three balls rest on each other, the hat on them, all on the ground and in the light; eyes and nose stick out."""
+    words = words_of("snowman-keyboard")
+    assert {each[0] for each in words} <= {"wait", "press", "text", "hold", "down", "up"}
+    assert sum(each[0] in ("press", "text", "hold", "down") for each in words) <= KEYS
+    assert all(len(each[1]) == 1 for each in words if each[0] == "text")
+    built = built_by("snowman-keyboard", (ROOT / "assets/blank.rt").read_text(), tmp_path)
     assert (len(built.planes), len(built.lights)) == (1, 1)
     balls = sorted(built.spheres, key=lambda ball: ball.centre[1])
     balls = [ball for ball in balls if ball.diameter >= 1]
