@@ -18,6 +18,7 @@ from tests.pages import PAGES, anchors, block, blocks, links, name, programs, re
 from tests.paths import PACKAGE, ROOT, TESTS
 from tests.processes import run
 from tests.skipping import require
+from tests.typed.stubs import stubs
 
 NAMES = [name(page) for page in PAGES]
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
@@ -79,7 +80,8 @@ def test_the_makefile_makes_the_program_by_default_and_names_files_that_exist() 
 def test_generated_parts_are_as_generated() -> None:
     assert not [page for page in NAMES if renewed(read(page)) != read(page)], GENERATED
     assert tomllib.loads(read("pyproject.toml"))["project"]["readme"]["text"] == index_text(), GENERATED
-    assert PAGE.read_text(encoding="utf-8") == manual_page(), GENERATED
+    for path, text in {PAGE: manual_page(), **stubs()}.items():
+        assert path.read_text(encoding="utf-8") == text, GENERATED
 
 
 def test_the_manual_page_has_the_whole_help_of_each_option() -> None:
