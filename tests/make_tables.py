@@ -1,7 +1,8 @@
 """Write the generated parts of the documentation anew: python -m tests.make_tables
 
 A table stands between `<!-- table: NAME -->` and `<!-- end -->` of a page. The text for package indexes stands in
-pyproject.toml; the manual page and the stubs for type checkers are files of their own.
+pyproject.toml; the manual page and the stubs for type checkers are files of their own. The catalogues of translations
+end with a list of what they lack.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT
 from tests.test_imports import MAY
 from tests.typed.stubs import stubs
+from tests.viewer.english import CATALOGUES, with_missing
 
 # Left out of the diagram, as small.
 HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "__main__"}
@@ -245,6 +247,8 @@ def main() -> None:
     write(PAGE, manual_page())
     for path, text in stubs().items():
         write(path, text)
+    for path in CATALOGUES.glob("*.po"):
+        write(path, with_missing(path.read_text(encoding="utf-8")))
 
 
 if __name__ == "__main__":
