@@ -1,4 +1,4 @@
-"""The window's texts in French: the catalogue has or lists each, and texts with numbers and names are translated whole."""
+"""The window's texts in French: the catalogue has or lists each, and inserts numbers and names into whole texts."""
 
 from __future__ import annotations
 
