@@ -77,6 +77,21 @@ def test_the_makefile_makes_the_program_by_default_and_names_files_that_exist() 
     assert [path for path in named if not (ROOT / path).is_file()] == []
 
 
+@pytest.mark.parametrize(
+    ("tests", "compiles"),
+    [
+        ("", True),
+        ("tests/kernel", True),
+        ("tests/shapes tests/fuzz", True),
+        ("tests/shapes tests/stability/test_starts.py", False),
+    ],
+)
+def test_make_compiles_kernels_only_for_tests_that_run_them(tests: str, compiles: bool) -> None:
+    told = run(["make", "--dry-run", "--always-make", "test", f"TESTS={tests}"], cwd=ROOT, text=True).stdout
+    assert f"--numprocesses auto {tests}".strip() in told
+    assert bool(re.search(r"-m minirt\.rendering\.ahead_of_time$", told, re.MULTILINE)) is compiles
+
+
 def test_generated_parts_are_as_generated() -> None:
     assert not [page for page in NAMES if renewed(read(page)) != read(page)], GENERATED
     assert tomllib.loads(read("pyproject.toml"))["project"]["readme"]["text"] == index_text(), GENERATED
