@@ -1,29 +1,18 @@
-"""A made-up material for `minirt/materials/__init__.py`: a matt surface that is rough, such as clay."""
+"""Light on rough matt surfaces (Oren and Nayar 1994, Generalization of Lambert's Reflectance Model)."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from minirt.fields import Real, declare
-from minirt.materials.compound import Material
-from minirt.records import record
+from minirt.lanes import Number, Vec, dot, maximum, where
 
 
-# The class, which goes into minirt/materials/__init__.py.
-@record()
-class Rough(Material):
-    """Roughness: `rough:slope`.
+def rough_share(squared: Number, normal: Vec, to_light: Vec, direction: Vec) -> Number:
+    """Return the light that a surface sends towards the eye, as a share of what Lambert's law gives.
 
-    A made-up material: a matt surface whose facets have this slope, such as clay (Oren and Nayar 1994).
-
-        sp 0,0,20 8 200,120,80 rough:0.5
+    `squared` is the square of the standard deviation of the slopes of its facets; `direction` is that of the viewing
+    ray. It is the qualitative model of the paper, without light from facet to facet.
     """
-
-    title, feature = "rough", "rough"
-    slope: float = declare(Real, "of its facets, the standard deviation", low=0.0, high=1.0, step=0.05, initial=0.5)
-
-    def has_effect(self) -> bool:
-        return self.slope > 0.0
-
-    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
-        return {"rough": self.slope**2}
+    light, eye = dot(normal, to_light), -dot(normal, direction)
+    facing = -dot(to_light, direction) - light * eye  # sines of both angles times the cosine of the azimuth between
+    steeper = maximum(maximum(light, eye), 1e-6)  # sin a tan b is the product of both sines over this cosine
+    flat = 1.0 - 0.5 * squared / (squared + 0.33)
+    return flat + where(facing > 0.0, 0.45 * squared / (squared + 0.09) * facing / steeper, 0.0)

@@ -7,7 +7,7 @@ from minirt.records import record
 from minirt.scene.elements import FADE, RATIO, Lamp
 
 
-# The class, which goes into minirt/scene/elements.py.
+# What goes into minirt/scene/elements.py.
 @record()
 class Torch(Lamp):
     """`fl x,y,z ratio reach [R,G,B]`: a made-up light: a flame, whose light fades to nothing within its reach."""
