@@ -87,14 +87,14 @@ ADDITIONS = {
     ),
     "sheen": Addition(
         changed=(
-            below(MATERIALS, MAPPED, part("sheen.py")),
+            below(MATERIALS, MAPPED, f"\n\n{part('sheen.py')}\n"),
             field("sheen", "Sheen", "soft highlight", "clouds"),
         )
     ),
     "rough": Addition(
         (("rough.py", f"{SHADING}/rough.py"),),
         (
-            (MATERIALS, "SHARED: dict", f"{part('rough_class.py')}\n\nSHARED: dict"),
+            (MATERIALS, "\n\nSHARED: dict", f"\n\n\n{part('rough_class.py')}\n\nSHARED: dict"),
             field("rough", "Rough", "roughness of a matt surface", "glow"),
             below("minirt/kernel/scene_arrays.py", "    # the kernel has the feature and the scene lacks it.", ARRAY),
             (

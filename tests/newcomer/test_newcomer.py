@@ -34,7 +34,7 @@ TABLES = (  # what depends on lists of all names
 EDITING = "tests/viewer/editing/test_every_kind.py"
 KEYS = "tests/viewer/test_bindings.py"
 FOLDERS = ("minirt", "tests", "scenes", "assets", ".ci")
-FILES = ("pyproject.toml", "Makefile", *(path.name for path in ROOT.glob("*.md")))
+FILES = ("pyproject.toml", "Makefile", "LICENSE", *(path.name for path in ROOT.glob("*.md")))
 ROW = re.compile(r"^\| (a\w* [\w ]+) \|(.*)\|(.*)\|$", re.MULTILINE)
 ROWS = {"a shape": "gate", "a material": "sheen", "a formula": "rough", "a light": "torch", "a key": "turn round"}
 
@@ -102,11 +102,13 @@ def test_what_is_new_is_added_edited_and_saved_by_keys(copy: Path) -> None:
 
 def test_its_names_are_typed_and_in_the_tables_and_stay_english_in_french(copy: Path) -> None:
     passed(copy, "not runs", *TABLES)
+    for check in (["check"], ["format", "--check"]):
+        answers(copy, "-m", "ruff", *check, "minirt", "tests/viewer")
     listed = read_in(copy, "minirt/viewer/locale/fr.po").partition("No translation")[2]
     words = ("gate", "capsule", "rough", "roughness of a matt surface", "torch", "look the other way")
     assert [word for word in words if f'msgid "{word}"\nmsgstr ""\n' not in listed] == []
     assert "    capsules: tuple[Capsule, ...]\n" in read_in(copy, "minirt/scene/element_lists.pyi")
-    assert "| look the other way | `U` | |" in read_in(copy, "minirt/viewer/README.md")
+    assert "| look the other way | `U` |  |" in read_in(copy, "minirt/viewer/README.md")
     assert "| `ca x,y,z ax,ay,az diameter height R,G,B` | capsule |" in read_in(copy, "scenes/README.md")
 
 
