@@ -48,19 +48,13 @@ def part(name: str) -> str:
     return text.split("\n", 1)[1]
 
 
-def shape(name: str, title: str, *after: str) -> tuple[str, str, str]:
-    """The line of a shape in the registry, below that of another."""
-    other, other_title = after
-    line = "from minirt.shapes.{} import {} as {}".format
-    return below("minirt/shapes/__init__.py", line(other, other_title, other_title), line(name, title, title))
-
-
 def field(name: str, title: str, doc: str, above: str) -> tuple[str, str, str]:
     """The field of a material, above that of another."""
     line = f'    {name}: {title} | None = declare(Compound, "{doc}", record={title}, default=None, shared=SHARED)\n'
     return MATERIALS, f"    {above}:", f"{line}    {above}:"
 
 
+SHAPE = "from minirt.shapes.{0} import {1} as {1}"
 MAPPED = 'MAPPED: dict[str, Any] = {"mapped": True} | SHARED'
 ARRAY = "    rough: Any = None  # (n,) squared slope of matt surfaces, see `minirt.kernel.shading.rough`"
 GLOW = "    glow = splat(scene.glow[index], point.x) if has_rows(scene.glow) else splat(0.0, point.x)"
@@ -73,17 +67,9 @@ CHECK = '    "turn round": ((), lambda _, after: camera(after).direction == pyte
 
 # By the rows of the table of `minirt/README.md`.
 ADDITIONS = {
-    "gate": Addition(
-        (
-            ("gate.py", "minirt/shapes/gate.py"),
-            ("gate_oracle.py", "tests/oracle/gate.py"),
-            ("gate_places.py", "tests/stability/gate.py"),
-        ),
-        (shape("gate", "Gate", "ellipsoid", "Ellipsoid"),),
-    ),
     "capsule": Addition(
-        (("capsule.py", "minirt/shapes/capsule.py"), ("capsule_places.py", "tests/stability/capsule.py")),
-        (shape("capsule", "Capsule", "torus", "Torus"),),
+        (("capsule.py", "minirt/shapes/capsule.py"),),
+        (below("minirt/shapes/__init__.py", SHAPE.format("torus", "Torus"), SHAPE.format("capsule", "Capsule")),),
     ),
     "sheen": Addition(
         changed=(
