@@ -13,9 +13,9 @@ from typing import NamedTuple
 HERE = Path(__file__).parent
 BELOW = "# What goes into "
 SHADING, MATERIALS, ELEMENTS = "minirt/kernel/shading", "minirt/materials/__init__.py", "minirt/scene/elements.py"
-BINDINGS, EDITOR, CHECKS = (
+BINDINGS, COMMANDS, CHECKS = (
     "minirt/viewer/bindings.py",
-    "minirt/viewer/editing/editor.py",
+    "minirt/viewer/app/commands.py",
     "tests/viewer/test_bindings.py",
 )
 
@@ -62,8 +62,9 @@ AIM = "from minirt.kernel.shading.lights import aim, is_spread, sources_in_reach
 COSINE = "        cosine = dot(shading_normal, to_light) * strength"
 SHARE = """        if has_rows(scene.rough):
             cosine = cosine * rough_share(surface.rough, shading_normal, to_light, ray.direction)"""
-NEXT_TONE = '    once(LOOK, "next tone", "next tone: plain, srgb, filmic", "T"),'
-CHECK = '    "turn round": ((), lambda _, after: camera(after).direction == pytest.approx((0, 0, 1))),'
+CAMERA_KEY = '    once(FILE, "copy camera", "copy the camera\'s line", "Ctrl+C"),'
+CAMERA_CHECK = '    "copy camera": ((), lambda _, after: memory(after).clipboard == describe(scene().camera)),'
+CHECK = '    "copy line": (SPHERE, lambda _, after: memory(after).clipboard == describe(after.state.element)),'
 
 # By the rows of the table of `minirt/README.md`.
 ADDITIONS = {
@@ -105,12 +106,12 @@ ADDITIONS = {
             (ELEMENTS, "ParallelLight, SpotLight)\n", "ParallelLight, SpotLight, Torch)\n"),
         )
     ),
-    "turn round": Addition(
+    "copy line": Addition(
         changed=(
-            below(BINDINGS, NEXT_TONE, '    once(LOOK, "turn round", "look the other way", "U"),'),
-            below(EDITOR, '    "next tone": motion.next_tone,', '    "turn round": turn_round,'),
-            (EDITOR, "\n\nEDITS: dict", f"\n\n{part('turn_round.py')}\n\nEDITS: dict"),
-            below(CHECKS, '    "next tone": ((), lambda _, after: camera(after).tone == "srgb"),', CHECK),
+            below(BINDINGS, CAMERA_KEY, '    once(FILE, "copy line", "copy the line of the element", "U"),'),
+            below(COMMANDS, '    "copy camera": copy_camera,', '    "copy line": copy_line,'),
+            (COMMANDS, "\n\nCOMMANDS: dict", f"\n\n{part('copy_line.py')}\n\nCOMMANDS: dict"),
+            below(CHECKS, CAMERA_CHECK, CHECK),
         )
     ),
 }

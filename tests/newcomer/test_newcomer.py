@@ -31,7 +31,7 @@ KEYS = "tests/viewer/test_bindings.py"
 FOLDERS = ("minirt", "tests", "scenes", "assets", ".ci")
 FILES = ("pyproject.toml", "Makefile", "LICENSE", *(path.name for path in ROOT.glob("*.md")))
 ROW = re.compile(r"^\| (a\w* [\w ]+) \|(.*)\|(.*)\|$", re.MULTILINE)
-ROWS = {"a shape": "capsule", "a material": "sheen", "a formula": "rough", "a light": "torch", "a key": "turn round"}
+ROWS = {"a shape": "capsule", "a material": "sheen", "a formula": "rough", "a light": "torch", "a key": "copy line"}
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,7 @@ def test_a_new_shape_passes_the_questions_asked_of_every_shape(copy: Path) -> No
 
 def test_what_is_new_is_added_edited_and_saved_by_keys(copy: Path) -> None:
     passed(copy, "[ca or sheen or rough or [fl", EDITING)
-    passed(copy, "turn or every or twice", KEYS)
+    passed(copy, "copy or every or twice", KEYS)
 
 
 def test_its_names_are_typed_and_in_the_tables_and_stay_english_in_french(copy: Path) -> None:
@@ -99,10 +99,10 @@ def test_its_names_are_typed_and_in_the_tables_and_stay_english_in_french(copy: 
     for check in (["check"], ["format", "--check"]):
         answers(copy, "-m", "ruff", *check, "minirt", "tests/viewer")
     listed = read_in(copy, "minirt/viewer/locale/fr.po").partition("No translation")[2]
-    words = ("capsule", "rough", "roughness of a matt surface", "torch", "look the other way")
+    words = ("capsule", "rough", "roughness of a matt surface", "torch", "copy the line of the element")
     assert [word for word in words if f'msgid "{word}"\nmsgstr ""\n' not in listed] == []
     assert "    capsules: tuple[Capsule, ...]\n" in read_in(copy, "minirt/scene/element_lists.pyi")
-    assert "| look the other way | `U` |  |" in read_in(copy, "minirt/viewer/README.md")
+    assert "| copy the line of the element | `U` |  |" in read_in(copy, "minirt/viewer/README.md")
     assert "| `ca x,y,z ax,ay,az diameter height R,G,B` | capsule |" in read_in(copy, "scenes/README.md")
 
 
