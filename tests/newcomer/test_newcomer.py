@@ -31,7 +31,13 @@ KEYS = "tests/viewer/test_bindings.py"
 FOLDERS = ("minirt", "tests", "scenes", "assets", ".ci")
 FILES = ("pyproject.toml", "Makefile", "LICENSE", *(path.name for path in ROOT.glob("*.md")))
 ROW = re.compile(r"^\| (a\w* [\w ]+) \|(.*)\|(.*)\|$", re.MULTILINE)
-ROWS = {"a shape": "capsule", "a material": "sheen", "a formula": "rough", "a light": "torch", "a key": "copy line"}
+ROWS = {
+    "a shape": "capsule",
+    "a material": "sheen",
+    "a material with a formula": "rough",
+    "a light": "torch",
+    "a key": "copy line",
+}
 
 
 @pytest.fixture(scope="module")
