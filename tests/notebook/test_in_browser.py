@@ -43,6 +43,7 @@ READY = (
 )
 RUN = "window.jupyterapp.commands.execute('notebook:run-all-cells').then(() => true)"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+SLOW = '"Plugin @jupyter'  # what JupyterLab's warning begins with that a part of it starts slowly, on a busy machine
 CTRL = 2  # of the modifiers of the protocol
 COMMANDS = "window.done = []; window.jupyterapp.commands.commandExecuted.connect((_, each) => done.push(each.id)); true"
 CANVAS = "document.querySelector('canvas.minirt-viewer')"
@@ -122,6 +123,10 @@ class ViewerInPage:
         left, top = round(box["left"]), round(box["top"])
         return np.asarray(picture)[top : top + round(box["height"]), left : left + round(box["width"])].astype(int)
 
+    def complaints(self) -> list[str]:
+        """Return what the page has complained about, but for a machine that is slow."""
+        return [each for each in self.page.complaints if SLOW not in each]
+
     def has_focus(self) -> bool:
         """Whether keys go to the viewer."""
         return bool(self.page.value(f"document.activeElement === {CANVAS}"))
@@ -185,7 +190,7 @@ def test_a_key_and_a_drag_move_the_ball_and_escape_gives_the_keyboard_back(viewe
 
     viewer.press("Escape", "Escape")
     until(lambda: not viewer.has_focus(), "the end of the focus")
-    assert viewer.page.complaints == []
+    assert viewer.complaints() == []
 
 
 def test_keys_are_the_viewer_s_alone_and_known_by_their_place(viewer: ViewerInPage) -> None:
@@ -200,4 +205,4 @@ def test_keys_are_the_viewer_s_alone_and_known_by_their_place(viewer: ViewerInPa
     until((viewer.folder / "scene.rt").exists, "the scene in its file")
     assert viewer.has_focus()
     assert viewer.page.value("done") == []  # JupyterLab saved no notebook
-    assert viewer.page.complaints == []
+    assert viewer.complaints() == []
