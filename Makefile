@@ -68,7 +68,11 @@ wheel: $(NAME)  ## build a wheel in dist, with the kernels that draw every scene
 	$(VENV)/bin/python -m minirt.rendering.ahead_of_time wheel
 	$(PIP) wheel --quiet --no-build-isolation --no-deps --wheel-dir dist .
 
-test: $(DEV) $(KERNELS)  ## run all tests, or some: make test TESTS=tests/shapes
+# Tests that run few kernels, which are compiled when they ask for them, and no generic ones.
+LIGHT := $(addprefix tests/,$(addsuffix %,formats helpers lanes materials meshes newcomer oracle scene shapes viewer/editing) \
+         $(addprefix stability/test_,$(addsuffix .py,certificates close_rays degenerate edges regimes starts)))
+
+test: $(DEV) $(if $(TESTS),$(if $(filter-out $(LIGHT),$(TESTS)),$(KERNELS)),$(KERNELS))  ## run all tests, or some: make test TESTS=tests/shapes
 	$(PYTEST) $(TESTS)
 
 QUICK := not window and not slow

@@ -16,57 +16,14 @@ TYPE_CHECKING = False  # as in `typing`, whose import would take as long as all 
 if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
     from typing import Any
 
-    from minirt.cluster.pictures import render_all as render_all
-    from minirt.cluster.pictures import render_to as render_to
-    from minirt.compare import Comparison as Comparison
-    from minirt.compare import compare as compare
-    from minirt.element import Element as Element
-    from minirt.errors import ElementError as ElementError
-    from minirt.errors import FileError as FileError
-    from minirt.errors import MiniRTError as MiniRTError
-    from minirt.errors import MlxError as MlxError
-    from minirt.errors import Problem as Problem
-    from minirt.errors import RenderError as RenderError
-    from minirt.errors import ReplayError as ReplayError
-    from minirt.errors import SceneError as SceneError
-    from minirt.fields import MeshFile as MeshFile
-    from minirt.fields import Triple as Triple
-    from minirt.helpers.system import TooLargeError as TooLargeError
-    from minirt.helpers.system import limit_memory as limit_memory
-    from minirt.materials import *  # noqa: F403
-    from minirt.movie import save_movie as save_movie
-    from minirt.notebook import view as view
-    from minirt.rendering import Renderer as Renderer
-    from minirt.rendering.buffers import Buffers as Buffers
-    from minirt.rendering.buffers import buffers as buffers
-    from minirt.rendering.image import Image as Image
-    from minirt.rendering.image import LinearImage as LinearImage
-    from minirt.rendering.outcome import Outcome as Outcome
-    from minirt.rendering.queries.explain import explain as explain
-    from minirt.rendering.queries.explanation import Explanation as Explanation
-    from minirt.rendering.queries.rays import Hits as Hits
-    from minirt.rendering.queries.rays import camera_rays as camera_rays
-    from minirt.rendering.queries.rays import trace as trace
-    from minirt.rendering.renderer import renderer as renderer
-    from minirt.rendering.settings import DEFAULT_ERROR as DEFAULT_ERROR
-    from minirt.rendering.settings import render as render
-    from minirt.scene import DEFAULT_SIZE as DEFAULT_SIZE
-    from minirt.scene import Scene as Scene
-    from minirt.scene import dumps as dumps
-    from minirt.scene import loads as loads
-    from minirt.scene import size_of as size_of
-    from minirt.scene.elements import *  # noqa: F403
-    from minirt.scene.parser import example as example
-    from minirt.scene.parser import examples as examples
-    from minirt.shapes import *  # noqa: F403
-    from minirt.shapes import Shape as Shape
+    from minirt.public_names import *  # noqa: F403  # a stub, written by `python -m tests.make_tables`
+    from minirt.scene import Scene
 
 __version__ = "0.1.0"
 
 REGISTRIES = "minirt.shapes", "minirt.materials", "minirt.scene.elements"  # whose `PUBLIC` names are public here, too
 OWN = ("load",)
-# The modules of the names that the head of this file imports for type checkers. At run time they are imported on first
-# use, so that `miniRT --help` need not wait for them.
+# The modules of the other names. At run time they are imported on first use, so that `miniRT --help` need not wait.
 HOMES = {
     name: module
     for module, names in {

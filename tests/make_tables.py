@@ -1,7 +1,8 @@
 """Write the generated parts of the documentation anew: python -m tests.make_tables
 
 A table stands between `<!-- table: NAME -->` and `<!-- end -->` of a page. The text for package indexes stands in
-pyproject.toml; the manual page is a file of its own.
+pyproject.toml; the manual page and the stubs for type checkers are files of their own. The catalogues of translations
+end with a list of what they lack.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from tests.library_page import library_reference
 from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT
 from tests.test_imports import MAY
+from tests.typed.stubs import stubs
+from tests.viewer.english import CATALOGUES, with_missing
 
 # Left out of the diagram, as small.
 HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "__main__"}
@@ -228,7 +231,7 @@ def escaped(text: str) -> str:
 
 def write(path: Path, text: str) -> None:
     """Write a file if its text has changed, and print its name."""
-    if path.read_text(encoding="utf-8") != text:
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
         print(path.relative_to(ROOT))
 
@@ -242,6 +245,10 @@ def main() -> None:
         INDEX_TEXT.sub(lambda place: f"{place[1]}{index_text()}{place[2]}", read("pyproject.toml")),
     )
     write(PAGE, manual_page())
+    for path, text in stubs().items():
+        write(path, text)
+    for path in CATALOGUES.glob("*.po"):
+        write(path, with_missing(path.read_text(encoding="utf-8")))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
+from collections import Counter
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -44,6 +45,8 @@ MAY: dict[str, set[str]] = {
     "__main__": {"cli", "helpers"},
     "__init__": LOW | {"helpers", "scene", "rendering"},
 }
+# Names that two classes still have; none may be added.
+SHARED_NAMES = {"Frame", "Group", "Image", "Job", "Outcome", "Part", "Projection", "Reference", "Row", "State"}
 COMPILER = {"numba", "llvmlite"}
 COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler, in a process of its own
 LOADER = "kernel/machine_code/library.py"  # imports, late, the part of it that loads machine code
@@ -165,6 +168,18 @@ def module_of(path: str) -> str:
 def test_parts_and_modules_import_each_other_in_no_circle() -> None:
     for edges in (MAY, graph(sources())):
         assert [*TopologicalSorter(edges).static_order()]  # CycleError names a circle
+
+
+def classes(files: dict[str, str]) -> Counter[str]:
+    """How many classes have each name."""
+    trees = map(ast.parse, files.values())
+    return Counter(node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
+
+
+def test_each_class_has_a_name_of_its_own() -> None:
+    counts = classes(sources())
+    assert {name for name, count in counts.items() if count > 1} == SHARED_NAMES
+    assert classes({"a.py": "class Line: ...", "b.py": "if x:\n    class Line: ..."})["Line"] == 2
 
 
 def test_heavy_imports_are_late() -> None:

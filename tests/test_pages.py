@@ -18,6 +18,7 @@ from tests.pages import PAGES, anchors, block, blocks, links, name, programs, re
 from tests.paths import PACKAGE, ROOT, TESTS
 from tests.processes import run
 from tests.skipping import require
+from tests.typed.stubs import stubs
 
 NAMES = [name(page) for page in PAGES]
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
@@ -76,10 +77,26 @@ def test_the_makefile_makes_the_program_by_default_and_names_files_that_exist() 
     assert [path for path in named if not (ROOT / path).is_file()] == []
 
 
+@pytest.mark.parametrize(
+    ("tests", "compiles"),
+    [
+        ("", True),
+        ("tests/kernel", True),
+        ("tests/shapes tests/fuzz", True),
+        ("tests/shapes tests/stability/test_starts.py", False),
+    ],
+)
+def test_make_compiles_kernels_only_for_tests_that_run_them(tests: str, compiles: bool) -> None:
+    told = run(["make", "--dry-run", "--always-make", "test", f"TESTS={tests}"], cwd=ROOT, text=True).stdout
+    assert re.search(rf"-m pytest .*{tests}$", told.strip())
+    assert bool(re.search(r"-m minirt\.rendering\.ahead_of_time$", told, re.MULTILINE)) is compiles
+
+
 def test_generated_parts_are_as_generated() -> None:
     assert not [page for page in NAMES if renewed(read(page)) != read(page)], GENERATED
     assert tomllib.loads(read("pyproject.toml"))["project"]["readme"]["text"] == index_text(), GENERATED
-    assert PAGE.read_text(encoding="utf-8") == manual_page(), GENERATED
+    for path, text in {PAGE: manual_page(), **stubs()}.items():
+        assert path.read_text(encoding="utf-8") == text, GENERATED
 
 
 def test_the_manual_page_has_the_whole_help_of_each_option() -> None:

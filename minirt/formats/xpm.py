@@ -29,7 +29,7 @@ class XpmError(ValueError):
     """An error in an XPM picture, and its place; it quotes nothing of the file."""
 
 
-class Header(NamedTuple):
+class XpmHeader(NamedTuple):
     """The header of an XPM picture."""
 
     width: int
@@ -45,13 +45,13 @@ def strings_of(source: bytes) -> Iterator[bytes]:
             yield re.sub(rb"\\(.)", rb"\1", found[1], flags=re.DOTALL) if b"\\" in found[1] else found[1]
 
 
-def read_header(strings: Iterator[bytes]) -> Header:
+def read_header(strings: Iterator[bytes]) -> XpmHeader:
     """Read the first string of a picture; XpmError where it is no header."""
     text = next(strings, b"")
     match = HEADER.fullmatch(text)
     if not match:
         raise XpmError("the first string must be a header such as '16 16 2 1'")
-    header = Header(*map(int, match.groups()))
+    header = XpmHeader(*map(int, match.groups()))
     if not header.width or not header.height:
         raise XpmError(f"it has {header.width}x{header.height} pixels")
     if not 1 <= header.colours <= MOST_COLOURS:
@@ -61,7 +61,7 @@ def read_header(strings: Iterator[bytes]) -> Header:
     return header
 
 
-def read_pixels(strings: Iterator[bytes], header: Header) -> np.ndarray:
+def read_pixels(strings: Iterator[bytes], header: XpmHeader) -> np.ndarray:
     """Return the pixels from the strings behind the header, uint8 (height, width, 4): blue, green, red, and alpha.
 
     Transparent pixels are 0, 0, 0, 0. XpmError.

@@ -18,9 +18,6 @@ from minirt.materials.glass import Fresnel, Glass, Mirror, Tint
 from minirt.materials.maps import Bump, Checker, Clouds, Marble, NormalMap, Placement, Texture, Wood
 from minirt.records import record
 
-# The public names, for type checkers: those of `PUBLIC`, which `minirt` offers when it runs.
-__all__ = ["Bump", "Checker", "Clouds", "Glass", "Marble", "Mirror", "Placement", "Specular", "Tint", "Wood"]
-
 GREATEST = 1e6  # exponent: its highlight is a tenth of a degree wide
 
 

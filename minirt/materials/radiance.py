@@ -26,7 +26,7 @@ class RadianceError(ValueError):
     """An error in a Radiance picture, and its place; it quotes nothing of the file."""
 
 
-class Header(NamedTuple):
+class RadianceHeader(NamedTuple):
     """The header of a Radiance picture."""
 
     width: int
@@ -36,7 +36,7 @@ class Header(NamedTuple):
     end: int  # byte at which the pixels begin
 
 
-def read_header(data: bytes) -> Header:
+def read_header(data: bytes) -> RadianceHeader:
     """Read the header of a file; RadianceError where it is not one."""
     file, number, exposure = BytesIO(data[:LONGEST_HEADER]), 1, 1.0
     while (text := file.readline()).strip():
@@ -57,10 +57,10 @@ def read_header(data: bytes) -> Header:
     if not match or match[1][1:] == match[3][1:]:
         raise RadianceError(f"line {number + 1}: expected a size such as -Y 512 +X 1024")
     sizes = {match[1][1:]: int(match[2]), match[3][1:]: int(match[4])}
-    return Header(sizes[b"X"], sizes[b"Y"], (match[1], match[3]), exposure, file.tell())
+    return RadianceHeader(sizes[b"X"], sizes[b"Y"], (match[1], match[3]), exposure, file.tell())
 
 
-def read_pixels(data: bytes, header: Header) -> np.ndarray:
+def read_pixels(data: bytes, header: RadianceHeader) -> np.ndarray:
     """Return the light of the pixels, float32 (height, width, 3), the upper row first; RadianceError."""
     by_columns = header.axes[0] in (b"+X", b"-X")
     count, length = (header.width, header.height) if by_columns else (header.height, header.width)

@@ -46,7 +46,7 @@ def integer(value: Integer) -> int:
 _numbers = itertools.count(1 << 40, 64)  # as great as addresses: no colour and no position equals a handle
 
 
-class Handle(int):
+class NumberedObject(int):
     """An object that is a number of its own, too: programs print handles, compare them and use them as keys."""
 
     def __new__(cls, *_arguments: object, **_named: object) -> Self:
@@ -54,7 +54,7 @@ class Handle(int):
 
 
 @dataclass(eq=False, repr=False)
-class Image(Handle):
+class Image(NumberedObject):
     """A picture to draw into: (h, w, 4) uint8, in memory blue, green, red, alpha."""
 
     pixels: NDArray[np.uint8]
@@ -81,7 +81,7 @@ def set_hook(hooks: Hooks, event: int | str, callback: Hook | None, param: objec
     return 0
 
 
-class Host(Handle, ABC):
+class Host(NumberedObject, ABC):
     """What windows know of their display: options, a clock, and the calls of the program's hooks."""
 
     options: Options

@@ -41,13 +41,13 @@ def add_recording(lines: Iterable[str], file: str, user: Memory, *, types: bool 
     are pressed, as programs for MiniLibX read them, which know keys alone.
     """
     for number, text in enumerate(lines, 1):
-        line = Line(file, number, text, types=types)
+        line = RecordedLine(file, number, text, types=types)
         if line.words:
             usage, run = COMMANDS[line.choice(0, COMMANDS, "command")]
             run(user, *line.arguments(usage))
 
 
-class Line:
+class RecordedLine:
     """The words of a line before its comment. The command has index 0, its arguments follow."""
 
     def __init__(self, file: str, number_in_file: int, text: str, *, types: bool = True) -> None:
@@ -165,7 +165,7 @@ def drag(user: Memory, start: tuple[int, int], end: tuple[int, int], button: int
     user.button_release(button, to_x, to_y)
 
 
-READERS: dict[str, Callable[[Line, int], Any]] = {  # of the arguments of a usage
+READERS: dict[str, Callable[[RecordedLine, int], Any]] = {  # of the arguments of a usage
     "KEY": lambda line, index: line.keys(index),
     "seconds": lambda line, index: line.seconds(index),
     "x,y": lambda line, index: line.numbers(index, f"{NUMBER},{NUMBER}", 0, MAX_PIXELS, "x,y, each"),

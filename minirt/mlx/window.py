@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from minirt.mlx.arguments import Handle, Hooks, Host, Image, Options
+from minirt.mlx.arguments import Hooks, Host, Image, NumberedObject, Options
 from minirt.mlx.canvas import Canvas
 from minirt.mlx.events import MODIFIER_KEYS, Button, Cursor, Event, Modifier
 
@@ -83,7 +83,7 @@ class Keyboard:
 
 
 @dataclass(eq=False, repr=False)
-class Window(Handle, ABC):
+class Window(NumberedObject, ABC):
     """An open window. The size of a resizable window is that of its frame buffer.
 
     A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched

@@ -1,6 +1,10 @@
 """PageDisplay: one window in a page of a browser, which sends events and gets frames.
 
 Keys have the names of browsers (https://www.w3.org/TR/uievents-key).
+
+jupyter_rfb, a package for this, was tried in JupyterLab (version 1.0.2) and is not used. It leaves Tab to the page and
+Ctrl+S to the notebook, tells neither the place of a key nor the keypad from the arrows, raises an error for each
+character, sends nothing that a thread draws, and knows no clipboard, full screen and end of the focus.
 """
 
 from __future__ import annotations

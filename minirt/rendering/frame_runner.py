@@ -16,7 +16,7 @@ from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.lanes import width
 from minirt.rendering.frame import Frame, frame_arguments, plan_of, plan_of_variants, thread_memory
-from minirt.rendering.kernels import Choice, Kernels
+from minirt.rendering.kernels import KernelChoice, Kernels
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Crop, Request, has_apertures, packet_rays, with_apertures
 from minirt.rendering.sampling.auto import AutoSampler, CancelledError
@@ -35,7 +35,7 @@ class FrameRunner:
         self.threads = threads
         self.kernels = kernels
         self.next_row = np.zeros(1, np.int64)  # counter of the rows that are being rendered
-        self.choice: Choice | None = None  # the kernel of the last frame
+        self.choice: KernelChoice | None = None  # the kernel of the last frame
         self.arrays: SceneArrays | None = None  # of its scene
         self.memories: list[tuple[np.ndarray, np.ndarray]] = []  # of the threads, for that scene, from frame to frame
         self.words: list[bytes] = []  # of each memory and of the form of that scene which the kernel takes
@@ -81,7 +81,7 @@ class FrameRunner:
             self.pace = seconds / work
         self.kernels.count(choice, seconds)
 
-    def choose(self, frame: Frame) -> Choice:
+    def choose(self, frame: Frame) -> KernelChoice:
         """Return the kernel for a frame: that of the frame before where its scene has the same arrays."""
         before = self.choice
         if before is None or frame.scene is not self.arrays or self.kernels.has_better(before):

@@ -72,7 +72,7 @@ class BackgroundCompiler:
 SPECIALISED_AFTER = 0.5  # seconds of rendering with a generic kernel, after which a specialised one is worth compiling
 
 
-class Choice(NamedTuple):
+class KernelChoice(NamedTuple):
     """A kernel and the form of the scene that it takes."""
 
     entry: Entry
@@ -100,23 +100,23 @@ class Kernels:
         self.compile_process, self.packing_process = CompileProcess(), CompileProcess()
         self.background = BackgroundCompiler()
 
-    def choose(self, frame: Frame) -> Choice:
+    def choose(self, frame: Frame) -> KernelChoice:
         """Return the most specialised kernel that is there for a frame; where there is none compile it."""
         call = functions.frame.call(*frame)
         specialised = LIBRARY.identity(call)
         if entry := LIBRARY.find(specialised):
-            return Choice(entry, frame.scene, None, specialised)
+            return KernelChoice(entry, frame.scene, None, specialised)
         for generic in generic_kernels.fitting(frame.scene):
             if entry := LIBRARY.find(generic_identity(generic)):
                 scene = generic_kernels.generalised(frame.scene, generic_kernels.empty_arrays(generic))
-                return Choice(entry, scene, generic, specialised)
-        return Choice(LIBRARY.get(call), frame.scene, None, specialised)
+                return KernelChoice(entry, scene, generic, specialised)
+        return KernelChoice(LIBRARY.get(call), frame.scene, None, specialised)
 
-    def has_better(self, choice: Choice) -> bool:
+    def has_better(self, choice: KernelChoice) -> bool:
         """Whether the specialised kernel is there by now, where a generic one was chosen."""
         return choice.generic is not None and LIBRARY.find(choice.specialised) is not None
 
-    def count(self, choice: Choice, seconds: float) -> None:
+    def count(self, choice: KernelChoice, seconds: float) -> None:
         """Count the time of rendering with a kernel; where a generic one took long compile the specialised one."""
         if choice.generic:
             total = self.generic_seconds.get(choice.specialised, 0.0) + seconds

@@ -63,6 +63,7 @@ OTHER_NAMES = {
     "c": "cam camera",
     "bg": "sky background",
     "hy": "hb",
+    "to": "tor",
 }
 CODES = {name: code for code, names in OTHER_NAMES.items() for name in names.split()}
 

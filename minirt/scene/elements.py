@@ -14,10 +14,6 @@ from minirt.element import Element
 from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real, Triple, Whole, declare, unit
 from minirt.records import record
 
-# The public names, for type checkers: those of `PUBLIC`, which `minirt` offers when it runs.
-__all__ = ["Ambient", "Background", "Camera", "FurtherCamera", "FurtherLight", "Lamp", "Light", "ParallelLight"]
-__all__ += ["Resolution", "SpotLight"]
-
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 ENDS = "renders as the nearest angle that can be drawn"
 FieldOfView = partial(Real, unit="degree", low=0.0, high=180.0, step=2.0, ends=ENDS)

@@ -11,28 +11,21 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from minirt import shapes as kinds
 from minirt.element import Element
 from minirt.errors import check_whole, counted, did_you_mean
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
 from minirt.scene import writer
-from minirt.scene.elements import (
-    DEFAULT_SIZE,
-    Ambient,
-    Background,
-    Camera,
-    FurtherCamera,
-    FurtherLight,
-    Lamp,
-    ParallelLight,
-    Resolution,
-    SpotLight,
-)
+from minirt.scene.elements import DEFAULT_SIZE, Ambient, Background, Camera, FurtherCamera, Lamp, Resolution
 from minirt.scene.pages import Answer, Item, Page, pages_of, replace_item, span_of_ids
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
+
+if TYPE_CHECKING:  # a stub, written by `python -m tests.make_tables`
+    from minirt.scene.element_lists import ElementLists
+else:
+    ElementLists = object
 
 Kind = TypeVar("Kind")
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
@@ -58,7 +51,7 @@ COMMENT = re.compile(r"\ufeff?[ \t\r]*(?:#[^\n]*)?")  # or a blank line: what a 
 MISSING = "# missing: "  # begins the comment that a lenient reader makes of a shape that it cannot read
 
 
-class Scene(Immutable):
+class Scene(Immutable, ElementLists):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
     `scene.spheres`, `scene.planes` and so on are the elements of one kind. ValueError without exactly one camera beside
@@ -140,28 +133,7 @@ class Scene(Immutable):
                 yield from (index for index, element in enumerate(elements, start) if isinstance(element, sort))
             start += len(elements)
 
-    if TYPE_CHECKING:  # the elements of each kind, for type checkers and editors
-        resolutions: tuple[Resolution, ...]
-        ambients: tuple[Ambient, ...]
-        backgrounds: tuple[Background, ...]
-        further_cameras: tuple[FurtherCamera, ...]
-        further_lights: tuple[FurtherLight, ...]
-        parallel_lights: tuple[ParallelLight, ...]
-        spot_lights: tuple[SpotLight, ...]
-        spheres: tuple[kinds.Sphere, ...]
-        planes: tuple[kinds.Plane, ...]
-        cylinders: tuple[kinds.Cylinder, ...]
-        cones: tuple[kinds.Cone, ...]
-        paraboloids: tuple[kinds.Paraboloid, ...]
-        hyperboloids: tuple[kinds.Hyperboloid, ...]
-        triangles: tuple[kinds.Triangle, ...]
-        squares: tuple[kinds.Square, ...]
-        discs: tuple[kinds.Disc, ...]
-        boxes: tuple[kinds.Box, ...]
-        tori: tuple[kinds.Torus, ...]
-        ellipsoids: tuple[kinds.Ellipsoid, ...]
-        meshes: tuple[kinds.Mesh, ...]
-    else:
+    if not TYPE_CHECKING:
 
         def __getattr__(self, plural: str) -> tuple[Any, ...]:
             for kind in ELEMENTS.values():

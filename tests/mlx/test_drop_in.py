@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from minirt.mlx.memory import Headless
-from minirt.mlx.recording import COMMANDS, Line, add_recording
+from minirt.mlx.recording import COMMANDS, RecordedLine, add_recording
 from tests import processes
 from tests.paths import PACKAGE, ROOT
 from tests.processes import next_line
@@ -127,7 +127,7 @@ def test_wrong_arguments_are_errors(tmp_path: Path, arguments: tuple[str, ...]) 
 
 
 def codes(key: str) -> list[int] | str:
-    return Line("events", 1, f"press {key}", types=False).keys(1)
+    return RecordedLine("events", 1, f"press {key}", types=False).keys(1)
 
 
 def test_keys_have_names_characters_and_numbers() -> None:

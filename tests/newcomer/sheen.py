@@ -9,7 +9,7 @@ from minirt.materials.compound import Material
 from minirt.records import record
 
 
-# The class, which goes into minirt/materials/__init__.py.
+# What goes into minirt/materials/__init__.py.
 @record()
 class Sheen(Material):
     """Sheen: `sheen:share`.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.mlx.recording import Line
+from minirt.mlx.recording import RecordedLine
 from tests.windows import Desktop
 
 NAMES = {
@@ -68,7 +68,7 @@ def do(desktop: Desktop, window: int, *lines: str, codes: dict[str, str] | None 
     """Perform the lines, one after the other; `codes` as in `name`."""
     arguments: list[str] = []
     for line in lines:
-        match Line("xdotool", 1, line).words:
+        match RecordedLine("xdotool", 1, line).words:
             case ["hide" | "show" as how]:
                 xdotool(desktop, arguments)
                 arguments = []

@@ -14,7 +14,7 @@ from minirt.errors import MlxError
 from minirt.mlx.display import NO_WINDOW
 from minirt.mlx.events import Button, Cursor, Event, Key, Modifier
 from minirt.mlx.on_pyglet import x11
-from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow, Triangles, new_cursor
+from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, OverlayTriangles, PygletWindow, new_cursor
 from minirt.mlx.window import Window
 
 BUTTONS = {
@@ -45,7 +45,7 @@ class NativeWindow(Window):
         super().__post_init__()
         self._wheel = [0.0, 0.0]  # fractions of steps, which touch pads send
         self._is_reported = False  # the key event that pyglet handles now
-        self._triangles: Triangles | None = None  # draw the overlay, since there was one
+        self._triangles: OverlayTriangles | None = None  # draw the overlay, since there was one
         self._cursors: dict[Cursor, Any] = {}
         try:
             self.pyglet = PygletWindow(
@@ -125,7 +125,7 @@ class NativeWindow(Window):
         size = self._framebuffer_size()
         self._texture.draw(self.shown, *size)
         if "overlay" in self.hooks:
-            self._triangles = self._triangles or Triangles()
+            self._triangles = self._triangles or OverlayTriangles()
             self._triangles.size, self._triangles.pixels = (self.width, self.height), size
             self.display.call(self.hooks, "overlay", self._triangles)
 

@@ -1,4 +1,4 @@
-"""PygletWindow: a window of pyglet; CanvasTexture and Triangles: what OpenGL 3.3 draws in it.
+"""PygletWindow: a window of pyglet; CanvasTexture and OverlayTriangles: what OpenGL 3.3 draws in it.
 
 Create and use the last two while the window's OpenGL context is current.
 """
@@ -129,7 +129,7 @@ void main() { pixel = tint * texture(image, texture_place); }"""
 ATTRIBUTES = (2, gl.GL_FLOAT, False, 0), (2, gl.GL_FLOAT, False, 8), (4, gl.GL_UNSIGNED_BYTE, True, 16)
 
 
-class Triangles:
+class OverlayTriangles:
     """A shader program and buffers, for one window."""
 
     def __init__(self) -> None:
