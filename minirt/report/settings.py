@@ -14,7 +14,7 @@ from minirt.scene import Scene
 
 COUNTS = (1, 4, 16, 64)  # samples per pixel
 MORE_COUNTS = (1, 2, 4, 8, 16, 32, 64)  # for a line whose order of convergence is wanted best
-ERRORS = (0.01, 0.005, 0.002, 0.001, 0.0005)  # asked of automatic sampling
+ERRORS = (0.01, 0.005, 0.003, 0.002, 0.001, 0.0005)  # asked of automatic sampling
 ONE_SAMPLE = 0.02  # a usual error of a picture with one sample per pixel
 
 Drawn = dict[str, Any]  # how a picture was drawn, by fields of `minirt.report.pictures.Row`
