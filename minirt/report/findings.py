@@ -21,15 +21,15 @@ from minirt.report.bench import Run
 from minirt.report.metrics import fit
 from minirt.report.pictures import Reference, Row, mostly_disturbed
 from minirt.report.precision import KindCertificates
+from minirt.report.settings import KNOBS
 from minirt.scene import Scene, dump
 
 CLEAR = 2.0  # times the error of the reference: from there on an error is known well enough
 LEVEL = 0.004  # RMSE, one of 255 levels
 ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
 NEAR = 1.5  # ratio of times up to which they are about equal
-# Ratio of times up to which the simplest setting is recommended: a smaller gain is worth no other option, and two
-# reports of one scene are to recommend the same.
-MARGIN = 1.25
+MARGIN = 1.25  # ratio of times up to which a simpler setting is as good
+USUAL = {knob.name: knob.per_sample for knob in KNOBS}
 
 
 class Subject(NamedTuple):
@@ -140,16 +140,21 @@ class Findings:
 
     @property
     def choices(self) -> list[Recommendation]:
-        """The best setting for each target error, of those that the command line has: of those that reach it in about
-        the least time the simplest."""
+        """The best setting for each target error, of those that the command line has.
+
+        Of those that reach it in about the least time it is the one that usually takes least, or a simpler one that
+        usually takes hardly more. So noise in the times does not change it, and two reports of a scene say the same.
+        """
         found = []
         for most in ERRORS:
             rows = [row for row in self.pictures if row.options and row.rmse_high <= most and isfinite(row.ms)]
             least = min((row.ms for row in rows), default=nan)
-            near = [row for row in rows if row.ms <= MARGIN * least]
-            equal = ", ".join(row.name for row in near[1:])
-            told = ((best.options, best.ms, best.rmse, equal, best) for best in near[:1])
-            found.append(Recommendation(f"{most:g}", *next(told, ())))
+            near = [(row, USUAL.get(row.knob, 1.0) * row.samples) for row in rows if row.ms <= NEAR * least]
+            usual = min((work for _, work in near), default=nan)
+            best = next((row for row, work in near if work <= MARGIN * usual), None)
+            others = [row.name for row in rows if best and row != best and row.ms <= MARGIN * best.ms]
+            told = (best.options, best.ms, best.rmse, ", ".join(others), best) if best else ()
+            found.append(Recommendation(f"{most:g}", *told))
         return found
 
     @property

@@ -52,18 +52,20 @@ class Knob(NamedTuple):
     draw: Draw = uniform_samples
     values: tuple[float, ...] = COUNTS  # samples, or errors that are asked for
     work: Callable[[float], float] = float  # value -> samples per pixel, at most, to which the time is proportional
+    per_sample: float = 1.0  # usual time of a sample, by that of `UNIFORM`
 
 
 OPTIONS = {uniform_samples: "--samples {:g}", automatic_samples: "--samples auto --error {:g}"}  # of the command line
 UNIFORM = Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS)
 ADAPTIVE = Knob("adaptive", "one sample, then more where neighbouring pixels differ", {}, adaptive_samples, COUNTS[1:])
-SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"})
+SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"}, per_sample=0.55)
 AUTO = Knob(
     "auto",
     "as many samples in each part of the picture as the error that is asked for needs (`--samples auto`)",
     draw=automatic_samples,
     values=ERRORS,
     work=lambda error: (ONE_SAMPLE / error) ** 1.5,
+    per_sample=2.0,
 )
 ABOUT_BOUNCES = "reflections and refractions of a ray: {} at most, not {}"
 BOUNCES = tuple(
