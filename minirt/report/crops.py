@@ -18,6 +18,7 @@ class Crops(NamedTuple):
     height: int  # of the picture, in pixels
     width: int
     chosen: np.ndarray | None = None  # numbers of squares, row by row; None: the whole picture
+    across: int = 1  # crops beside each other
 
     @property
     def side(self) -> tuple[int, int]:
@@ -29,9 +30,8 @@ class Crops(NamedTuple):
         if self.chosen is None:
             return picture
         crops = squares_of(picture, self.side)[self.chosen]
-        across = across_of(len(crops))
-        rows = crops.reshape(-1, across, *crops.shape[1:]).swapaxes(1, 2)
-        return rows.reshape(rows.shape[0] * self.side[0], across * self.side[1], picture.shape[2])
+        rows = crops.reshape(-1, self.across, *crops.shape[1:]).swapaxes(1, 2)
+        return rows.reshape(rows.shape[0] * self.side[0], self.across * self.side[1], picture.shape[2])
 
     def plan(self, packet_width: int, samples: int) -> np.ndarray:
         """Return the plan of `minirt.kernel.frame.frame` that draws the packets of the crops with so many samples."""
@@ -49,11 +49,6 @@ def squares_of(picture: np.ndarray, side: tuple[int, int]) -> np.ndarray:
     return whole.swapaxes(1, 2).reshape(rows * columns, *side, -1)
 
 
-def across_of(count: int) -> int:
-    """Return how many crops lie beside each other: about twice as many as below each other."""
-    return max(1, round((2 * count) ** 0.5))
-
-
 def representative(squares: np.ndarray, most: int) -> Crops:
     """Choose crops of at most so many pixels together, given a squared error of each pixel of the picture (h, w).
 
@@ -65,8 +60,9 @@ def representative(squares: np.ndarray, most: int) -> Crops:
     whole, some = Crops(height, width), Crops(height, width, np.zeros(0, int))
     errors = squares_of(squares[..., None], some.side).sum(axis=(1, 2, 3))
     count = most // (some.side[0] * some.side[1])
-    count -= count % across_of(count)  # so that rows are full
+    across = max(1, round((2 * count) ** 0.5))  # about twice as many as below each other
+    count -= count % across
     if squares.size <= most or not 0 < count < len(errors):
         return whole
     middles = ((np.arange(count) + 0.5) * len(errors) / count).astype(int)
-    return whole._replace(chosen=np.sort(np.argsort(errors, kind="stable")[middles]))
+    return whole._replace(chosen=np.sort(np.argsort(errors, kind="stable")[middles]), across=across)

@@ -70,7 +70,8 @@ def draw(found: Findings, size: tuple[float, float]) -> str:
             draw_line(axes, name, rows, *styles[name])
         draw_floors(axes, found, min((row.rmse for rows in lines.values() for row in rows), default=1.0))
         scale(axes)
-        figure.legend(loc="outside lower left", ncols=2 if size == NARROW else 5, frameon=False, fontsize="small")
+        if lines:
+            figure.legend(loc="outside lower left", ncols=2 if size == NARROW else 5, frameon=False, fontsize="small")
         text = StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None, "Title": found.title})
     return text.getvalue()

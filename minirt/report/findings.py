@@ -153,7 +153,8 @@ class Findings:
             usual = min((work for _, work in near), default=nan)
             best = next((row for row, work in near if work <= MARGIN * usual), None)
             others = [row.name for row in rows if best and row != best and row.ms <= MARGIN * best.ms]
-            told = (best.options, best.ms, best.rmse, ", ".join(others), best) if best else ()
+            equal = "".join(others[:1]) + (f", {len(others) - 1} more" if len(others) > 1 else "")
+            told = (best.options, best.ms, best.rmse, equal, best) if best else ()
             found.append(Recommendation(f"{most:g}", *told))
         return found
 
