@@ -12,6 +12,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width as lanes_of
@@ -165,7 +166,7 @@ class SettingRenderer:
         self.pixels = np.zeros((height, width, 4), np.uint8)
         self.renderers: dict[str, Renderer] = {}
         self.ready: dict[str, Future[Drawn]] = {}
-        self.compilers = ThreadPoolExecutor(1)
+        self.compilers, self.queries = ThreadPoolExecutor(1), CompileProcess()
         self.cost: dict[str, float] = {}  # seconds of a thread for a unit of work with a knob
         self.drawn: list[Setting] = []
         self.times: dict[str, list[Run]] = {}  # of the settings that were drawn, by their names
@@ -190,7 +191,7 @@ class SettingRenderer:
 
     def prepare_queries(self) -> None:
         """Compile the kernel of single rays, which certificates need, beside what this thread does."""
-        self.compilers.submit(LIBRARY.get, ray_query())
+        self.compilers.submit(LIBRARY.compile, [LIBRARY.identity(ray_query())], self.queries)
 
     def missing_kernels(self, wanted: list[Setting]) -> int:
         """Count the kernels that must be compiled for some settings and for `prepare_queries`."""
@@ -207,6 +208,7 @@ class SettingRenderer:
     def stop(self) -> None:
         """Stop compiling."""
         self.compilers.shutdown(wait=False, cancel_futures=True)
+        self.queries.stop()
         for renderer in self.renderers.values():
             renderer.stop()
 
