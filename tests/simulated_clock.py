@@ -12,7 +12,7 @@ from minirt.rendering.sampling import auto
 from minirt.report import bench
 
 PACKET_SECONDS = 1e-6  # for a packet of rays
-# Processor time by wall time: different enough from 1 to be told apart, but not counted as a disturbed measurement.
+# Processor time by wall time: different enough from 1 to be told apart.
 PROCESSOR_SHARE = 0.95
 
 
@@ -46,6 +46,7 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
     for module in (auto, frame_runner, renderer, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(bench, "process_time", clock.cpu)
+    patch.setattr(bench, "waiting_time", lambda: 0.0)
     return clock
 
 

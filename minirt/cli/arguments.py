@@ -116,7 +116,7 @@ OPTIONS = package.read(__name__, "options.txt").decode()
 # Defaults of options that are not off or unset without one.
 DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "camera": 1}
 KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more than a text
-    **dict.fromkeys(("output", "fallback", "replay", "report", "compare"), file_name),
+    **dict.fromkeys(("output", "fallback", "replay", "report", "against", "compare"), file_name),
     **dict.fromkeys(("error", "time"), number),
     "size": partial(numbers, sign="x", form="WIDTHxHEIGHT, like 640x480", limits=[(1, MOST)] * 2),
     "region": partial(

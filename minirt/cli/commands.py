@@ -83,7 +83,7 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.report.measure import report as write_report
 
     size = options.size or size_of(scene)
-    how = options.threads, options.quick, options.ablation
+    how = options.threads, options.quick, options.ablation, options.against, tell
     say(write_report(scene, options.scene[0], options.report, size, *how))
     return OK
 

@@ -41,7 +41,7 @@ EFFECTS = {
         ("tone exposure", "bench report explain replay output window"),
         ("keys", "replay window"),
         ("fallback text_scale watch", "window"),
-        ("quick ablation", "report"),
+        ("quick ablation against", "report"),
         ("json", "check bench explain compare"),
         *((command, command) for command in COMMANDS if command != "output"),
     )
@@ -49,7 +49,7 @@ EFFECTS = {
 }
 LARGEST = 2**16  # bytes of a configuration file
 ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
-FILES = {"output", "fallback", "replay", "report", "compare", "config"}  # options whose value is a path
+FILES = {"output", "fallback", "replay", "report", "against", "compare", "config"}  # options whose value is a path
 FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
 
 

@@ -18,13 +18,13 @@ from minirt.kernel.machine_code.library import LIBRARY, load
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
-from minirt.report.bench import Run
+from minirt.report.bench import Run, take_turns, timed
 from minirt.report.metrics import Interval, of_median
-from minirt.report.pictures import Budget, Step, measure_times, timed
+from minirt.report.pictures import Step
 from minirt.report.variants import Variant
 from minirt.scene import Scene
 
-PAIRS = 15  # of frames, of the scene as it is and of the variant, in turn
+FEW, PAIRS = 5, 15  # of frames, of the scene as it is and of the variant, in turn: at least, and at most
 
 
 class Part(NamedTuple):
@@ -33,7 +33,8 @@ class Part(NamedTuple):
     sort: str  # "scene", "list", "unseen", "feature" or "kind"
     name: Annotated[str, "part"]  # such as "mirrors and glass", "tori", "tiles"
     change: Annotated[str, "change"]  # "as it is", "added" or "without"
-    frame_ms: Annotated[float, "frame, ms", ".2f"] = nan  # of a picture with one sample per pixel, median
+    # Processor time of a thread for a picture with one sample per pixel, median.
+    frame_ms: Annotated[float, "frame, ms", ".2f"] = nan
     percent: Annotated[float, "frame, %", "+.1f"] = nan  # change of processor time: median of ratios of frames in turn
     percent_low: Annotated[float, "from", "+.1f"] = nan  # 95 % confidence interval
     percent_high: Annotated[float, "to", "+.1f"] = nan
@@ -42,28 +43,27 @@ class Part(NamedTuple):
     # Seconds of rendering until a kernel without the part has saved its compile time; NaN: in doubt.
     pays_after_s: Annotated[float, "pays after, s", ".0f"] = nan
     same: Annotated[bool, "same picture"] = True  # as that of the scene as it is, bit for bit
-    valid: bool = False  # False: failed, or other programs disturbed the times
-    remark: Annotated[str, "remark"] = ""
+    remark: Annotated[str, "remark"] = ""  # why it failed
 
 
 class Ablation:
     """Measures variants of a scene against the scene as it is."""
 
-    def __init__(self, scene: Scene, width: int, height: int, threads: int, budget: Budget) -> None:
-        self.scene, self.threads, self.budget = scene, threads, budget
+    def __init__(self, scene: Scene, width: int, height: int, threads: int, seconds: float) -> None:
+        """`seconds` that the frames of a variant take, at most, unless `FEW` take longer."""
+        self.scene, self.threads, self.seconds = scene, threads, seconds
         self.pixels = np.zeros((height, width, 4), np.uint8)
         self.draw = frame(Renderer(threads), scene, self.pixels)
         self.compile_s = nan
 
     def parts(self, variants: Sequence[Variant], step: Step) -> Iterator[Part]:
         """Yield the scene as it is, and each variant; `step` is called with the name of each before it is measured."""
-        times = measure_times([self.draw], self.draw(), self.threads, self.budget)
-        frame_ms = median(run.wall for (run,) in times.runs) * 1e3
+        self.draw()
+        runs = [run for (run,) in take_turns([self.draw], FEW, PAIRS, self.seconds)]
         if not all(variant.without for variant in variants):
             step("compiling the scene as it is")
             self.compile_s = compile_seconds(self.scene)
-        base = Part("scene", "the scene", "as it is", frame_ms, compile_s=self.compile_s)
-        yield base._replace(valid=not times.remark, remark=times.remark)
+        yield Part("scene", "the scene", "as it is", self.milliseconds(runs), compile_s=self.compile_s)
         for variant in variants:
             step(f"{variant.name} {variant.change}")
             try:
@@ -77,12 +77,12 @@ class Ablation:
         compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
         draw()
-        times = measure_times([self.draw, draw], draw(), self.threads, self.budget, PAIRS)
-        changes = [change(base, other) for base, other in times.runs]
+        turns = take_turns([self.draw, draw], FEW, PAIRS, self.seconds)
+        changes = [change(base, other) for base, other in turns]
         low, high = of_median(changes)
         return Part(
             *variant[:3],
-            frame_ms=median(other.wall for _, other in times.runs) * 1e3,
+            frame_ms=self.milliseconds([other for _, other in turns]),
             percent=median(changes),
             percent_low=low,
             percent_high=high,
@@ -90,9 +90,11 @@ class Ablation:
             compile_percent=(compile_s / self.compile_s - 1) * 100,
             pays_after_s=self.pays_after(variant.change, median(changes), (low, high), compile_s),
             same=np.array_equal(pixels, self.pixels),
-            valid=not times.remark,
-            remark=times.remark,
         )
+
+    def milliseconds(self, runs: Sequence[Run]) -> float:
+        """Return the median processor time of a thread."""
+        return median(run.cpu for run in runs) / self.threads * 1e3
 
     def pays_after(self, change: str, percent: float, interval: Interval, compile_s: float) -> float:
         """Return after how many seconds of rendering a kernel without a part has saved its own compile time.

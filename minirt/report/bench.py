@@ -1,9 +1,13 @@
-"""Benchmark of a scene: time to load, to compile and to render a frame, of an eye at rest and of a moving one."""
+"""Times of runs, and a benchmark of a scene: to load, to compile and to render a frame, at rest and moving."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from itertools import cycle, repeat
+from math import isnan, nan
+from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
 from typing import NamedTuple
@@ -15,7 +19,8 @@ from minirt.scene import Scene, load, size_of
 
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0  # of each of both measurements
 STEP = 1e-3  # scene units that the eye moves from frame to frame
-DISTURBED = 1.15  # ratio of wall time to processor time from which a run counts as disturbed
+DISTURBED = 0.15  # waiting time by processor time from which a run counts as disturbed
+THREADS = Path("/proc/self/task")  # of this program, on Linux
 
 
 class Run(NamedTuple):
@@ -23,21 +28,52 @@ class Run(NamedTuple):
 
     wall: float
     cpu: float
+    waited: float = nan  # time for which threads that could run had no processor, summed; NaN where no system tells
 
 
 def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
     """Time at least `least` runs of some work, and more until they take `seconds` together."""
     times: list[Run] = []
     while len(times) < least or sum(run.wall for run in times) < seconds:
-        wall, cpu = perf_counter(), process_time()
+        wall, cpu, waited = perf_counter(), process_time(), waiting_time()
         work()
-        times.append(Run(perf_counter() - wall, process_time() - cpu))
+        times.append(Run(perf_counter() - wall, process_time() - cpu, waiting_time() - waited))
     return times
 
 
+def timed(work: Callable[[], object]) -> Run:
+    """Time one run of some work."""
+    return runs(work, 1, 0.0)[0]
+
+
+def take_turns(works: Sequence[Callable[[], Run]], least: int, most: int, seconds: float) -> list[tuple[Run, ...]]:
+    """Run works in turn, so that a slow moment of the machine affects all: at least so many rounds, and at most, until
+    they have taken `seconds`. Every second round has the opposite order."""
+    rounds: list[tuple[Run, ...]] = []
+    spent = 0.0
+    while len(rounds) < least or (len(rounds) < most and spent < seconds):
+        step = -1 if len(rounds) % 2 else 1
+        rounds.append(tuple([work() for work in works[::step]][::step]))
+        spent += sum(run.wall for run in rounds[-1])
+    return rounds
+
+
+def waiting_time() -> float:
+    """Return the seconds for which threads of this program have waited for a processor so far; NaN but on Linux."""
+    total = nan
+    with suppress(OSError):
+        for name in os.listdir(THREADS):  # noqa: PTH208  (a tenth of the time of `iterdir`)
+            with suppress(OSError):  # a thread that has ended
+                waited = int((THREADS / name / "schedstat").read_bytes().split()[1]) * 1e-9
+                total = waited + (0.0 if isnan(total) else total)
+    return total
+
+
 def is_disturbed(run: Run, threads: int) -> bool:
-    """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
-    return run.wall * threads > DISTURBED * run.cpu
+    """Whether the threads of a run had to wait for a processor. Where no system tells, what they did not use of the
+    wall time counts as waiting, too."""
+    waited = run.wall * threads - run.cpu if isnan(run.waited) else run.waited
+    return waited > DISTURBED * run.cpu
 
 
 def measure(

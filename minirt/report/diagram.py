@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.errors import RenderError
 from minirt.report.findings import Findings
-from minirt.report.pictures import OURS, Row
+from minirt.report.pictures import Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,41 +33,57 @@ BESIDE: dict[str, Any] = {"textcoords": "offset points", "fontsize": "small"}  #
 LEAST_RANGE, MANY = 6.0, 200.0  # least ratio of the ends of an axis; beyond `MANY` only powers of ten have labels
 
 
-def require_matplotlib() -> None:
-    """Import what draws, which takes most of a second, so that the end of an interrupted report need not wait for it.
-    RenderError, which tells how to install it, if matplotlib is missing."""
+def require_packages() -> None:
+    """Import what draws and writes, which takes most of a second, so that the end of an interrupted report need not
+    wait for it. RenderError, which tells how to install it, if something is missing."""
     try:
+        import jinja2  # noqa: F401
         import matplotlib.backends.backend_svg
         import matplotlib.ticker  # noqa: F401
     except ImportError:
-        message = "--report draws its diagram with matplotlib: install it (pip install 'minirt[report]')"
+        message = "--report draws with matplotlib and writes with jinja2: install them (pip install 'minirt[report]')"
         raise RenderError(message) from None
 
 
 def draw(found: Findings, size: tuple[float, float]) -> str:
-    """Return the diagram as the text of an SVG file."""
+    """Return the diagram as the text of an SVG file; lines of the report to compare with are dashed."""
     import matplotlib
     from matplotlib.figure import Figure
 
-    lines: dict[str, list[Row]] = {}
-    for row in found.pictures:
-        if isfinite(row.rmse) and isfinite(row.wall_ms):
-            lines.setdefault(row.knob, []).append(row)
+    lines, before = lines_of(found), lines_of(found.other)
+    styles = dict(zip(lines | before, zip(cycle(COLOURS), cycle(MARKS)), strict=False))
     with matplotlib.rc_context(STYLE):
         figure = Figure(size, dpi=100, layout="constrained")
         axes = figure.add_subplot(xscale="log", yscale="log")
-        axes.set(xlabel="error: RMSE, 1 from black to white", ylabel="milliseconds per picture")
-        best = places(sorted(found.recommended, key=lambda row: row.rmse))
-        ring: dict[str, Any] = {"markersize": 12, "markerfacecolor": "none", "markeredgecolor": INK}
-        axes.plot(*best, "o-", color=BAND, linewidth=9, **ring, label="recommended", zorder=1)
-        for (name, rows), colour, mark in zip(lines.items(), cycle(COLOURS), cycle(MARKS)):
-            draw_line(axes, name, rows, colour, mark)
+        clock = "milliseconds of processor time of a thread" if found.by_processor else "milliseconds"
+        axes.set(xlabel="error: RMSE, 1 from black to white", ylabel=f"{clock} per picture")
+        if found.recommended:
+            best = places(sorted(found.recommended, key=lambda row: row.rmse))
+            ring: dict[str, Any] = {"markersize": 12, "markerfacecolor": "none", "markeredgecolor": INK}
+            axes.plot(*best, "o-", color=BAND, linewidth=9, **ring, label="recommended", zorder=1)
+        for name, rows in before.items():
+            colour, mark = styles[name]
+            label = "before" if name == next(iter(before)) else None
+            dashed: dict[str, Any] = {"linestyle": "--", "markersize": 4, "markerfacecolor": PAPER}
+            axes.plot(*places(rows), mark, color=colour, label=label, **dashed)
+        for name, rows in lines.items():
+            draw_line(axes, name, rows, *styles[name])
         draw_floors(axes, found, min((row.rmse for rows in lines.values() for row in rows), default=1.0))
         scale(axes)
-        figure.legend(loc="outside lower left", ncols=2 if size == NARROW else 5, frameon=False, fontsize="small")
+        if lines:
+            figure.legend(loc="outside lower left", ncols=2 if size == NARROW else 5, frameon=False, fontsize="small")
         text = StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None, "Title": found.title})
     return text.getvalue()
+
+
+def lines_of(found: Findings | None) -> dict[str, list[Row]]:
+    """Return the points of each line of a report, none without a report."""
+    lines: dict[str, list[Row]] = {}
+    for row in found.pictures if found else ():
+        if isfinite(row.rmse) and isfinite(row.ms):
+            lines.setdefault(row.knob, []).append(row)
+    return lines
 
 
 def on_page(svg: str) -> str:
@@ -79,21 +95,18 @@ def on_page(svg: str) -> str:
 
 def places(rows: list[Row]) -> tuple[list[float], list[float]]:
     """Return the errors and the times of some rows."""
-    return [row.rmse for row in rows], [row.wall_ms for row in rows]
+    return [row.rmse for row in rows], [row.ms for row in rows]
 
 
 def draw_line(axes: Axes, name: str, rows: list[Row], colour: str, mark: str) -> None:
     """Draw the points of a render option with their confidence intervals, and the number of samples at each."""
-    style: dict[str, Any] = {"color": colour, "linewidth": 1.6, "linestyle": "-" if rows[0].program == OURS else ":"}
     x, y = places(rows)
-    axes.plot(x, y, marker=mark, markersize=5.5, label=name, **style)
-    hollow = [row for row in rows if not row.valid]
-    axes.plot(*places(hollow), mark, markersize=5.5, markerfacecolor=PAPER, color=colour)
+    axes.plot(x, y, marker=mark, markersize=5.5, label=name, color=colour, linewidth=1.6)
     bars: dict[str, Any] = {"colors": colour, "linewidth": 1, "alpha": 0.75}
     axes.hlines(y, [row.rmse_low for row in rows], [row.rmse_high for row in rows], **bars)
-    axes.vlines(x, [row.wall_low_ms for row in rows], [row.wall_high_ms for row in rows], **bars)
+    axes.vlines(x, [row.ms_low for row in rows], [row.ms_high for row in rows], **bars)
     for row in rows:
-        axes.annotate(row.label, (row.rmse, row.wall_ms), (5, 4), color=colour, **BESIDE)
+        axes.annotate(row.label, (row.rmse, row.ms), (5, 4), color=colour, **BESIDE)
 
 
 def draw_floors(axes: Axes, found: Findings, least: float) -> None:

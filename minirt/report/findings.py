@@ -4,31 +4,32 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from math import exp, isfinite, log, nan, sqrt
-from operator import attrgetter
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 import minirt
+from minirt.errors import counted
 from minirt.kernel.machine_code.fingerprint import cpu_information
 from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
+from minirt.report.bench import Run
 from minirt.report.metrics import fit
-from minirt.report.pictures import Row
+from minirt.report.pictures import Reference, Row, mostly_disturbed
 from minirt.report.precision import KindCertificates
+from minirt.report.settings import KNOBS
 from minirt.scene import Scene, dump
 
 CLEAR = 2.0  # times the error of the reference: from there on an error is known well enough
 LEVEL = 0.004  # RMSE, one of 255 levels
 ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
-WORST = 0.1  # RMSE of a recommended setting, at most, however short the target time
 NEAR = 1.5  # ratio of times up to which they are about equal
-TIMES = (16.0, 100.0, 1000.0)  # target times, milliseconds
-TIME, ERROR = attrgetter("wall_low_ms", "wall_high_ms"), attrgetter("rmse_low", "rmse_high")  # intervals of a row
+MARGIN = 1.25  # ratio of times up to which a simpler setting is as good
+USUAL = {knob.name: knob.per_sample for knob in KNOBS}
 
 
 class Subject(NamedTuple):
@@ -38,6 +39,7 @@ class Subject(NamedTuple):
     sha256: str  # of the scene as text
     width: int
     height: int
+    pixels: int  # in which errors are measured: those of the picture, or of crops that represent it
     threads: int
     seed: int
     processor: str
@@ -59,11 +61,11 @@ class Order(NamedTuple):
 
 
 class Recommendation(NamedTuple):
-    """The best setting for a goal, which its error or its time reaches with a confidence of 95 %."""
+    """The best setting for a goal, which its error reaches with a confidence of 95 %."""
 
-    goal: Annotated[str, "goal"]  # such as "error at most 0.01"
+    goal: Annotated[str, "error at most"]  # such as "0.01"
     options: Annotated[str, "best setting"] = "none of these"  # of the command line
-    wall_ms: Annotated[float, "ms", ".1f"] = nan
+    ms: Annotated[float, "ms", ".1f"] = nan
     rmse: Annotated[float, "RMSE", ".5f"] = nan
     equal: Annotated[str, "as good"] = ""  # settings whose times and errors cannot be told from these
     best: Row | None = None
@@ -78,6 +80,8 @@ class Findings:
     reference_error: float  # RMSE of the reference itself
     eight_bits: float = 1 / 255 / sqrt(12)  # RMSE that rounding to 255ths adds: no file of 8 bits can be closer
     pictures: list[Row] = field(default_factory=list)
+    times: dict[str, list[Run]] = field(default_factory=dict)  # runs of the settings, by their names
+    by_processor: bool = False  # whether times are processor times of a thread, as other programs disturbed the others
     ablation: list[Part] = field(default_factory=list)  # what features, kinds of shapes and lists cost or save
     single: float = nan  # pixels that float32 changes, with one sample each
     certificates: list[KindCertificates] = field(default_factory=list)  # of the hits in the picture, kind by kind
@@ -87,10 +91,32 @@ class Findings:
     same: list[int] = field(default_factory=list)  # sample counts for which brute force gives the same bits
     not_measured: list[str] = field(default_factory=list)
     interrupted: str = ""  # what was being measured when the user interrupted the report, and what is missing
+    other: Findings | None = None  # the report to compare with
 
     @property
     def title(self) -> str:
         return f"{self.subject.scene}: error against run time"
+
+    @property
+    def size(self) -> str:
+        return f"{self.subject.width}x{self.subject.height}"
+
+    @property
+    def clock(self) -> str:
+        """What follows a time in a sentence."""
+        of_threads = f"of processor time of each of {counted(self.subject.threads, 'thread')}"
+        return f"{of_threads}, as other programs disturbed the wall times" if self.by_processor else "a picture"
+
+    def settle_times(self) -> None:
+        """Give each row its time: wall time, or processor time of a thread where other programs disturbed a row of this
+        report or of the one to compare with."""
+        both = [self, self.other] if self.other else [self]
+        rows = [(each, row, each.times[row.name]) for each in both for row in each.pictures if row.name in each.times]
+        is_disturbed = any(mostly_disturbed(runs, each.subject.threads) for each, _, runs in rows)
+        for each, row, runs in rows:
+            each.by_processor = is_disturbed
+            timed = row.with_times(runs, each.subject.threads, is_disturbed)
+            each.pictures[each.pictures.index(row)] = timed
 
     @property
     def orders(self) -> list[Order]:
@@ -108,25 +134,28 @@ class Findings:
     def order(self, rows: list[Row]) -> Order:
         """Fit the order of convergence of a line, which falls with the logarithms of samples and of time."""
         errors = np.log([sqrt(row.rmse**2 - self.reference_error**2) for row in rows])
-        timed = [row.valid for row in rows]
         by_samples = fit(-np.log([row.samples for row in rows]), errors)
-        by_time = fit(-np.log([row.wall_ms for row in rows])[timed], errors[timed])
+        by_time = fit(-np.log([row.ms for row in rows]), errors)
         return Order(rows[0].knob, len(rows), *by_samples[:3], *by_time[:3], exp(by_samples[3]))
 
     @property
     def choices(self) -> list[Recommendation]:
-        """The best setting for each target error and each target time, of those that the command line has.
+        """The best setting for each target error, of those that the command line has.
 
-        Of settings whose intervals overlap the simplest is the best.
+        Of those that reach it in about the least time it is the one that usually takes least, or a simpler one that
+        usually takes hardly more. So noise in the times does not change it, and two reports of a scene say the same.
         """
-        rows = [row for row in self.pictures if row.options and row.valid and row.rmse_high <= WORST]
         found = []
         for most in ERRORS:
-            fastest = unbeaten([row for row in rows if row.rmse_high <= most], TIME)
-            found.append(recommendation(f"error at most {most:g}", unbeaten(fastest, ERROR)))
-        for most in TIMES:
-            closest = unbeaten([row for row in rows if row.wall_high_ms <= most], ERROR)
-            found.append(recommendation(f"at most {most:g} ms", unbeaten(closest, TIME)))
+            rows = [row for row in self.pictures if row.options and row.rmse_high <= most and isfinite(row.ms)]
+            least = min((row.ms for row in rows), default=nan)
+            near = [(row, USUAL.get(row.knob, 1.0) * row.samples) for row in rows if row.ms <= NEAR * least]
+            usual = min((work for _, work in near), default=nan)
+            best = next((row for row, work in near if work <= MARGIN * usual), None)
+            others = [row.name for row in rows if best and row != best and row.ms <= MARGIN * best.ms]
+            equal = "".join(others[:1]) + (f", {len(others) - 1} more" if len(others) > 1 else "")
+            told = (best.options, best.ms, best.rmse, equal, best) if best else ()
+            found.append(Recommendation(f"{most:g}", *told))
         return found
 
     @property
@@ -135,29 +164,21 @@ class Findings:
         return list(dict.fromkeys(choice.best for choice in self.choices if choice.best))
 
     @property
+    def closest(self) -> Row | None:
+        """The row with the least error of those that the command line has; None where nothing was measured."""
+        rows = (row for row in self.pictures if row.options and isfinite(row.ms))
+        return min(rows, key=lambda row: row.rmse, default=None)
+
+    @property
     def of_equal_time(self) -> list[Row]:
         """The row of each line that takes about as long as the best setting for an error of one level, the most exact
         one first; as long as the most exact setting, if none reaches that error."""
-        rows = [row for row in distinct(self.pictures) if row.valid]
-        best = self.choices[ERRORS.index(LEVEL)].best or min(rows, key=lambda row: row.rmse, default=None)
-        ratios = {row: abs(log(row.wall_ms / best.wall_ms)) for row in rows if best}
+        best = self.choices[ERRORS.index(LEVEL)].best or self.closest
+        rows = [row for row in distinct(self.pictures) if best and isfinite(row.ms)]
+        ratios = {row: abs(log(row.ms / best.ms)) for row in rows if best}
         near = [row for row, ratio in ratios.items() if ratio < log(NEAR)]
         nearest = {row.knob: row for row in sorted(near, key=ratios.__getitem__, reverse=True)}
         return sorted(nearest.values(), key=lambda row: row.rmse)
-
-
-def recommendation(goal: str, rows: list[Row]) -> Recommendation:
-    """Recommend the first of some rows, the simplest one, for a goal that all of them reach equally well."""
-    if not rows:
-        return Recommendation(goal)
-    best, *others = rows
-    return Recommendation(goal, best.options, best.wall_ms, best.rmse, ", ".join(row.name for row in others), best)
-
-
-def unbeaten(rows: list[Row], interval: Callable[[Row], tuple[float, float]]) -> list[Row]:
-    """Return the rows whose interval lies above no other row's interval."""
-    least = min((interval(row)[1] for row in rows), default=nan)
-    return [row for row in rows if interval(row)[0] <= least]
 
 
 def distinct(rows: Iterable[Row]) -> list[Row]:
@@ -168,10 +189,11 @@ def distinct(rows: Iterable[Row]) -> list[Row]:
     return list(found.values())
 
 
-def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed: int) -> Subject:
-    """Describe a scene and this machine."""
+def subject(scene: Scene, name: str, right: Reference, threads: int, seed: int) -> Subject:
+    """Describe a scene, its pictures and this machine."""
     digest = hashlib.sha256(dump(scene).encode()).hexdigest()
     versions = {"minirt": minirt.__version__, "python": platform.python_version()}
     versions |= {package: version(package) for package in ("numpy", "numba", "llvmlite", "pillow")}
     processor = cpu_information("model name") or platform.processor()  # the former on Linux
-    return Subject(name, digest, width, height, threads, seed, processor, versions)
+    crops, pixels = right.crops, right.picture.shape[0] * right.picture.shape[1]
+    return Subject(name, digest, crops.width, crops.height, pixels, threads, seed, processor, versions)

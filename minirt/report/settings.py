@@ -14,7 +14,7 @@ from minirt.scene import Scene
 
 COUNTS = (1, 4, 16, 64)  # samples per pixel
 MORE_COUNTS = (1, 2, 4, 8, 16, 32, 64)  # for a line whose order of convergence is wanted best
-ERRORS = (0.01, 0.005, 0.002, 0.001, 0.0005)  # asked of automatic sampling
+ERRORS = (0.01, 0.005, 0.003, 0.002, 0.001, 0.0005)  # asked of automatic sampling
 ONE_SAMPLE = 0.02  # a usual error of a picture with one sample per pixel
 
 Drawn = dict[str, Any]  # how a picture was drawn, by fields of `minirt.report.pictures.Row`
@@ -52,18 +52,20 @@ class Knob(NamedTuple):
     draw: Draw = uniform_samples
     values: tuple[float, ...] = COUNTS  # samples, or errors that are asked for
     work: Callable[[float], float] = float  # value -> samples per pixel, at most, to which the time is proportional
+    per_sample: float = 1.0  # usual time of a sample, by that of `UNIFORM`
 
 
 OPTIONS = {uniform_samples: "--samples {:g}", automatic_samples: "--samples auto --error {:g}"}  # of the command line
 UNIFORM = Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS)
 ADAPTIVE = Knob("adaptive", "one sample, then more where neighbouring pixels differ", {}, adaptive_samples, COUNTS[1:])
-SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"})
+SINGLE = Knob("single", "float32 relative to the eye", {"precision": "single"}, per_sample=0.55)
 AUTO = Knob(
     "auto",
     "as many samples in each part of the picture as the error that is asked for needs (`--samples auto`)",
     draw=automatic_samples,
     values=ERRORS,
     work=lambda error: (ONE_SAMPLE / error) ** 1.5,
+    per_sample=2.0,
 )
 ABOUT_BOUNCES = "reflections and refractions of a ray: {} at most, not {}"
 BOUNCES = tuple(

@@ -12,6 +12,7 @@ import numpy as np
 
 from minirt import load
 from minirt.element import fields_of
+from minirt.errors import RenderError
 from minirt.fields import Point
 from minirt.kernel.machine_code.fingerprint import processor
 from minirt.rendering import Renderer
@@ -19,7 +20,8 @@ from minirt.rendering.threads import usable_cores
 from minirt.report.bench import STEP, moved, runs
 from minirt.scene import Scene
 from tests.bench import sampling, scenes, starts
-from tests.bench.measure import Setting, System, available, table, take_turns
+from tests.bench.measure import MissingError, Setting, System, available, table, take_turns
+from tests.bench.peers import povray
 from tests.bench.peers.embree import Embree
 from tests.bench.peers.mitsuba import Mitsuba
 from tests.bench.peers.programs import PovRay, Tachyon
@@ -77,6 +79,14 @@ class MovedShape(MiniRT):
         return scene.replace(shape, **{place: (x + STEP, y, z)})
 
 
+def available_errors(paths: list[Path], setting: Setting) -> tuple[list[str], list[str]]:
+    """Return tables of errors and times beside POV-Ray's, and why there are none."""
+    try:
+        return [povray.errors(path, setting) for path in paths], []
+    except (MissingError, RenderError) as reason:
+        return [], [f"errors: {reason}"]
+
+
 OWN = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
 MOVED = [partial(MovedShape, precision="double"), partial(MovedShape, precision="single")]
 PEERS = [Embree, Mitsuba, Tachyon, PovRay]
@@ -114,11 +124,15 @@ def main(quick: bool) -> None:
     growth = take_turns(own, grown, grown_rounds, seconds)
     print(table(growth, "spheres in view"), end="\n\n")
 
+    antialiased, error_reasons = available_errors(four[:2], setting)
+    for each in antialiased:
+        print(each, end="\n\n", flush=True)
+
     print(sampling.summary(sampling.cells(9 if quick else 100)), end="\n\n", flush=True)
 
     for system in with_moved:
         print(f"{system.name}: {system.how}")
-    reasons += more_reasons + start_reasons
+    reasons += more_reasons + start_reasons + error_reasons
     for reason in reasons:
         print(f"not measured: {reason}")
     if find_spec("matplotlib") is None:

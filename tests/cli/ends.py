@@ -52,6 +52,7 @@ KINDS = {
 }
 SAID = re.compile(
     r"\d+ of \d+ (?:pictures of the film|bands of the picture) (?:is|are) kept in (\S+); .* goes on|notice: .*"
+    r"|Measuring scene\.rt at 1280x720 pixels with \d+ threads?: about .*"
     r"|Interrupted before anything was measured; no report was written\."
 )
 REPORTED = re.compile(r"^Interrupted while measuring .* is missing\.\n(?:.*\n)+?The report is in .*\n", re.MULTILINE)

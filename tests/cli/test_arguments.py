@@ -95,6 +95,7 @@ TOGETHER = {  # arguments that do not go together, behind the name of a scene
     "-o x.png --cluster local --samples auto --time 1": "--cluster has no effect with --time",
     "-o x.png --json": "--json has no effect without --check or --bench or --explain or --compare",
     **{f"-o x.png {each}": f"{each} has no effect without --report" for each in ("--quick", "--ablation")},
+    "-o x.png --against x.json": "--against has no effect without --report",
     **{f"-o x.png --{each}": f"-o does not go with --{each}" for each in ("check", "bench")},
     "-o x.png --report x": "-o does not go with --report",
     "--buffers depth": "--buffers needs the name of a file: -o normals.png",

@@ -11,51 +11,46 @@ from minirt.report.precision import KindCertificates
 REFERENCE_ERROR = 0.0002
 
 
-def row(knob: str, samples: int, slowness: float = 1.0, valid: bool = True, program: str = "miniRT") -> Row:
+def row(knob: str, samples: int, slowness: float = 1.0) -> Row:
     """A row with an error of 0.04 at one sample, 0.02 at two and so on, and bars of 10 and 20 per cent.
 
     Settings whose names have another length have other pictures, if hardly so."""
     error, time = 0.04 * (1 + 1e-9 * len(knob)) / samples, 2.5 * slowness * samples
-    remark = "" if valid else "other programs needed the processors"
     return Row(
         knob,
         str(samples),
-        program,
-        options=f"--samples {samples} --{knob}" if program == "miniRT" else "",
+        options=f"--samples {samples} --{knob}",
         samples=samples,
         rmse=error,
         rmse_low=0.9 * error,
         rmse_high=1.1 * error,
         psnr=30.0,
-        wall_ms=time,
-        wall_low_ms=0.8 * time,
-        wall_high_ms=1.2 * time,
+        ms=time,
+        ms_low=0.8 * time,
+        ms_high=1.2 * time,
         runs=7,
-        valid=valid,
-        remark=remark,
     )
 
 
 ROWS = [
     *(row("uniform", samples) for samples in (1, 4, 16)),
-    *(row("adaptive", samples, 0.7, valid=samples != 4) for samples in (4, 16)),
+    *(row("adaptive", samples, 0.7) for samples in (4, 16)),
     *(row("<slow> & sure", samples, 3.0) for samples in (1, 4)),
     *(row("1 bounce", samples, 1.02) for samples in (1, 4, 16)),
     *(row("3 bounces", samples, 1.05) for samples in (1, 4, 16)),
     *(row("single", samples, 0.9) for samples in (1, 4, 16)),
-    *(row("POV-Ray", samples, 30.0, program="POV-Ray") for samples in (1, 4, 16)),
     Row("auto", "0.01", remark="failed: a|b"),
 ]
-NAMES = ["uniform", "adaptive", "<slow> & sure", "1 bounce", "3 bounces", "single", "POV-Ray"]
-POINTS = 19  # of those that did not fail
+NAMES = ["uniform", "adaptive", "<slow> & sure", "1 bounce", "3 bounces", "single"]
+POINTS = 16  # of those that did not fail
 FINDINGS = Findings(
-    Subject("scenes/<ball>.rt", "0" * 64, 32, 20, 2, 1, "a processor", {"minirt": "0.1.0"}),
+    Subject("scenes/<ball>.rt", "0" * 64, 32, 20, 640, 2, 1, "a processor", {"minirt": "0.1.0"}),
     1024,
     REFERENCE_ERROR,
     pictures=ROWS,
     ablation=[
-        Part("scene", "", "as it is", 2.5, valid=True),
-        Part("list", "tiles", "without", 5.0, percent=100.0, valid=True),
+        Part("scene", "", "as it is", 2.5),
+        Part("list", "tiles", "without", 5.0, percent=100.0),
     ],
     single=12,
     certificates=[
@@ -65,5 +60,4 @@ FINDINGS = Findings(
     absent="3 kinds of shapes and 5 features",
     notes=["kernel for spheres"],
     same=[1, 4],
-    not_measured=["POV-Ray is not installed"],
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, isnan, nan
+from math import isnan, nan
 from pathlib import Path
 from typing import Any
 
@@ -16,19 +16,17 @@ from minirt.rendering import Renderer
 from minirt.rendering.kernels import packing_calls
 from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.scene_packing import BOXES, Packing
-from minirt.report import ablation, pictures
+from minirt.report import ablation
 from minirt.report.ablation import Ablation, Part
-from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
 from minirt.report.settings import CULLING
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS, Plane, Sphere, Torus
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES, interpreted, linear
 from tests.random_scenes import random_scene
-from tests.simulated_clock import Clock, packets, simulate_clock
+from tests.simulated_clock import PROCESSOR_SHARE, Clock, packets, simulate_clock
 
 WIDTH, HEIGHT = 32, 20
-BUDGET = Budget(0.0, inf, tries=1)
 DIMMER = Variant("feature", "dimmer light", "added", ALL.replace(ALL.lights[0], brightness=0.1))
 
 
@@ -39,7 +37,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 def parts(*variants: Variant) -> list[Part]:
-    return list(Ablation(ALL, WIDTH, HEIGHT, 1, BUDGET).parts(variants, lambda name: None))
+    return list(Ablation(ALL, WIDTH, HEIGHT, 1, 0.0).parts(variants, lambda name: None))
 
 
 def test_lists_change_the_time_and_not_the_picture(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,14 +50,14 @@ def test_lists_change_the_time_and_not_the_picture(clock: Clock, monkeypatch: py
 
     monkeypatch.setattr(Renderer, "render", slow)
     scene, *lists = parts(*without_lists(ALL))
-    assert (scene.sort, scene.change, scene.valid) == ("scene", "as it is", True)
-    assert scene.frame_ms == pytest.approx(packets(WIDTH, HEIGHT) * 1e-3)
+    assert (scene.sort, scene.change) == ("scene", "as it is")
+    assert scene.frame_ms == pytest.approx(packets(WIDTH, HEIGHT) * 1e-3 * PROCESSOR_SHARE)
     assert len(lists) == 2
     for part in lists:
         assert part.percent == pytest.approx(25)
         assert part.percent_low == pytest.approx(25)
         assert part.frame_ms == pytest.approx(1.25 * scene.frame_ms)
-        assert (part.same, part.valid, part.remark) == (True, True, "")
+        assert (part.same, part.remark) == (True, "")
         assert isnan(part.compile_s)
 
 
@@ -74,14 +72,12 @@ def test_a_variant_with_a_kernel_of_its_own(monkeypatch: pytest.MonkeyPatch) -> 
     assert not dimmer.same
 
 
-def test_a_variant_that_fails_and_times_that_are_disturbed_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_variant_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("minirt.rendering.packing.visibility.MOST_MEMBERS", 1)
-    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: True)
-    scene, tiles, lights = parts(*without_lists(ALL))
+    _, tiles, lights = parts(*without_lists(ALL))
     assert tiles.remark.startswith("failed: 6 shapes in each of")
     assert isnan(tiles.percent)
-    for part in (scene, lights):
-        assert (part.valid, part.remark) == (False, DISTURBED_BY_OTHERS)
+    assert not isnan(lights.percent)
 
 
 def test_the_compiler_is_timed_whether_or_not_the_kernel_was_there(monkeypatch: pytest.MonkeyPatch) -> None:

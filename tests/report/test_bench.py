@@ -1,9 +1,9 @@
-"""`--bench` measures frames that keep the lists of the last one and frames that do not; POV-Ray draws our scenes."""
+"""`--bench` measures frames that keep the lists of the last one and frames that do not; runs that waited are known."""
 
 from __future__ import annotations
 
-import shutil
-from itertools import groupby
+from itertools import count, groupby
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +11,11 @@ import numpy as np
 import pytest
 
 from minirt import load
-from minirt.errors import RenderError
-from minirt.materials import Checker, Specular
 from minirt.rendering import Renderer
 from minirt.rendering.packing.visibility import Bins
-from minirt.report import bench, povray
-from minirt.report.bench import Run, is_disturbed, runs
-from minirt.report.pictures import Budget, reference
-from minirt.report.povray import SETTINGS, PovRay, translated
-from minirt.scene import Background, FurtherLight, ParallelLight, Scene
-from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, MORE, SHAPES
+from minirt.report import bench
+from minirt.report.bench import Run, is_disturbed, runs, take_turns, waiting_time
+from minirt.scene import Scene
 from tests.paths import ROOT
 
 PATH = ROOT / "scenes" / "demo.rt"
@@ -67,88 +62,49 @@ def test_runs_have_both_times_and_fill_the_time(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr(bench, "perf_counter", lambda: clocks["perf_counter"])
     monkeypatch.setattr(bench, "process_time", lambda: clocks["process_time"])
-    assert runs(work, 2, 1.0) == [Run(wall=0.25, cpu=0.75)] * 4
+    waited = count(3.0, 0.125)
+    monkeypatch.setattr(bench, "waiting_time", lambda: next(waited))
+    assert runs(work, 2, 1.0) == [Run(wall=0.25, cpu=0.75, waited=0.125)] * 4
     assert [len(runs(work, 2, seconds)) for seconds in (0.0, 0.4, 1.1)] == [2, 2, 5]
 
 
 def test_a_run_that_waited_is_disturbed() -> None:
-    assert not is_disturbed(Run(wall=1.0, cpu=1.0), 1)
-    assert not is_disturbed(Run(wall=1.1, cpu=1.0), 1)
-    assert is_disturbed(Run(wall=1.2, cpu=1.0), 1)
-    assert not is_disturbed(Run(wall=1.0, cpu=1.95), 2)
-    assert is_disturbed(Run(wall=1.0, cpu=1.0), 2)
+    """Where the system tells no waiting time, what is missing from the wall time of all threads counts."""
+    for run, threads, disturbed in (
+        (Run(wall=1.0, cpu=1.0), 1, False),
+        (Run(wall=1.1, cpu=1.0), 1, False),
+        (Run(wall=1.2, cpu=1.0), 1, True),
+        (Run(wall=1.0, cpu=1.95), 2, False),
+        (Run(wall=1.0, cpu=1.0), 2, True),
+        (Run(wall=1.0, cpu=1.0, waited=0.1), 16, False),  # a part that one thread does is no disturbance
+        (Run(wall=1.0, cpu=1.0, waited=0.2), 1, True),
+    ):
+        assert is_disturbed(run, threads) == disturbed
 
 
-# POV-Ray.
+def test_waiting_for_a_processor_is_told_of_each_thread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Linux gives nanoseconds: time on a processor, time in the queue, time slices."""
+    for name, text in (("7", "900 250000000 3\n"), ("8", "0 500000000 1\n"), ("9", "")):
+        (tmp_path / name).mkdir()
+        if text:
+            (tmp_path / name / "schedstat").write_text(text)
+    monkeypatch.setattr(bench, "THREADS", tmp_path)
+    assert waiting_time() == 0.75
+    monkeypatch.setattr(bench, "THREADS", tmp_path / "none")
+    assert isnan(waiting_time())
 
 
-WHITE = (255, 255, 255)
-CONE, DISC, TRIANGLE = MORE[0], MORE[5], MORE[3]
-BALL = SHAPES[1]
-BUDGET = Budget(0.0, 9.0, tries=1)
-SCENE = Scene((AMBIENT, EYE, LAMP, Background((20, 40, 80)), *SHAPES, CONE, DISC, TRIANGLE)).replace(
-    BALL, specular=Specular(0.4, 30.0)
-)
-installed = pytest.mark.skipif(not shutil.which("povray"), reason="needs POV-Ray")
+def test_works_take_turns_in_both_orders_until_the_time_is_over() -> None:
+    log: list[str] = []
 
+    def work(name: str) -> Run:
+        log.append(name)
+        return Run(0.5, 0.25)
 
-@pytest.mark.parametrize(
-    ("scene", "reason"),
-    [
-        (Scene((*ALL.elements, ParallelLight((0, -1, 0), 0.5, WHITE))), "parallel"),
-        (Scene((*ALL.elements, FurtherLight((0, 9, 0), 0.5, WHITE, fade=9.0))), "fading"),
-        (Scene((*ALL.elements, MORE[2])), "hyperboloids"),
-        (ALL.replace(ALL.shapes[1], checker=Checker(0.1, WHITE)), "material checker "),
-        (Scene((*ALL.elements, Background("sky.png"))), "picture as background"),
-    ],
-)
-def test_what_is_not_the_same_there_is_refused(scene: Scene, reason: str) -> None:
-    with pytest.raises(match=reason):
-        list(translated(scene, 16, 9))
-
-
-def test_numbers_keep_all_their_digits() -> None:
-    text = "\n".join(translated(ALL.replace(BALL, diameter=2 / 3), 16, 9))
-    assert f"{1 / 3!r} pigment" in text
-    assert "-0.0," not in text
-
-
-def test_where_it_is_not_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(RenderError, match="POV-Ray is not installed"):
-        PovRay(ALL, 16, 9, 1, tmp_path)
-
-
-@pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Fewer settings."""
-    monkeypatch.setattr(povray, "SETTINGS", (SETTINGS[0], SETTINGS[2], SETTINGS[6]))
-
-
-@installed
-@pytest.mark.usefixtures("few")
-def test_its_pictures_converge_to_ours(tmp_path: Path) -> None:
-    right = reference(SCENE, 96, 64, 256, seed=3)
-    rows = {row.name: row for row, _ in PovRay(SCENE, 96, 64, 1, tmp_path).rows(right, BUDGET, lambda name: None)}
-    one, nine, recursive = rows.values()
-    assert (one.program, one.label, recursive.label) == ("POV-Ray", "1", "A0.03")
-    assert one.rmse > 2.5 * nine.rmse
-    assert recursive.rmse < 0.5 * one.rmse
-    assert all(row.wall_ms > 0 for row in rows.values())
-
-
-@installed
-@pytest.mark.usefixtures("few")
-def test_a_picture_of_something_else_is_refused(tmp_path: Path) -> None:
-    """A reference with the ball moved by a tenth of its size."""
-    x, y, z = BALL.centre
-    right = reference(SCENE.replace(SCENE.shapes[1], centre=(x + 0.24, y, z)), 96, 64, 64, seed=3)
-    with pytest.raises(RenderError, match="POV-Ray shows something else: RMSE 0"):
-        list(PovRay(SCENE, 96, 64, 1, tmp_path).rows(right, BUDGET, lambda name: None))
-
-
-def test_a_program_that_fails_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shutil, "which", lambda name: "povray")
-    monkeypatch.setattr(povray, "COMMAND", ("false",))
-    with pytest.raises(RenderError, match="POV-Ray failed"):
-        list(PovRay(ALL, 16, 9, 1, tmp_path).rows(reference(ALL, 16, 9, 2, seed=3), BUDGET, lambda name: None))
+    works = [lambda: work("a"), lambda: work("b")]
+    assert take_turns(works, 1, 9, 2.5) == [(Run(0.5, 0.25),) * 2] * 3
+    assert "".join(log) == "abbaab"
+    assert [len(take_turns(works, least, most, seconds)) for least, most, seconds in ((2, 9, 0.0), (1, 4, 99.0))] == [
+        2,
+        4,
+    ]

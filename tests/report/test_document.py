@@ -21,7 +21,7 @@ from minirt.report.ablation import Part
 from minirt.report.diagram import NARROW, WIDE, draw
 from minirt.report.document import PAGE, report_files
 from minirt.report.findings import Findings, Order
-from minirt.report.page import as_html, table
+from minirt.report.page import DETAIL, columns
 from minirt.report.pictures import Row
 from tests.browser import Page, page
 from tests.paths import PACKAGE
@@ -46,11 +46,11 @@ def lines(found: Findings) -> list[str]:
 def test_the_order_of_the_sections_and_none_for_what_was_not_measured() -> None:
     first = {line[:2]: number for number, line in reversed([*enumerate(lines(FINDINGS))])}
     assert first["# "] < first["- "] < first["!["] < first["| "]
-    parts = ["## Settings", "## Orders of convergence", "## What parts cost and save", "## Stiff parts of the scene"]
-    parts += ["## Certificates of hits", "## Not measured"]
+    parts = ["## Settings", "## Orders of convergence", "## What parts cost and save", "## Certificates of hits"]
+    parts += ["## Stiff parts of the scene"]
     assert [each for each in lines(FINDINGS) if each in parts] == parts
-    nothing = replace(FINDINGS, pictures=[], ablation=[], stiff=[], certificates=[], not_measured=[])
-    assert not set(lines(nothing)) & set(parts)
+    nothing = replace(FINDINGS, pictures=[], ablation=[], stiff=[], certificates=[])
+    assert not set(lines(nothing)) & set(parts[1:])
 
 
 def test_the_page_leaves_out_pictures_that_repeat_another_and_hits_of_easy_kinds() -> None:
@@ -69,35 +69,46 @@ def test_every_picture_is_a_file_and_in_the_page_and_both_forms_tell_every_figur
     pictures = {"error-uniform-1.png", "error-adaptive-16.png", "reference.png"}
     assert {name for name in made if name.endswith(".png")} == pictures
     assert made["report.html"].count(b"data:image/png;base64,") == 6  # the reference, adaptive 16, its errors; crops
+    alone = report_files(FINDINGS, {}, BLACK)["report.html"]
+    assert b"data:image/png" not in alone  # nothing to compare: no slider
+    assert b'class="pictures"' not in alone
     assert b'<a href="error-uniform-1.png">' in made["report.html"]
     assert b"![Error against run time](diagram.svg)" in made["report.md"]
     for name, knob in (("report.html", "&lt;slow&gt; &amp; sure"), ("report.md", "<slow> & sure")):
         for figure in (knob, "0.01000", "0.03600", "tiles", "+100.0"):
             assert figure in made[name].decode()
-        assert b"POV-Ray is not installed" in made[name]
 
 
 class Made(NamedTuple):
     """A record of a table; a field without a title is not shown."""
 
     word: Annotated[str, "a `b`"]
-    number: Annotated[float, "y", ".2f"] = nan
+    number: Annotated[float, "y", ".2f", DETAIL] = nan
     hidden: int = 0
     truth: Annotated[bool, "z"] = True
 
 
+BEST, OTHER = Made("k|nob"), Made("<c>", 0.125)
+
+
 def test_a_table_shows_the_titled_fields_of_records_that_tell_something() -> None:
-    """A dash for NaN, words for truth, a bar that ends no cell; the best rows in bold, and marked on the page."""
-    best, other = Made("k|nob"), Made("<c>", 0.125)
-    made = table([best, other], [best])
-    assert made.splitlines() == ["| a `b` | y |", "| --- | ---: |", "| **k\\|nob** | - |", "| <c> | 0.12 |"]
-    assert table([best, other._replace(truth=False)]).splitlines()[3] == "| <c> | 0.12 | no |"
-    for html in (
-        '<tr class="plain"><th class="word">a <code>b</code></th><th class="number">y</th></tr>',
-        '<tr class="emphasised"><td class="word"><b>k|nob</b></td><td class="number">-</td></tr>',
-        '<tr class="plain"><td class="word">&lt;c&gt;</td>',
-    ):
-        assert html in as_html(made)
+    """A dash for NaN, words for truth."""
+    word, number = columns([BEST, OTHER])
+    assert word == ("a `b`", "word", ["k|nob", "<c>"])
+    assert number == ("y", "number detail", ["-", "0.12"])
+    assert columns([BEST, OTHER._replace(truth=False)])[2] == ("z", "word", ["yes", "no"])
+    assert columns([]) == []
+
+
+def test_the_best_rows_stand_out_and_text_is_no_markup() -> None:
+    """In bold, and marked on the page; a bar ends no cell."""
+    best = FINDINGS.recommended[-1]
+    row = best._replace(label="1|6", remark="<c> `d`")
+    made = report_files(replace(FINDINGS, pictures=[row if each == best else each for each in ROWS]), {}, BLACK)
+    assert b"| **single** | 1\\|6 |" in made["report.md"]
+    assert b'<tr class="emphasised"><td class="word">single</td><td class="word">1|6</td>' in made["report.html"]
+    assert b"&lt;c&gt; <code>d</code></td>" in made["report.html"]
+    assert b'<tr class="plain"><td class="word">&lt;slow&gt; &amp; sure</td>' in made["report.html"]
 
 
 @pytest.mark.parametrize("size", [WIDE, NARROW])
@@ -109,16 +120,19 @@ def test_the_diagram_shows_each_line_and_each_point(size: tuple[float, float]) -
     assert "error of the reference: 0.0002" not in shown  # which lies far below all errors
     assert sum(each in ("1", "4", "16") for each in words) >= POINTS
     assert draw(FINDINGS, size) == svg
+    nothing = replace(FINDINGS, pictures=[row._replace(options="") for row in ROWS])
+    assert "recommended" not in draw(nothing, size)  # where nothing is
 
 
 def test_a_diagram_without_points_is_drawn() -> None:
     assert "milliseconds per picture" in draw(replace(FINDINGS, pictures=[Row("auto", "1", remark="failed")]), WIDE)
 
 
-def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib.backends.backend_svg", None)
+@pytest.mark.parametrize("package", ["matplotlib.backends.backend_svg", "jinja2"])
+def test_what_is_missing_is_asked_for(package: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(RenderError, match=r"pip install 'minirt\[report\]'"):
-        diagram.require_matplotlib()
+        diagram.require_packages()
 
 
 @pytest.mark.parametrize(
@@ -146,15 +160,23 @@ def test_the_page_of_a_report(page: Page, tmp_path: Path) -> None:
     """It asks for nothing, fits its window, follows the user's colours, and compares pictures; nothing is wrong."""
     lights = {row.name: np.full((HEIGHT, WIDTH, 3), 0.001 * index) for index, row in enumerate(ROWS[:-1])}
     file = tmp_path / PAGE
-    file.write_bytes(report_files(FINDINGS, lights, np.zeros((HEIGHT, WIDTH, 3)))[PAGE])
-    page.open(file, 1300, height=2000)
-    assert page.value("[...document.querySelectorAll('.scroll')].every(each => each.scrollWidth <= each.clientWidth)")
+    full = ROWS[0]._replace(flip=0.0123, error_median=1e-5, error_95=0.012, error_largest=0.9, estimated=0.00123)
+    slow = full._replace(knob="brute force", ms=12345.67, ms_low=12000.0, ms_high=13000.0, remark="left out: 1.2e+02 s")
+    failed = Part("kind", "light buffers and their cones", "without", remark="failed: 4096 shapes in each of 8 lists")
+    crowded = replace(FINDINGS, pictures=[slow, *ROWS], ablation=[*FINDINGS.ablation, failed])
+    file.write_bytes(report_files(crowded, lights, np.zeros((HEIGHT, WIDTH, 3)))[PAGE])
+    for width in (800, 1300):
+        page.open(file, width, height=2000)
+        cut = "e => e.scrollWidth > e.clientWidth"
+        assert page.value(f"[...document.querySelectorAll('.scroll')].filter({cut}).map(e => e.innerText)") == [], width
+        heights = page.value("[...document.querySelectorAll('tr')].map(e => e.getBoundingClientRect().height)")
+        assert max(heights) < 1.5 * min(heights), width  # one line each
     assert page.value("document.title") == "scenes/<ball>.rt: error against run time"
     assert page.requests[0] == file.as_uri()
     assert {each.partition(":")[0] for each in page.requests[1:]} == {"data"}
     assert page.value("[...document.images].every(each => each.complete && each.naturalWidth > 0)")
     names = page.value("[...document.querySelectorAll('.pictures img')].map(each => each.alt)")
-    assert names[1::2] == [f"{row.name}: {row.wall_ms:.4g} ms, RMSE {row.rmse:.2g}" for row in FINDINGS.of_equal_time]
+    assert names[1::2] == [f"{row.name}: {row.ms:.4g} ms, RMSE {row.rmse:.2g}" for row in crowded.of_equal_time]
     assert page.value("[...document.querySelectorAll('select.left option')].map(each => each.text)") == names
 
     panes = box(page, ".panes")

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache, partial
-from itertools import cycle
+from functools import cache
 from math import inf, isfinite, isnan
 
 import numpy as np
@@ -13,24 +12,15 @@ import minirt
 from minirt.cli.arguments import argument_parser
 from minirt.errors import RenderError
 from minirt.rendering.packing import lights
-from minirt.report import pictures
-from minirt.report.bench import Run
-from minirt.report.pictures import (
-    DISTURBED_BY_OTHERS,
-    Budget,
-    Reference,
-    Row,
-    SettingRenderer,
-    measure_times,
-    reference,
-)
+from minirt.report.crops import Crops
+from minirt.report.pictures import FEW, LEFT_OUT, ONE_RUN, Reference, Row, SettingRenderer, reference
 from minirt.report.settings import AUTO, KNOBS, Drawn, Knob, Setting, settings
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 from tests.simulated_clock import PACKET_SECONDS, PROCESSOR_SHARE, Clock, packets, simulate_clock
 
 WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
-EASY = Budget(seconds=0.0, longest=inf, tries=1)
+WHOLE = Crops(HEIGHT, WIDTH)
 ONCE = packets(WIDTH, HEIGHT) * PACKET_SECONDS  # seconds of the simulated clock that one sample in each pixel takes
 
 
@@ -42,7 +32,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 @cache
 def right() -> Reference:
-    return reference(ALL, WIDTH, HEIGHT, SAMPLES, seed=3)
+    return reference(ALL, WHOLE, SAMPLES, seed=3)
 
 
 def light(samples: int) -> np.ndarray:
@@ -56,9 +46,13 @@ def error(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.linalg.norm(a - b) / np.sqrt(a.size))
 
 
-def rows_for(*wanted: Setting, budget: Budget = EASY, scene: Scene = ALL, near: Reference | None = None) -> list[Row]:
-    stage = SettingRenderer(scene, WIDTH, HEIGHT, 1, budget)
-    return [stage.measured(setting, near or right())[0] for setting in wanted]
+def rows_for(*wanted: Setting, longest: float = inf, scene: Scene = ALL, near: Reference | None = None) -> list[Row]:
+    """Rows with wall times."""
+    stage = SettingRenderer(scene, WIDTH, HEIGHT, 1, longest)
+    rows = [stage.measured(setting, near or right())[0] for setting in wanted]
+    stage.take_times(0.0)
+    stage.stop()
+    return [row.with_times(stage.times[row.name], 1, False) if row.name in stage.times else row for row in rows]
 
 
 @cache
@@ -78,9 +72,9 @@ def test_the_error_of_the_reference_is_what_it_says() -> None:
 
 
 def test_the_reference_follows_from_its_seed_and_has_other_places_than_the_pictures() -> None:
-    few = reference(ALL, 32, 16, 8, seed=3).picture
-    assert np.array_equal(few, reference(ALL, 32, 16, 8, seed=3).picture)
-    assert not np.array_equal(few, reference(ALL, 32, 16, 8, seed=4).picture)
+    few = reference(ALL, Crops(16, 32), 8, seed=3).picture
+    assert np.array_equal(few, reference(ALL, Crops(16, 32), 8, seed=3).picture)
+    assert not np.array_equal(few, reference(ALL, Crops(16, 32), 8, seed=4).picture)
     plain = minirt.render(ALL, 32, 16, samples=8).linear
     assert plain is not None
     assert not np.array_equal(few, np.clip(plain, 0, 1))
@@ -92,18 +86,20 @@ def test_more_samples_are_closer_and_take_longer() -> None:
     assert one.psnr < four.psnr < sixteen.psnr
     assert one.flip > four.flip > sixteen.flip > 0
     for row in (one, four, sixteen):
-        assert row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+        assert row.ms == row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
         assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * PROCESSOR_SHARE)
         assert row.rmse_low < row.rmse < row.rmse_high < 1.5 * row.rmse
-        assert row.wall_low_ms <= row.wall_ms <= row.wall_high_ms
-        assert row.efficiency == pytest.approx(1e3 / row.rmse**2 / row.wall_ms)
+        assert row.error_median < row.rmse < row.error_95 < row.error_largest
+        assert row.ms_low <= row.ms <= row.ms_high
+        assert row.efficiency == pytest.approx(1e3 / row.rmse**2 / row.ms)
+        assert row.runs == FEW
 
 
 def test_knobs_do_what_they_say(clock: Clock) -> None:
     uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
     assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
-    stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1, EASY), (knob for knob in KNOBS if knob.name == "adaptive")
-    stage.renderer(knob)
+    stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1, inf), (knob for knob in KNOBS if knob.name == "adaptive")
+    stage.prepare(knob).result()
     before = clock.packets
     stage.draw(Setting(knob, 16))
     once = packets(WIDTH, HEIGHT)
@@ -134,7 +130,7 @@ def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     plain, names = (list({each.knob.name: 0 for each in settings(scene, 16, 0.0)}) for scene in (ALL, mirrors))
     assert plain == ["uniform", "adaptive", "auto", "single", "brute force"]
     assert names == [*plain[:3], plain[4], "no bounces", "1 bounce", "3 bounces"]
-    right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
+    right = reference(mirrors, WHOLE, 256, seed=3)
     wanted = [setting for setting in settings(mirrors, 16, 1.0) if setting.value == 16]
     rmse = {row.knob: row.rmse for row in rows_for(*wanted, scene=mirrors, near=right)}
     assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
@@ -161,51 +157,26 @@ def test_a_setting_that_fails_stays_as_nan() -> None:
 
     failed, good = rows_for(Setting(Knob("bad", "", draw=fails), 1), Setting(KNOBS[0], 1))
     assert isnan(failed.rmse)
-    assert isnan(failed.wall_ms)
-    assert (failed.valid, failed.remark) == (False, "failed: no room")
+    assert isnan(failed.ms)
+    assert failed.remark == "failed: no room"
     assert good.rmse > 0
 
 
-def test_a_setting_that_takes_too_long_is_left_out() -> None:
-    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
+def test_a_setting_that_takes_long_is_run_once_and_one_that_would_take_far_too_long_not_at_all() -> None:
+    """By processor time, which other programs hardly change; the time of one run is a time, too."""
+    wanted, once = [Setting(KNOBS[0], samples) for samples in (1, 4)], ONCE * PROCESSOR_SHARE
+    left_out = f"left out: {4 * once:.2g} s"
     for longest, remarks in (
-        (0.9 * ONCE, ("takes too long for more than the first run", f"left out: takes about {4 * ONCE:.2g} s")),
-        (3.9 * ONCE, ("", f"left out: takes about {4 * ONCE:.2g} s")),
-        (4.1 * ONCE, ("", "")),
+        (3.9 / LEFT_OUT * once, (ONE_RUN, left_out)),
+        (0.9 * once, (ONE_RUN, ONE_RUN)),
+        (3.9 * once, ("", ONE_RUN)),
+        (4.1 * once, ("", "")),
     ):
-        made = rows_for(*wanted, budget=EASY._replace(longest=longest))
+        made = rows_for(*wanted, longest=longest)
         assert tuple(row.remark for row in made) == remarks
-        assert [row.valid for row in made] == [not remark for remark in remarks]
         for row, remark in zip(made, remarks, strict=True):
-            left_out = remark.startswith("left out")
-            assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
-
-
-def test_slow_pictures_have_fewer_runs_and_disturbed_runs_do_not_count() -> None:
-    """Every second turn of two works is disturbed: seven turns leave four, which is too few, fourteen leave enough."""
-    calm, busy = Run(1.0, 1.0), Run(1.0, 0.5)
-    for longest, least in ((7.1, 7), (6.9, 3), (1.1, 3)):
-        assert len(measure_times([lambda: calm], calm, 1, EASY._replace(longest=longest)).runs) == least
-    for tries, runs, remark in ((1, 7, DISTURBED_BY_OTHERS), (2, 7, "")):
-        works = [lambda: calm, partial(next, cycle([calm, busy]))]
-        found = measure_times(works, calm, 1, EASY._replace(tries=tries))
-        assert (len(found.runs), found.remark) == (runs, remark)
-        assert remark or set(found.runs) == {(calm, calm)}
-
-
-def test_a_disturbed_row_is_measured_again_after_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    busy = [True]
-    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: busy[0])
-    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
-    before = rows_for(*wanted)
-    assert [row.remark for row in before] == [DISTURBED_BY_OTHERS] * 2
-    busy[0], told, stage = False, [], SettingRenderer(ALL, WIDTH, HEIGHT, 1, EASY)
-    good, *_ = rows_for(wanted[0])
-    after = [good, before[1]]
-    stage.measure_disturbed_again(wanted, after, told.append)
-    assert told == ["uniform 4 again"]
-    assert after[0] == good
-    assert (after[1].valid, after[1].remark, after[1].rmse) == (True, "", before[1].rmse)
+            assert isnan(row.ms) if remark == left_out else row.ms == pytest.approx(row.samples * ONCE * 1e3)
+            assert row.runs == {"": FEW, ONE_RUN: 1, left_out: 0}[remark]
 
 
 def test_automatic_sampling_tells_what_was_asked_and_its_own_estimate() -> None:
@@ -214,7 +185,7 @@ def test_automatic_sampling_tells_what_was_asked_and_its_own_estimate() -> None:
     assert 0 < row.estimated <= 0.005
     assert row.rmse == pytest.approx(row.estimated, rel=0.5)
     assert 1 < row.samples < 64
-    assert [setting.value for setting in settings(ALL, 1, 0.002) if setting.knob is AUTO] == [0.01, 0.005, 0.002]
+    assert [setting.value for setting in settings(ALL, 1, 0.002) if setting.knob is AUTO] == [0.01, 0.005, 0.003, 0.002]
     assert isnan(rows()["uniform", 4].asked)
 
 

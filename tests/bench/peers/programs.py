@@ -15,10 +15,10 @@ from minirt import load
 from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_frame, camera_numbers
 from minirt.rendering.packing.features import DEPTH
-from minirt.report import povray
 from minirt.scene import Scene
 from minirt.shapes import Cylinder, Mesh, Plane, Shape, Sphere
 from tests.bench.measure import GLASS, INSTALL, MissingError, Setting, System
+from tests.bench.peers import povray
 from tests.bench.triangles import light, triangulated
 from tests.processes import run
 
@@ -64,7 +64,7 @@ TRACE_TIME = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)")
 
 
 def in_povray(scene: Scene, width: int, height: int) -> Iterator[str]:
-    """Translate a scene to POV-Ray's language, meshes and plain glass too, of which reports translate none."""
+    """Translate a scene to POV-Ray's language, meshes and plain glass, too."""
     glass = [each for each in scene.shapes if each.glass]
     untranslated = {*scene.meshes, *glass}
     yield from povray.translated(

@@ -1,4 +1,4 @@
-"""Lines of POV-Ray in the diagram: scenes in its language, limited to what means exactly the same there, and its runs.
+"""Scenes in POV-Ray's language, limited to what means exactly the same there, and its errors beside ours.
 
 POV-Ray's Lambert term, ambient light, Phong and Blinn highlights and mirrors are those of miniRT. Textures, glass and
 lights that fade or have a direction are not translated.
@@ -8,23 +8,27 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 
+from minirt import load
 from minirt.element import fields_of
 from minirt.errors import RenderError
 from minirt.materials import Attributes
 from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
-from minirt.report.bench import Run
 from minirt.report.metrics import Picture, rmse
-from minirt.report.pictures import FEW, TOO_SLOW, Budget, Reference, Row, Step, measure_times
+from minirt.report.pictures import Reference, SettingRenderer, crops_for, reference
+from minirt.report.settings import ADAPTIVE, AUTO, UNIFORM, Setting
 from minirt.scene import Ambient, Lamp, Light, Scene
 from minirt.shapes import Cone, Cylinder, Disc, Plane, Shape, Sphere, Triangle
+from tests.bench import measure
+from tests.bench.measure import INSTALL, MissingError
+from tests.processes import run
 
 TRANSLATED = {"specular", "mirror"}  # materials
 LEAST_SHARE = 2.0**-10  # rays that would add less to a pixel are not traced, as in `minirt.kernel.shading.whitted`
@@ -99,69 +103,78 @@ def vector(numbers: Iterable[float]) -> str:
     return f"<{', '.join(repr(float(each) + 0.0) for each in numbers)}>"
 
 
-PROGRAM, COMMAND = "POV-Ray", ("povray",)
-TICK = 0.005  # seconds by which its processor time may be too small
+# Error against run time, of POV-Ray and of miniRT.
+
 CHECKED = 2  # samples along an edge of a pixel, of the picture that shows whether the scene is the same
 SAME = 0.02  # RMSE: a picture of four samples per pixel that is further off is not that of the scene
-TRACE = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds")
+TRACE = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)")
+RUNS = 3
+SEED = 20240607
 
-ADAPTIVE = f"{PROGRAM} adaptive"
 GRID = "+AM1 +A0.0 -J +R{}"  # options for a grid of n x n samples in each pixel
-# Rows and options: grids, and supersampling where colours differ by more than a threshold, with 81 samples at most.
-SETTINGS = (
-    (Row(PROGRAM, "1", PROGRAM, samples=1), "-A"),
-    *((Row(PROGRAM, str(n * n), PROGRAM, samples=n * n), GRID.format(n)) for n in (2, 3, 4)),
-    *((Row(ADAPTIVE, f"A{limit:g}", PROGRAM), f"+AM2 +A{limit:g} +R3 -J") for limit in (0.3, 0.1, 0.03, 0.01)),
-)
-ABOUT = {
-    PROGRAM: "POV-Ray with a grid of samples in each pixel; its time is what it prints as Trace Time",
-    ADAPTIVE: "POV-Ray with recursive supersampling (+AM2 +R3) from a difference of colours (+A) on",
-}
+# Names and options: grids, and supersampling where colours differ by more than a threshold, with 81 samples at most.
+OPTIONS = {"POV-Ray 1": "-A"}
+OPTIONS |= {f"POV-Ray {n * n}": GRID.format(n) for n in (2, 3, 4)}
+OPTIONS |= {f"POV-Ray adaptive A{limit:g}": f"+AM2 +A{limit:g} +R3 -J" for limit in (0.3, 0.1, 0.03, 0.01)}
+OURS = (*(Setting(UNIFORM, n) for n in (1, 4, 16)), *(Setting(ADAPTIVE, n) for n in (4, 16)), Setting(AUTO, 0.002))
 
 
-class PovRay:
-    """Renders one scene with POV-Ray: RenderError where it is not installed or cannot show the same scene."""
+class Antialiased:
+    """Renders a scene with POV-Ray: `MissingError` where that is not installed, RenderError where it cannot show it."""
 
-    def __init__(self, scene: Scene, width: int, height: int, threads: int, folder: Path) -> None:
-        if not shutil.which("povray"):
-            raise RenderError(f"{PROGRAM} is not installed")
-        self.width, self.height, self.threads, self.folder = width, height, threads, folder
-        try:
-            (folder / "scene.pov").write_text("\n".join([*translated(scene, width, height), ""]), encoding="ascii")
-        except RenderError as error:
-            raise RenderError(f"{PROGRAM} cannot show the same scene: {error}") from None
+    def __init__(
+        self, scene: Scene, width: int, height: int, threads: int, folder: Path, command: str = "povray"
+    ) -> None:
+        if not shutil.which(command):
+            raise MissingError(f"POV-Ray: povray is not installed; {INSTALL}")
+        self.command, self.size, self.threads, self.folder = command, (width, height), threads, folder
+        (folder / "scene.pov").write_text("\n".join([*translated(scene, width, height), ""]), encoding="ascii")
 
-    def rows(self, right: Reference, budget: Budget, step: Step) -> Iterator[tuple[Row, Picture | None]]:
-        """Yield a row and a picture for each setting, until those of a line take too long.
-
-        RenderError, before the first row, if its picture is not that of the scene.
-        """
-        _, picture = self.drawn(GRID.format(CHECKED))
-        error = rmse(picture, right.picture)
+    def check(self, right: Reference) -> None:
+        """RenderError if the picture is not that of the scene."""
+        error = rmse(right.crops.of(self.drawn(GRID.format(CHECKED))[1]), right.picture)
         if error > SAME:
-            raise RenderError(f"{PROGRAM} shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")
-        slow: set[str] = set()
-        for row, options in SETTINGS:
-            step(row.name)
-            if row.knob in slow:
-                yield row._replace(remark="left out: takes too long"), None
-                continue
-            first, picture = self.drawn(options)
-            times = measure_times([lambda: self.drawn(options)[0]], first, self.threads, budget, FEW)  # noqa: B023
-            if times.remark == TOO_SLOW:
-                slow.add(row.knob)
-            yield row.with_errors(picture, right).with_times(times), picture
+            raise RenderError(f"POV-Ray shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")
 
-    def drawn(self, options: str) -> tuple[Run, Picture]:
-        """Render with some options; return the time that POV-Ray took for the rays, and linear light in 16 bits."""
-        command = [*COMMAND, f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
-        paths = "File_Gamma=1.0", "+Iscene.pov", "+Opicture.ppm"
-        ended = subprocess.run([*command, *paths, *options.split()], cwd=self.folder, capture_output=True, check=False)
-        printed = ended.stderr.decode(errors="replace")
-        found = TRACE.findall(printed)
+    def drawn(self, options: str) -> tuple[float, Picture]:
+        """Render with some options; return the milliseconds for the rays, and linear light in 16 bits."""
+        width, height = self.size
+        paths = f"{self.folder / 'scene.pov'}", f"{self.folder / 'picture.ppm'}"
+        command = [
+            self.command,
+            f"+W{width}",
+            f"+H{height}",
+            f"+WT{self.threads}",
+            "-D",
+            "-V",
+            "+FP16",
+            "File_Gamma=1.0",
+        ]
+        ended = run([*command, f"+I{paths[0]}", f"+O{paths[1]}", *options.split()], text=True)
+        found = TRACE.findall(ended.stderr)
         if ended.returncode or not found:
-            raise RenderError(f"{PROGRAM} failed: {printed.strip()[-200:]}")
-        data = (self.folder / "picture.ppm").read_bytes()[-6 * self.width * self.height :]  # without its header
-        light: Picture = np.frombuffer(data, ">u2").reshape(self.height, self.width, 3) / 65535.0
-        wall, cpu = map(float, found[-1])
-        return Run(wall, cpu + TICK), light
+            raise RenderError(f"POV-Ray failed: {ended.stderr.strip()[-200:]}")
+        data = Path(paths[1]).read_bytes()[-6 * width * height :]  # without its header
+        light: Picture = np.frombuffer(data, ">u2").reshape(height, width, 3) / 65535.0
+        return float(found[-1]) * 1e3, light
+
+
+def errors(path: Path, setting: measure.Setting, samples: int = 256) -> str:
+    """Return a table of the errors and times of both programs on a scene."""
+    scene, (width, height, threads, folder) = load(path), setting
+    other = Antialiased(scene, width, height, threads, folder)
+    right = reference(scene, crops_for(scene, width, height, 2**17), samples, SEED)
+    other.check(right)
+    stage = SettingRenderer(scene, width, height, threads, 1.0)
+    rows = [stage.measured(each, right)[0] for each in OURS]
+    stage.take_times(0.0)
+    lines = [f"{path.stem + ', ms and RMSE':<24}"]
+    lines += [
+        f"miniRT {row.name:<17}{median(run.wall for run in stage.times[row.name]) * 1e3:>10.1f} {row.rmse:.5f}"
+        for row in rows
+    ]
+    for name, options in OPTIONS.items():
+        drawn = [other.drawn(options) for _ in range(RUNS)]
+        error = rmse(right.crops.of(drawn[0][1]), right.picture)
+        lines.append(f"{name:<24}{median(ms for ms, _ in drawn):>10.1f} {error:.5f}")
+    return "\n".join(lines)
