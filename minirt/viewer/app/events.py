@@ -14,7 +14,7 @@ from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.explaining import choose_row
 from minirt.viewer.app.holding import advance, hold, release
-from minirt.viewer.app.judging import Judge
+from minirt.viewer.app.judging import PictureJudge
 from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
@@ -42,7 +42,7 @@ class EventDispatcher:
         self.session = session
         self.mouse = Mouse(session, self.perform)
         self.typing = Typing(session)
-        self.judge = Judge(session)
+        self.judge = PictureJudge(session)
         self.choosing = Choosing(session, self.perform)
         self.panel: Panel | None = None  # once it was opened
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character

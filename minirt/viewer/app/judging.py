@@ -1,4 +1,4 @@
-"""Judge pictures: say what a picture does not show, and what to do, once it is there."""
+"""PictureJudge pictures: say what a picture does not show, and what to do, once it is there."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NO_SHAPES = "the scene has no shapes; the grid marks the ground y = 0, and is on
 MOST_SHAPES = 200  # of a scene that is judged after edits, which takes some hundredths of a second
 
 
-class Judge:
+class PictureJudge:
     """Judges the first picture of each file, and the final one after each edit, of a session."""
 
     def __init__(self, session: Session) -> None:

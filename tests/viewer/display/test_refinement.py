@@ -9,7 +9,7 @@ import pytest
 
 from minirt.mlx import Key
 from minirt.mlx.memory import Memory, MemoryWindow
-from minirt.viewer.app.judging import Judge
+from minirt.viewer.app.judging import PictureJudge
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
 from tests.viewer.fake import MARK, colour_of, scene
@@ -48,7 +48,7 @@ def test_slow_pictures_are_coarse_only_while_a_key_is_held():
 
 
 def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Judge, "judge", lambda _: None)  # which would say that these pictures have one colour
+    monkeypatch.setattr(PictureJudge, "judge", lambda _: None)  # which would say that these pictures have one colour
     harness = SessionHarness(samples=16)
     harness.hide_overlay()
     for marked in (0, 4, 16):
