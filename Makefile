@@ -68,8 +68,8 @@ wheel: $(NAME)  ## build a wheel in dist, with the kernels that draw every scene
 	$(VENV)/bin/python -m minirt.rendering.ahead_of_time wheel
 	$(PIP) wheel --quiet --no-build-isolation --no-deps --wheel-dir dist .
 
-test: $(DEV) $(KERNELS)  ## run all tests, or some: make test TESTS=tests/shapes
-	$(PYTEST) $(TESTS)
+test: $(DEV) $(KERNELS)  ## run all tests, or some: make test TESTS=tests/shapes; MINIRT_SEED=1 replays random ones
+	$(PYTEST) --durations=15 $(TESTS)
 
 QUICK := not window and not slow
 

@@ -23,6 +23,7 @@ from minirt.shapes.mesh import Mesh
 from tests.fuzz.inputs import originals
 from tests.processes import in_child
 from tests.scene.examples import AMBIENT, CAMERA
+from tests.seeds import seed_of
 from tests.test_imports import sources
 
 ONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -303,7 +304,7 @@ def test_no_message_quotes_a_file_that_a_scene_names(
     """A secret stands at random places of files of each format. The planted program quotes wrong numbers of meshes."""
     if wrong:
         monkeypatch.setattr(obj_lines, "expected", str)
-    seed = random.SystemRandom().randrange(2**32)
+    seed = seed_of("secrets")
     chance = random.Random(seed)
     path = scene(folder, *NAMING_FILE)
     for data, secret in [

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import cos, inf, radians, sin
-from random import SystemRandom
 from typing import Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from minirt.rendering.packing.lights import (
 )
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Plane, Sphere
+from tests.seeds import seed_of
 
 EYE = Camera((0, 0, -5), (0, 0, 1), 60)
 SPOT = SpotLight((0, 9, 0), (0, -1, 0), 60, 1, rim=0.4)
@@ -161,7 +161,7 @@ def missing(lamps: list[Lamp], grid: LightGrid, seed: int) -> int:
 
 
 def test_each_cell_lists_all_light_sources_that_shine_there_in_order() -> None:
-    for seed in (SystemRandom().randrange(2**32) for _ in range(12)):
+    for seed in (seed_of(f"lamps {number}") for number in range(12)):
         lamps = many_lamps(seed)
         assert missing(lamps, grid_of(lamps), seed) == 0, f"seed {seed}"
 
