@@ -87,7 +87,7 @@ FORMULAS := tests/lanes tests/kernel/test_features.py tests/kernel/test_frame.py
 # Formulas of single numbers, of numpy's arrays and of the interpreter are the same on each processor, and so are the
 # distance of single precision from double and the hulls of shapes. One test asks about another processor itself.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays] and not interpreted- and not random_scenes \
-                            and not each_feature and not packet and not hull and not without_avx"
+                            and not packet and not hull and not without_avx"
 
 OWN = $(shell $(VENV)/bin/python -c 'from minirt.kernel.machine_code.fingerprint import level; print(level())')
 

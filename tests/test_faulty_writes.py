@@ -9,12 +9,10 @@ import errno
 import io
 import os
 import random
-import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -29,7 +27,6 @@ from minirt.rendering.image import Image
 from minirt.report.document import write_files
 from minirt.scene import parse
 from tests.formats.pictures import picture
-from tests.processes import in_child
 from tests.report.made_up import FINDINGS, ROWS
 
 Writer = Callable[[Path], object]  # writes into an empty folder, or one in which it has written before
@@ -170,52 +167,6 @@ def test_short_writes_are_gone_on_with(writer: Writer, tmp_path: Path) -> None:
     whole = written(writer, tmp_path / "whole")
     with faulty_files(short):
         assert written(writer, tmp_path / "short") == whole
-
-
-def killed_at(work: Callable[[], object], number: int) -> bool:
-    """Do the work in a child process that is killed before a line of `file_io`; False where it ended before that."""
-    left = number
-
-    def trace(frame: FrameType, event: str, _: Any) -> Any:
-        nonlocal left
-        if frame.f_globals.get("__name__") != file_io.__name__:
-            return None
-        if event == "line":
-            if not left:
-                os.kill(os.getpid(), signal.SIGKILL)
-            left -= 1
-        return trace
-
-    def traced() -> None:
-        sys.settrace(trace)
-        work()
-
-    status = in_child(traced)
-    assert status in (0, -signal.SIGKILL), "the work failed"
-    return status != 0
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-@pytest.mark.parametrize(
-    ("write", "old"),
-    [(file_io.write, OLD), (file_io.write, None), (file_io.create, None)],
-    ids=["old", "new", "create"],
-)
-def test_a_kill_at_any_line_leaves_the_old_file_or_the_new_one(
-    write: Callable[[Path, bytes], None], old: bytes | None, tmp_path: Path
-) -> None:
-    path, found, number, is_killed = tmp_path / "scene.rt", set(), 0, True
-    while is_killed:
-        for each in tmp_path.iterdir():
-            assert each == path or each.match(file_io.TEMPORARY), f"{each} was left"
-            each.unlink()
-        if old is not None:
-            path.write_bytes(old)
-        is_killed = killed_at(lambda: write(path, b"new one " * 2000), number)
-        found.add(path.read_bytes() if path.exists() else None)
-        number += 1
-    assert number > 10
-    assert found == {old, b"new one " * 2000}
 
 
 def test_old_temporary_files_of_killed_programs_are_swept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -361,18 +361,6 @@ def test_many_shapes_have_the_numbers_of_each() -> None:
     assert not arrays.update((*mixed,))
 
 
-def test_adding_or_removing_a_kind_allocates_all_arrays_anew() -> None:
-    arrays = ShapeArrays()
-    for shapes in (MANY[:3], SHAPES, MANY[:2], (), SHAPES):
-        assert arrays.update(tuple(shapes))
-        assert [len(rows) for rows in arrays.rows] == [
-            sum(type(each) is kind for each in shapes) for kind in arrays.group_numbers
-        ]
-        assert sum(map(len, arrays.rows)) == len(shapes)
-        assert arrays.first_primitive.tolist() == [*range(len(shapes) + 1)]
-        assert (len(arrays.first_ball), arrays.first_ball[-1]) == (len(shapes) + 1, len(arrays.balls))
-
-
 def test_extents_and_boxes_of_several_shapes() -> None:
     shapes = [Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0))]
     arrays = ShapeArrays()

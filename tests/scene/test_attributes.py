@@ -12,9 +12,9 @@ from PIL import Image
 
 from minirt.errors import SceneError
 from minirt.materials import Bump, Checker, Clouds, Glass, Marble, Mirror, Specular, Tint, Wood
-from minirt.scene import Background, FurtherLight, Light, ParallelLight, SpotLight, describe, dump, load, parse
+from minirt.scene import Background, describe, dump, load, parse
 from minirt.shapes import KINDS, Kind, Plane, Sphere
-from tests.scene.examples import CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
+from tests.scene.examples import CYLINDER, PLANE, SPHERE, notices, problems, read, scene_with
 from tests.shapes.examples import example
 
 ABSENT = dict.fromkeys(
@@ -121,23 +121,6 @@ def test_picture_paths_are_relative_to_the_folder_of_the_scene(folder: Path, mon
         "background paint must be a picture file, got 'below/b.png': is not a picture",
     ]
     assert dump(scene.replace(a, diameter=2.0)) == text.replace("12.6", "2", 1)  # saving needs no pictures
-
-
-def test_lights_are_in_the_order_of_the_file() -> None:
-    scene = read("sl 1,2,3 0,-1,0 40 0.5", "l 0,0,0 1 1,2,3 fade:20", "dl 0,-1,0 0.25 9,8,7", LIGHT)
-    assert scene.lights == (
-        SpotLight((1, 2, 3), (0, -1, 0), 40, 0.5),
-        FurtherLight((0, 0, 0), 1, (1, 2, 3), fade=20.0),
-        ParallelLight((0, -1, 0), 0.25, (9, 8, 7)),
-        Light((-40, 0, 30), 0.7),
-    )
-    spot, further, _, light = scene.lights
-    assert isinstance(spot, SpotLight)
-    assert isinstance(further, Light)
-    assert isinstance(light, Light)
-    assert (spot.rim, spot.fade, further.fade, light.fade) == (0.1, None, 20.0, None)
-    assert [light.brightness for light in scene.lights] == [0.5, 1.0, 0.25, 0.7]
-    assert [light.colour for light in scene.lights] == [(255, 255, 255), (1, 2, 3), (9, 8, 7), (255, 255, 255)]
 
 
 def test_there_is_at_most_one_background() -> None:

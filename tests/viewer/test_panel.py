@@ -453,17 +453,6 @@ def test_the_panel_speaks_french(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "film" in user.widgets.places
 
 
-def test_names_are_the_comments_before_lines_and_the_search_finds_them() -> None:
-    user = User(parse(TEXT + "# The Hat\nco 0,3,0 0,1,0 1 2 9,9,9\n", "scene.rt").scene)
-    user.click("search")
-    for character in "hat":
-        user.memory.text(character)
-    user.memory.play()
-    assert [name for name in user.widgets.places if name.startswith("element")] == ["element 6"]
-    user.click("element 6")
-    assert type(user.element).__name__ == "Cone"
-
-
 def test_attributes_that_cannot_be_had_are_refused_with_the_reason(tmp_path: Path) -> None:
     (tmp_path / "scene.rt").write_text(TEXT)
     user = User(load(tmp_path / "scene.rt").scene, select=3)
@@ -561,15 +550,6 @@ def built_in(actions: int, name: str, folder: Path) -> Scene:
     copyfile(ROOT / "assets/blank.rt", file)
     assert main([str(file), "--replay", str(recording), "--size", "960x540", "-o", str(file.with_suffix(".png"))]) == 0
     return load(file).scene
-
-
-def test_a_table_with_a_lamp_and_a_glass_is_built_with_the_pointer_and_the_panel(tmp_path: Path) -> None:
-    leg, top, glass, stem, shade, spot = built_in(46, "table", tmp_path).elements[4:]
-    for lower, upper in ((leg, top), (top, glass), (top, stem)):
-        assert upper.centre[1] - upper.height / 2 == pytest.approx(lower.centre[1] + lower.height / 2)
-        assert dist(upper.centre[::2], top.centre[::2]) + upper.diameter / 2 <= top.diameter / 2
-    assert shade.apex == (stem.centre[0], 3.5, stem.centre[2])  # where it was typed, though it stood elsewhere
-    assert glass.glass and shade.glow and spot.position[1] < shade.apex[1] - shade.height  # noqa: PT018
 
 
 def test_a_snowman_is_built_with_the_pointer_and_the_panel_in_26_actions(tmp_path: Path) -> None:

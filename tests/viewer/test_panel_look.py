@@ -153,14 +153,8 @@ def test_no_text_is_cut_off(size: tuple[int, int], language: str, monkeypatch: p
     assert cut == []
 
 
-def test_a_double_click_selects_all_of_a_number_and_the_picker_reads_hexadecimal_digits() -> None:
+def test_the_picker_reads_hexadecimal_digits() -> None:
     user = User(parse(TEXT, "scene.rt").scene, select=3)
-    user.click("centre: y")
-    user.type("-12.5")
-    user.click("centre: y")
-    user.click("centre: y")
-    user.type("7")
-    assert user.element.centre == (0, 7, 0)
     user.click("colour picker")
     user.click("colour hex")
     user.type("ff8000")
