@@ -127,15 +127,6 @@ def test_bumps_of_a_mirrored_picture_point_outwards_too(bend: Bend) -> None:
 
 
 @EITHER
-def test_a_flat_height_map_changes_no_normal(bend: Bend) -> None:
-    # Even a normal that is not perpendicular to the tangents, as on a mesh with smooth normals.
-    at, _ = skewed_tangents()
-    normals = unit(np.cross(at.along_u, at.along_v) + 0.5 * at.along_u)
-    flat = maps_of(np.full((3, 4, 1), 0.7))
-    assert lengths(bend("bump", flat, at, normals) - normals).max() < 1e-6
-
-
-@EITHER
 @pytest.mark.parametrize("name", LANES)
 def test_zero_tangents_leave_normals_unchanged(bend: Bend, name: str) -> None:
     normals = random_directions(np.random.default_rng(2), 16)

@@ -15,6 +15,7 @@ import pytest
 import minirt
 from minirt.viewer.recovery import name_of
 from tests.cli.ends import trial
+from tests.seeds import seed_of
 from tests.viewer.app.test_real_window import SIZE, Viewer, picture, viewing
 from tests.viewer.fake import SPHERE_ON_PLANE, WITH_CYLINDER
 from tests.viewer.idle_waits import compilers, group
@@ -74,10 +75,8 @@ def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(de
 
 
 def test_a_signal_at_any_moment_ends_the_window_as_documented(desktop):
-    seed = random.randrange(10**9)
-    print(f"seed {seed}")
-    chance = random.Random(seed)
-    for _ in range(3):
+    chance = random.Random(seed_of("signal to a window"))
+    for _ in range(2):
         assert trial("window", chance, desktop.environment, share=0.5).faults == []
 
 
