@@ -1,7 +1,7 @@
 """The seed of all random tests of a run, which is printed at its end; MINIRT_SEED replays it.
 
-Each run tries others. The processes of a run inherit the seed by the environment, and each test makes its own of it and of a
-name: which tests run, and in which order, changes nothing.
+Each run tries others. The processes of a run inherit the seed by the environment. Each test makes its own of it and of
+a name: which tests run, and in which order, changes nothing.
 """
 
 from __future__ import annotations

@@ -325,9 +325,3 @@ def test_a_binding_does_what_its_help_says(binding: Binding, keys: str, tmp_path
         assert not check(before, before), "the check holds before the key"
         after = played(*setup, *lines, *afterwards, path=path, keys=keys)
         assert check(before, after), spelling
-
-
-@pytest.mark.parametrize(("pressed", "steps"), [("press D", 1.0), ("press Shift+D", 0.1)])
-def test_shift_makes_a_tenth(pressed: str, steps: float) -> None:
-    state = played(*SPHERE, pressed).state
-    assert state.element.centre[0] == pytest.approx(steps * state.stride)

@@ -49,7 +49,7 @@ def with_unsaved_changes(desktop: Desktop, path: Path) -> Iterator[Viewer]:
         yield viewer
 
 
-@pytest.mark.parametrize("number", [None, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [None, signal.SIGHUP])
 def test_escape_and_signals_end_the_program_and_keep_changes(desktop, tmp_path, number):
     path = tmp_path / "scene.rt"
     with with_unsaved_changes(desktop, path) as viewer:

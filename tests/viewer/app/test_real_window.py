@@ -207,11 +207,6 @@ def test_the_window_shows_the_tone_and_the_dithering_of_the_file_and_a_key_chang
         assert "scene.recovered.rt" in out  # a tone is a value to be saved
 
 
-def test_escape_right_after_the_start_ends_the_program(viewer):
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
-
-
 def test_keys_of_a_stopped_program_count_when_it_goes_on_and_ctrl_c_ends_it(viewer):
     path = viewer.path
     viewer.key("i", "i")
