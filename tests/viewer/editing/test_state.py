@@ -30,17 +30,13 @@ CHOICES = ("select next", "select previous", "select camera", "select light", "n
 @pytest.mark.parametrize(
     ("actions", "fov", "moves", "message"),
     [
-        ("grow, moment, grow, moment, grow, moment, grow", 98, False, ""),
         ("grow, moment, grow, moment, grow, moment, grow, undo", 90, False, ""),
         ("grow, moment, grow, moment, grow, moment, grow, undo, redo", 98, False, ""),
         ("grow, pause, grow, undo", 92, False, ""),
-        ("grow, right, grow, turn left, undo", 94, True, ""),
-        ("grow, right, grow, turn left, undo, undo", 92, True, ""),
         ("grow, right, grow, turn left, undo, undo, undo", 92, False, ""),
         ("grow, right, grow, turn left, undo, undo, undo, undo", 90, False, ""),
         ("grow, select next, select camera, grow, undo", 92, False, ""),
         ("grow, next value, next value, next value, next value, grow, undo", 92, False, ""),
-        ("grow, right, undo, undo, redo, redo", 92, True, ""),
         ("grow, right, undo, undo, redo, redo, redo", 92, True, "nothing to redo"),
         ("grow, undo, right, redo", 90, True, "nothing to redo"),
         ("undo", 90, False, "nothing to undo"),
