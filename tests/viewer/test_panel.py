@@ -552,6 +552,15 @@ def built_in(actions: int, name: str, folder: Path) -> Scene:
     return load(file).scene
 
 
+def test_a_table_with_a_lamp_and_a_glass_is_built_with_the_pointer_and_the_panel(tmp_path: Path) -> None:
+    leg, top, glass, stem, shade, spot = built_in(46, "table", tmp_path).elements[4:]
+    for lower, upper in ((leg, top), (top, glass), (top, stem)):
+        assert upper.centre[1] - upper.height / 2 == pytest.approx(lower.centre[1] + lower.height / 2)
+        assert dist(upper.centre[::2], top.centre[::2]) + upper.diameter / 2 <= top.diameter / 2
+    assert shade.apex == (stem.centre[0], 3.5, stem.centre[2])  # where it was typed, though it stood elsewhere
+    assert glass.glass and shade.glow and spot.position[1] < shade.apex[1] - shade.height  # noqa: PT018
+
+
 def test_a_snowman_is_built_with_the_pointer_and_the_panel_in_26_actions(tmp_path: Path) -> None:
     head, belly, body, _light, *eyes, nose, hat, plane = built_in(26, "snowman", tmp_path).elements[2:]
     for lower, upper in ((body, belly), (belly, head)):
