@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from math import asin, atan, degrees, dist, tan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from minirt.element import Element
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH
 from minirt.materials import Checker
 from minirt.rendering.packing.camera import camera_frame
-from minirt.scene import Camera, Scene, describe, dump, load, parse
+from minirt.scene import Camera, Scene, describe, dump, parse
 from minirt.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere, Square, Torus
 from minirt.shapes.shape import Flat, Oriented
 from minirt.viewer.editing.editor import apply
@@ -24,7 +23,7 @@ from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.values import round_changes, values
 from tests.reference.uv_mapping import right_and_up_on
 from tests.reference.vectors import own_x_and_z
-from tests.viewer.fake import played, scene
+from tests.viewer.fake import scene
 
 Matrix = NDArray[np.float64]
 GREY, BOARD = (200, 200, 200), Checker(0.125)
@@ -175,17 +174,6 @@ def test_a_shape_that_looks_the_same_is_not_turned() -> None:
     for shape, listed in ((pole, False), (pole.replace(checker=BOARD), True), (plain, False), (globe, True)):
         assert ("roll" in {value.name for value in values(shape)}) == listed
     assert "roll" in {value.name for value in values(BLOCK)}
-
-
-def test_keys_and_drags_in_a_window_turn_and_save_a_square_on_the_floor(tmp_path: Path) -> None:
-    text = "A 0.2 255,255,255\nC 0,3,-6 0,-0.4,1 60\nsq 0,0,0 0,1,0 4 200,100,50  # a tile\n"
-    path = tmp_path / "tile.rt"
-    path.write_text(text)
-    session = played("click 32,24", "press Right", "press Right", "press Ctrl+S", text=text, path=path)
-    assert path.read_text() == text.replace("50  #", "50 roll:10  #")
-    assert load(path).scene.items == session.state.scene.items
-    dragged = played("down Shift", "drag 32,24 44,24", "up Shift", text=text)
-    assert dragged.state.element == parse(text).scene.shapes[0].replace(roll=45.0)
 
 
 # Sizes of scenes, and positions of the camera that frame an element.
