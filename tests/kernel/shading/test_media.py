@@ -57,14 +57,6 @@ def test_light_through_glass() -> None:
     assert not lit_below(BALL, Sphere((0, 5, 0), 2, WHITE, mirror=1.0)).any()
 
 
-def test_a_lamp_inside_and_one_behind_the_floor_and_glass_behind_the_lamp() -> None:
-    assert np.allclose(lit_below(BALL, lamp=Light((0, 1, 0), 1.0)), LEFT, rtol=1e-6)
-    all_inside = BALL.replace(diameter=40.0, tint=Tint(GREEN, 20.0))
-    expected = LEFT ** (4 / 20) * LEFT ** (sqrt(68) / 20)  # from the lamp, and to the eye
-    assert np.allclose(lit_below(all_inside, lamp=Light((0, 1, 0), 1.0)), expected, rtol=1e-6)
-    assert np.allclose(lit_below(BALL.replace(centre=(0, 20, 0))), 1.0)
-
-
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 def test_a_solid_encloses_the_points_before_its_surface(kind: Any) -> None:
     shape = example(kind, np.random.default_rng(5))

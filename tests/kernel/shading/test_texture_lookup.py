@@ -57,10 +57,6 @@ def colour_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any)
     return colour.x, colour.y, colour.z
 
 
-def gradient_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any) -> Any:
-    return texturing.height_gradient(texels, pictures, which, load(u, i), load(v, i))
-
-
 def compiled(which: int, u: Array, v: Array) -> Array:
     """Look up colours by the compiled kernel, (n, 3)."""
     return on_lanes(colour_lanes, 3, TEXELS, PICTURES, which, u, v).T
@@ -120,18 +116,6 @@ def test_no_texture_coordinate_leads_out_of_the_picture(which: int, lookup: Look
     assert got.max() <= picture_of(which).max() + 1e-6
 
 
-@pytest.mark.parametrize("which", range(len(IMAGES)))
-def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
-    height, width = IMAGES[which].shape[:2]
-    u, v = np.random.default_rng(which).uniform(-2, 2, (2, 160))
-    slope_u = expected_colours(which, u + 0.5 / width, v) - expected_colours(which, u - 0.5 / width, v)
-    slope_v = expected_colours(which, u, v + 0.5 / height) - expected_colours(which, u, v - 0.5 / height)
-    expected = np.stack([slope_u[:, 0] * width, slope_v[:, 0] * height])
-    lanes = on_lanes(gradient_lanes, 2, TEXELS, PICTURES, which, u, v)
-    for got in (np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
-        assert np.abs(got - expected).max() < 1e-5
-
-
 GREY = (9, 9, 9)
 UP, DOWN, FRONT = (0, 1, 0), (0, -1, 0), (0, 0, -1)
 SHAPES: tuple[Shape, ...] = (
@@ -178,17 +162,6 @@ def test_a_texture_seen_from_the_front_is_upright_and_not_mirrored(shape: Shape,
     for light in (linear(scene, 32, 32), interpreted(scene, 32, 32)[1]):
         expected = [RED, (0, 0, 0) if isinstance(shape, Triangle) else GREEN, BLUE, WHITE]
         assert np.abs(quarter_colours(light) - expected).max() < 1e-3
-
-
-@pytest.mark.parametrize("kind", [Plane, Square, Disc])
-@pytest.mark.parametrize(("normal", "eye"), [(UP, (0, 9, 0)), (DOWN, (0, -9, 0))])
-def test_textures_of_floors_and_ceilings_are_upright_seen_vertically(
-    kind: type[Shape], normal: Triple, eye: Triple, folder: Path
-) -> None:
-    corner = (-0.5, 0, normal[1] * 0.5) if kind is Plane else (0, 0, 0)
-    shape = kind(corner, normal, *(() if kind is Plane else (3.0,)), GREY)
-    light = linear(scene_of(folder, shape, eye, (0, -normal[1], 0)), 32, 32)
-    assert np.abs(quarter_colours(light) - [RED, GREEN, BLUE, WHITE]).max() < 1e-3
 
 
 def test_every_kind_is_tested() -> None:

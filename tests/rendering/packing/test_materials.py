@@ -12,8 +12,21 @@ from PIL import Image as pillow  # noqa: N813
 
 from minirt.element import fields_of
 from minirt.errors import FileError
-from minirt.materials import Attributes, Bump, Checker, Clouds, Compound, Glass, Marble, Mirror, Specular, Tint, Wood
-from minirt.rendering.packing.features import FEATURES, features
+from minirt.materials import (
+    Attributes,
+    Bump,
+    Checker,
+    Clouds,
+    Compound,
+    Glass,
+    Marble,
+    Mirror,
+    Placement,
+    Specular,
+    Tint,
+    Wood,
+)
+from minirt.rendering.packing.features import FEATURES, features, shape_features
 from minirt.rendering.packing.materials import pack_materials
 from minirt.rendering.settings import render
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, load
@@ -123,6 +136,22 @@ def test_each_feature_is_found_where_it_is_used() -> None:
     assert features_of(SUN) == {"spots", "parallel"}
     assert features_of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
     assert features_of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
+
+
+FLOOR = Plane((0, 0, 0), (0, 1, 0), GREY)
+GLOBE = BALL.replace(checker=Checker(0.125))
+
+
+def test_the_kernel_has_the_feature_only_where_a_picture_is_placed() -> None:
+    scaled = Placement(2, 2)
+    assert "placements" in shape_features(GLOBE.replace(uv=scaled))
+    assert "placements" not in shape_features(GLOBE.replace(uv=Placement(1, 1)))
+    assert "placements" in shape_features(GLOBE.replace(axis=(1, 0, 0)))
+    assert "placements" in shape_features(GLOBE.replace(roll=-90.0))
+    assert "placements" not in shape_features(GLOBE.replace(roll=360.0))
+    assert "placements" not in shape_features(GLOBE.replace(checker=None, specular=Specular(0.5, 9), roll=5.0))
+    assert "placements" not in shape_features(GLOBE.replace(checker=None, marble=Marble(1.0), roll=5.0))
+    assert "placements" not in shape_features(FLOOR.replace(checker=Checker(1), roll=5.0))
 
 
 def test_elements_without_effect_use_no_feature() -> None:
