@@ -42,48 +42,8 @@ def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the
 
 
 CAMERA = ("press C",)
-LOOKING = (
-    "press d",
-    "hold Left 0.3",
-    "press .",
-    "drag 5,3 20,12",
-    "drag 10,10 22,16 right",
-    "drag 33,23 45,15 middle",
-    "wheel up 3",
-    "press L\npress F",
-    "press d\npress Home",
-)
 VALUES = ("text 50\npress Return", "press +", "press T", "move 33,23\npress Shift+F", "press M\npress Return")
 POSED = ("press V\npress V\npress V\npress V\ntext 3\npress Return",)
-
-
-@pytest.mark.parametrize("tone", ["plain", "srgb"])
-@pytest.mark.parametrize(
-    ("lines", "unsaved"),
-    [
-        *((each, False) for each in LOOKING),
-        *((each, True) for each in (*VALUES, *POSED)),
-        ("text 50\npress Return", True),
-    ],
-)
-def test_values_of_the_camera_are_to_be_saved_and_looking_around_is_not(path, tone, lines, unsaved):
-    """With --tone and --exposure the window shows another scene than the file holds, which the user did not change."""
-    saved = load(path).scene
-    shown = saved.replace(saved.camera, tone=tone, exposure=0.0 if tone == "plain" else 1.0)
-
-    def differs(*more: str) -> bool:
-        session = play(
-            shown, [*CAMERA, *lines.split("\n"), *more], renderer=FakeRenderer(), size=(64, 48), path=path, saved=saved
-        )
-        return contents_differ(session.state.scene, session.saved)
-
-    assert differs() == unsaved
-    assert not unsaved or differs("press d", "press Left")
-    assert not differs(*["press Ctrl+Z"] * 3)
-    assert not differs("press Ctrl+S")
-    assert not differs("press Ctrl+S", "press C", "press d")
-    path.write_text(TEXT)
-    assert differs("press Ctrl+S", "press Ctrl+Z") == (unsaved and lines != "press d\npress Home")
 
 
 def test_a_tone_that_a_key_makes_that_of_the_file_again_is_no_change(path):

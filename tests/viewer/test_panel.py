@@ -415,7 +415,7 @@ def finished(user: User) -> str:
     return str(user.panel._pages.film)
 
 
-@pytest.mark.parametrize("suffix", [".gif", ".webp", ".png"])
+@pytest.mark.parametrize("suffix", [".gif", ".png"])
 def test_a_film_is_that_of_the_command_line_and_can_be_stopped(suffix: str, tmp_path: Path) -> None:
     (tmp_path / "scene.rt").write_text(TEXT)
     user = User(load(tmp_path / "scene.rt").scene, (640, 480))
