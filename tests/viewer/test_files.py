@@ -41,11 +41,6 @@ def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the
     copy.parent.rmdir()
 
 
-CAMERA = ("press C",)
-VALUES = ("text 50\npress Return", "press +", "press T", "move 33,23\npress Shift+F", "press M\npress Return")
-POSED = ("press V\npress V\npress V\npress V\ntext 3\npress Return",)
-
-
 def test_a_tone_that_a_key_makes_that_of_the_file_again_is_no_change(path):
     saved = load(path).scene
     shown = saved.replace(saved.camera, tone="filmic", exposure=1.0)

@@ -53,17 +53,6 @@ def test_every_element_with_a_position_moves_along_the_axes(kind, name):
     assert after(with_frame(selecting(Camera), "X"), "up").element.position == (0, 1, 10)  # whatever the frame
 
 
-def test_a_message_says_that_an_element_cannot_move_or_turn():
-    for kind, action, reason in (
-        (type(scene().ambient), "left", "no position"),
-        (Sphere, "turn left", "same from all sides"),
-        (Light, "turn left", "same from all sides"),
-    ):
-        state = selecting(kind)
-        assert after(state, action).scene is state.scene
-        assert reason in after(state, action).message
-
-
 @pytest.mark.parametrize(
     ("action", "axis"),
     [
@@ -247,9 +236,3 @@ class TestStructure:
         copy = after(state, "duplicate").element
         assert type(copy) is further
         assert copy.position == state.element.position
-
-    def test_a_unique_element_is_neither_copied_nor_deleted(self):
-        state = selecting(type(scene().ambient))
-        assert after(state, "duplicate").scene is state.scene
-        assert after(state, "delete").scene is state.scene
-        assert "needs its camera" in after(selecting(Camera), "delete").message
