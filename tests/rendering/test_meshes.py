@@ -21,7 +21,7 @@ from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Mesh, Plane, Sphere
 from tests.meshes.examples import GREY, ball, first_hits, named, soup
 from tests.rendering.test_scene_packing import assert_same
-from tests.shapes.regimes import random_directions
+from tests.shapes.regimes import random_directions, unit
 
 WHITE = (255, 255, 255)
 EYE = Camera((0, 0, -9), (0, 0, 1), 60)
@@ -65,6 +65,21 @@ def test_no_ray_leaks_through_edges_and_corners(position: tuple[float, float, fl
     met = minirt.trace(Scene((EYE, shape)), outside, position + 0.5 * (aims - position) - outside)
     assert np.isfinite(met.distance).all()
     assert (met.distance < 3 * scale).all()
+
+
+def test_a_ball_with_normals_is_lit_like_a_sphere() -> None:
+    shape = Mesh(MeshFile("ball.obj", ball(3)), (0, 0, 0), 3.0, WHITE)
+    scene = Scene((EYE, Light(EYE.position, 1.0, WHITE), shape))
+    seen = minirt.render(scene, 160, 120).linear[..., 0].ravel()
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(160) + 0.5, np.arange(120) + 0.5))
+    half = np.tan(np.radians(30))
+    directions = unit(np.stack([(1 - x / 80) * half, (1 - y / 60) * half * 0.75, np.ones_like(x)], axis=1))
+    hits = minirt.trace(scene, np.broadcast_to(np.array(EYE.position), directions.shape), directions)
+    is_hit = hits.owner == 0
+    assert 4000 < is_hit.sum() < 9000
+    cosines = -np.einsum("ij,ij->i", unit(hits.point[is_hit]), directions[is_hit])
+    assert np.abs(seen[is_hit] - np.maximum(cosines, 0)).max() < 1e-9  # at the rim a normal may lean away
+    assert not seen[~is_hit].any()
 
 
 def test_arrays_after_edits_equal_those_of_a_fresh_packing() -> None:
