@@ -72,8 +72,9 @@ wheel: $(NAME)  ## build a wheel in dist, with the kernels that draw every scene
 LIGHT := $(addprefix tests/,$(addsuffix %,formats helpers lanes materials meshes newcomer oracle scene shapes viewer/editing) \
          $(addprefix stability/test_,$(addsuffix .py,certificates close_rays degenerate edges regimes starts)))
 
-test: $(DEV) $(if $(TESTS),$(if $(filter-out $(LIGHT),$(TESTS)),$(KERNELS)),$(KERNELS))  ## run all tests, or some: make test TESTS=tests/shapes
-	$(PYTEST) $(TESTS)
+# Run all tests, or some: make test TESTS=tests/shapes; MINIRT_SEED=1 replays random ones.
+test: $(DEV) $(if $(TESTS),$(if $(filter-out $(LIGHT),$(TESTS)),$(KERNELS)),$(KERNELS))  ## run all tests, or TESTS=FOLDER
+	$(PYTEST) --durations=15 $(TESTS)
 
 QUICK := not window and not slow
 
@@ -91,7 +92,7 @@ FORMULAS := tests/lanes tests/kernel/test_features.py tests/kernel/test_frame.py
 # Formulas of single numbers, of numpy's arrays and of the interpreter are the same on each processor, and so are the
 # distance of single precision from double and the hulls of shapes. One test asks about another processor itself.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays] and not interpreted- and not random_scenes \
-                            and not each_feature and not packet and not hull and not without_avx"
+                            and not packet and not hull and not without_avx"
 
 OWN = $(shell $(VENV)/bin/python -c 'from minirt.kernel.machine_code.fingerprint import level; print(level())')
 

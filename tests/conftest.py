@@ -5,11 +5,13 @@ from __future__ import annotations
 import signal
 import threading
 from pathlib import Path
+from typing import Any
 
+import hypothesis.core
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests import environment, scheduling
+from tests import environment, scheduling, seeds
 from tests.paths import ROOT
 from tests.windows import desktop
 
@@ -20,6 +22,7 @@ environment.prepare()  # before the compiler is imported, which reads the enviro
 # A slow machine is no failure: hypothesis has no time limits.
 settings.register_profile("miniRT", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("miniRT")
+hypothesis.core.global_force_seed = seeds.RUN
 
 pytest_xdist_make_scheduler = pytest.hookimpl(optionalhook=True)(scheduling.make_scheduler)
 
@@ -30,6 +33,11 @@ def pytest_xdist_auto_num_workers() -> int:
     from minirt.rendering.threads import usable_cores
 
     return usable_cores() + 1
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Say which seed replays the random tests."""
+    terminalreporter.write_line(f"random tests: {seeds.VARIABLE}={seeds.RUN}")
 
 
 def pytest_configure() -> None:

@@ -17,29 +17,8 @@ from minirt.errors import ElementError, FieldError, Problem
 from minirt.meshes.obj_lines import ObjError
 from minirt.rendering import renderer
 from tests.cli.program import SCENE, environment
-from tests.processes import next_line, run, started
+from tests.processes import next_line, started
 from tests.waiting import HANG_LIMIT
-
-SAME = """
-import asyncio, sys
-from concurrent.futures import ThreadPoolExecutor
-import numpy, minirt
-
-def picture(samples):
-    return minirt.render(minirt.load("ball.rt"), 40, 30, samples=samples, threads=1 + samples % 2).array
-
-async def pictures():
-    return await asyncio.gather(*(asyncio.to_thread(picture, samples) for samples in range(1, 9)))
-
-expected = list(map(picture, range(1, 9)))
-if sys.argv[1] == "asyncio":
-    found = asyncio.run(pictures())
-else:
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(picture, range(1, 9)))
-assert all(map(numpy.array_equal, found, expected))
-assert not numpy.array_equal(found[0], found[1])
-"""
 
 ENDLESS = """
 import asyncio, multiprocessing, sys, threading
@@ -93,13 +72,6 @@ def write(folder: Path, source: str) -> None:
     """Write a program and its scene."""
     (folder / "ball.rt").write_text(SCENE)
     (folder / "program.py").write_text(source)
-
-
-@pytest.mark.parametrize("way", ["threads", "asyncio"])
-def test_pictures_are_the_same_in_many_threads(tmp_path: Path, way: str) -> None:
-    write(tmp_path, SAME)
-    ended = run([sys.executable, "program.py", way], cwd=tmp_path, env=environment() | QUIET, text=True)
-    assert (ended.returncode, ended.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("way", ["main", "threads", "asyncio", *PROCESSES])

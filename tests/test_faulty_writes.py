@@ -1,7 +1,4 @@
-"""A full disk, an I/O error or short writes while a picture, a film, a scene or a report is written: old or new files.
-
-A kill at any moment, too, leaves the old file or the new one: tried with the functions that write all files.
-"""
+"""A full disk, an I/O error or short writes while a report or a film is written: old or new files."""
 
 from __future__ import annotations
 
@@ -9,27 +6,22 @@ import errno
 import io
 import os
 import random
-import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
 import pytest
 
-import minirt
 from minirt.errors import MiniRTError
 from minirt.formats.table import is_installed
 from minirt.helpers import file_io
 from minirt.movie import save_movie
 from minirt.rendering.image import Image
 from minirt.report.document import write_files
-from minirt.scene import parse
 from tests.formats.pictures import picture
-from tests.processes import in_child
 from tests.report.made_up import FINDINGS, ROWS
 
 Writer = Callable[[Path], object]  # writes into an empty folder, or one in which it has written before
@@ -37,7 +29,6 @@ Fault = Callable[[memoryview], memoryview]  # gets the data of a write, and retu
 
 BUFFER = 256  # bytes of the largest write, so that even a small file takes several
 CODES = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG)
-SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\n" + "".join(f"sp 0,0,{n} 4 10,20,30\n" for n in range(5, 90))
 BLACK = np.zeros((20, 32, 3))
 OLD = b"old"
 
@@ -52,15 +43,10 @@ def film(suffix: str) -> Writer:
     return write
 
 
-WRITERS: dict[str, Writer] = {
-    "scene": lambda folder: parse(SCENE, "scene.rt").scene.save(folder / "scene.rt"),
+WRITERS: dict[str, Writer] = {  # what `tests/faults` does not write
     "report": lambda folder: write_files(folder, FINDINGS, {ROWS[0].name: BLACK}, BLACK),
-    "png": lambda folder: picture(18, 32).save(folder / "still.png"),
-    "jpg": lambda folder: picture(18, 32).save(folder / "still.jpg"),
     "exr": lambda folder: picture(18, 32).save(folder / "still.exr"),
-    "streamed": lambda folder: minirt.render_to(folder / "a.tif", minirt.loads(SCENE), 32, 18),
-    "numbered": film(".png"),
-    **{each: film(each) for each in (".gif", ".webp")},
+    ".webp": film(".webp"),
     **({".mp4": film(".mp4")} if is_installed("MP4") else {}),
 }
 every_writer = pytest.mark.parametrize("writer", WRITERS.values(), ids=list(WRITERS))
@@ -170,52 +156,6 @@ def test_short_writes_are_gone_on_with(writer: Writer, tmp_path: Path) -> None:
     whole = written(writer, tmp_path / "whole")
     with faulty_files(short):
         assert written(writer, tmp_path / "short") == whole
-
-
-def killed_at(work: Callable[[], object], number: int) -> bool:
-    """Do the work in a child process that is killed before a line of `file_io`; False where it ended before that."""
-    left = number
-
-    def trace(frame: FrameType, event: str, _: Any) -> Any:
-        nonlocal left
-        if frame.f_globals.get("__name__") != file_io.__name__:
-            return None
-        if event == "line":
-            if not left:
-                os.kill(os.getpid(), signal.SIGKILL)
-            left -= 1
-        return trace
-
-    def traced() -> None:
-        sys.settrace(trace)
-        work()
-
-    status = in_child(traced)
-    assert status in (0, -signal.SIGKILL), "the work failed"
-    return status != 0
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-@pytest.mark.parametrize(
-    ("write", "old"),
-    [(file_io.write, OLD), (file_io.write, None), (file_io.create, None)],
-    ids=["old", "new", "create"],
-)
-def test_a_kill_at_any_line_leaves_the_old_file_or_the_new_one(
-    write: Callable[[Path, bytes], None], old: bytes | None, tmp_path: Path
-) -> None:
-    path, found, number, is_killed = tmp_path / "scene.rt", set(), 0, True
-    while is_killed:
-        for each in tmp_path.iterdir():
-            assert each == path or each.match(file_io.TEMPORARY), f"{each} was left"
-            each.unlink()
-        if old is not None:
-            path.write_bytes(old)
-        is_killed = killed_at(lambda: write(path, b"new one " * 2000), number)
-        found.add(path.read_bytes() if path.exists() else None)
-        number += 1
-    assert number > 10
-    assert found == {old, b"new one " * 2000}
 
 
 def test_old_temporary_files_of_killed_programs_are_swept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,18 +123,11 @@ BAD_SCENES = {
     "no-ambient.rt": SCENE.replace("A 0.2 255,255,255\n", ""),
     "two-cameras.rt": SCENE + "C 0,0,-5 0,0,1 70\n",
     "unknown.rt": SCENE + "spp 0,0,20 12.6 10,0,255\n",
-    "range.rt": SCENE + "sp 0,0,20 -3 10,0,255\n",
     "colour.rt": SCENE + "sp 0,0,20 3 10,0,256\n",
-    "no-colour.rt": SCENE + "sp 0,0,20 3\n",
-    "short.rt": SCENE + "pl 0,0,20\n",
-    "direction.rt": SCENE + "pl 0,0,20 0,2,0 10,0,255\n",
-    "angle.rt": SCENE.replace("0,0,1 70", "0,0,1 181"),
-    "nan.rt": SCENE + "sp nan,0,20 3 10,0,255\n",
     "empty.rt": "",
     "blank.rt": " \n\n",
     "binary.rt": "\0\1\2",
     "name.txt": SCENE,
-    "name.rt.txt": SCENE,
     ".rt": SCENE,
 }
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +10,8 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.rendering import Renderer
-from tests.cli.announcing import RENDERING
-from tests.cli.program import ANNOUNCING, SCENE, Run, interrupt, start
+from tests.cli.program import SCENE, Run
 from tests.cli.test_output import pixels
-from tests.terminals import terminal
-from tests.waiting import until
 
 SIZE = ("--size", "40x30")
 
@@ -40,17 +36,6 @@ def test_float_files_hold_exposed_light_without_tone(run: Run, folder: Path, ton
     found = cv2.imread("x.pfm", cv2.IMREAD_UNCHANGED)[..., ::-1]
     assert np.array_equal(found, light.astype(np.float32))
     assert found.max() > 1
-
-
-@pytest.mark.parametrize("name", ["x.png", "x.tif"])
-def test_16_bits_have_the_tone_and_round_to_the_8_bits(run: Run, folder: Path, name: str) -> None:
-    cv2 = pytest.importorskip("cv2")
-    assert run("ball.rt", "-o", name, *SIZE, "--bits", "16", "--tone", "filmic", "--exposure", "1").status == 0
-    assert run("ball.rt", "-o", f"8-{name}", *SIZE, "--tone", "filmic", "--exposure", "1").status == 0
-    deep, levels = (cv2.imread(each, cv2.IMREAD_UNCHANGED) for each in (name, f"8-{name}"))
-    assert (deep.dtype, levels.dtype) == (np.uint16, np.uint8)
-    assert np.abs(deep / 257.0 - levels).max() <= 0.51
-    assert len(np.unique(deep)) > len(np.unique(levels))
 
 
 def test_light_of_auto_sampling_goes_below_the_rounding_of_8_bits(run: Run, folder: Path) -> None:
@@ -140,36 +125,6 @@ def test_several_scenes_are_rendered_by_one_process(run: Run, folder: Path) -> N
     assert (ended.status, ended.out) == (1, b"ball.rt: no errors, 2 shapes, 1 light\n")
     ended = run("ball.rt", "sub/../ball.rt", "-o", "out/{name}.png")
     assert (ended.status, ended.err) == (2, "Error\ntwo scenes would be written to out/ball.png\n")
-
-
-def test_a_turntable_begins_with_the_view_of_the_scene(run: Run, folder: Path) -> None:
-    assert run("ball.rt", "--turntable", "3", "-o", "spin.png", "--size", "32x18") == (0, b"", "")
-    names = ["spin-0001.png", "spin-0002.png", "spin-0003.png"]
-    assert sorted(file.name for file in folder.glob("spin*")) == names
-    first, second, _ = (np.asarray(pillow.open(folder / name)) for name in names)
-    assert np.array_equal(first, minirt.render(minirt.load(folder / "ball.rt"), 32, 18).array)
-    assert not np.array_equal(first, second)
-
-
-@pytest.mark.parametrize("name", ["spin.gif", "spin.png"])
-def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
-    """The interrupt comes in the third of many pictures."""
-    arguments = "ball.rt", "-o", name, "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
-    with terminal() as screen, start(folder, *arguments, command=ANNOUNCING, stderr=screen.end) as process:
-        screen.leave()
-        until(lambda: re.search(rb"([3-9]|\d\d+) of 3600 pictures", screen.read()), "the third picture")
-        screen.wait_for(RENDERING)
-        assert interrupt(process, screen) == (130, b"")
-    assert b"Traceback" not in screen.text
-    assert b"--threads 1 --resume goes on" in screen.text
-    assert (folder / f".{name}.journal").exists()
-    written = [file for file in folder.iterdir() if file.name not in ("ball.rt", f".{name}.journal")]
-    assert {file.name for file in written} >= ({"spin-0001.png", "spin-0002.png"} if name == "spin.png" else set())
-    assert all(file.name.startswith("spin-") for file in written)
-    assert bool(written) == (name == "spin.png")
-    for file in written:
-        with pillow.open(file) as movie:
-            movie.load()
 
 
 REGION = ("--region", "21,8,30,17")

@@ -13,7 +13,6 @@ from PIL import Image
 
 import minirt
 from minirt.cli import main
-from minirt.helpers import file_io
 from tests.cli.program import SCENE, Run
 
 
@@ -26,19 +25,6 @@ def pixels(data: bytes | Path) -> np.ndarray:
 def rendered(width: int, height: int, samples: int = 1) -> np.ndarray:
     """Return the pixels of ball.rt, rendered by the library."""
     return minirt.render(minirt.load("ball.rt"), width, height, samples=samples).array
-
-
-def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (folder / "x.png").write_bytes(b"old")
-
-    def full(descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(file_io.os, "fsync", full)
-    ended = run("ball.rt", "-o", "x.png", "--size", "8x6")
-    assert ended == (1, b"", "Error\nx.png: cannot write: No space left on device\n")
-    assert (folder / "x.png").read_bytes() == b"old"
-    assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 
 
 def test_standard_output_gets_a_png_of_the_size_and_samples_of_the_options(run: Run) -> None:
@@ -212,21 +198,6 @@ def test_a_replay_uses_the_keyboard_layout_of_the_options(tmp_path: Path) -> Non
     left_qwerty, left_azerty, down_azerty = pictures
     assert (left_qwerty == left_azerty).all()
     assert (left_qwerty != down_azerty).any()
-
-
-@pytest.mark.parametrize("output", ["x.png", "x.gif"])
-def test_a_replay_whose_save_fails_is_an_error(
-    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, output: str
-) -> None:
-    def full(_descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    (folder / "keys.txt").write_text("press Tab\npress d\npress Ctrl+S\n")
-    with monkeypatch.context() as patch:
-        patch.setattr(file_io.os, "fsync", full)
-        ended = run("ball.rt", "--replay", "keys.txt", "--size", "40x30", "-o", output)
-    assert ended == (1, b"", "Error\nball.rt: cannot be written: no space left on device\n")
-    assert not (folder / output).exists()
 
 
 def test_recorded_keys_are_read_from_regular_files_alone(run: Run, folder: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 from pathlib import Path
@@ -15,7 +14,6 @@ from minirt.helpers.signals import ENDING
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, PROGRAM, environment, program, start
 from tests.cli.test_output import pixels
-from tests.paths import ROOT
 from tests.processes import next_line, run
 from tests.waiting import HANG_LIMIT
 
@@ -62,17 +60,6 @@ def test_rendering_to_png_imports_nothing_that_other_work_needs(folder: Path) ->
 
 
 NO_MEMORY = "lambda *_, **__: (_ for _ in ()).throw(MemoryError())"
-WRITING = """
-import os, pathlib, signal, sys
-from minirt import cli
-
-def fsync(_):
-    print(any(path.name.endswith(".tmp") for path in pathlib.Path().iterdir()), flush=True)
-    signal.raise_signal({number})
-
-os.fsync = fsync
-sys.exit(cli.main(["ball.rt", "-o", "x.png"]))
-"""
 VERSION = "from minirt.cli import main\nimport sys\nsys.argv = ['miniRT', '--version']\nmain()\n"
 
 
@@ -106,41 +93,6 @@ def test_a_signal_ends_a_long_render_with_its_status_and_without_a_trace(folder:
     assert (process.returncode, out, err) == (status, b"", b"")
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
-
-
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
-def test_a_signal_while_a_file_is_written_leaves_no_temporary(folder: Path, name: str) -> None:
-    number = getattr(signal, name, None) or pytest.skip(f"{name} is of Unix")
-    (folder / "x.png").write_bytes(b"old")
-    with start(folder, command=[sys.executable, "-c", WRITING.format(number=int(number))]) as process:
-        out, err = process.communicate(timeout=HANG_LIMIT)
-    assert (process.returncode, err) == (128 + number, b"")
-    assert out.strip() == b"True"
-    assert (folder / "x.png").read_bytes() == b"old"
-    assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
-
-
-STARTING = """
-import signal, sys
-
-class Finder:
-    def find_spec(self, name, *_):
-        if name == {module!r}:
-            sys.meta_path.remove(self)
-            signal.raise_signal({number})
-
-sys.meta_path.insert(0, Finder())
-"""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="no SIGHUP")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.parametrize("module", ["minirt.cli", "argparse", "minirt.cli.options", "numpy"])
-def test_a_signal_ends_the_program_while_it_imports_a_module(folder: Path, module: str, number: int) -> None:
-    (folder / "sitecustomize.py").write_text(STARTING.format(module=module, number=int(number)))
-    variables = environment() | {"PYTHONPATH": os.pathsep.join((str(folder), str(ROOT)))}
-    ended = run([*PROGRAM, "ball.rt", "-o", "x.png"], cwd=folder, env=variables)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, b"", b"")
 
 
 DROPPED = """

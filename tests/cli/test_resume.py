@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import signal
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +11,7 @@ import minirt
 from minirt.cli import render
 from minirt.cluster import job, journal
 from minirt.rendering import settings
-from tests import processes
-from tests.cli.program import SCENE, Run, environment
+from tests.cli.program import SCENE, Run
 
 STILL = ("ball.rt", "--size", "40x80", "--samples", "4", "-o", "x.png")
 FILM = ("ball.rt", "--size", "40x30", "--turntable", "5", "-o", "x.gif")
@@ -142,20 +139,6 @@ def test_one_thread_goes_on_with_what_two_have_done(run: Run, folder: Path, rend
     assert contents(folder) == wanted
 
 
-def test_a_damaged_part_is_rendered_again(run: Run, folder: Path, renders: Renders) -> None:
-    wanted = undisturbed(run, folder, STILL)
-    renders.until(4)
-    run(*STILL)
-    file = folder / ".x.png.journal"
-    whole = file.read_bytes()
-    for damaged, missing in ((whole[:-7], 3), (whole[:120] + b"\0\0\0" + whole[123:], 5), (whole[:20], 5), (b"", 5)):
-        file.write_bytes(damaged)
-        renders.until(0)
-        assert run(*STILL, "--resume").status == 0
-        assert renders.count == missing
-        assert contents(folder) == wanted
-
-
 def test_a_numbered_picture_that_was_deleted_is_written_again(run: Run, folder: Path, renders: Renders) -> None:
     wanted = undisturbed(run, folder, NUMBERED)
     renders.until(4)
@@ -179,37 +162,6 @@ def test_linear_light_is_kept_to_the_bit(run: Run, folder: Path, renders: Render
         (folder / name).unlink()
 
 
-KILLED = """
-import os, signal, sys
-import minirt
-from minirt.cli import main, render
-from minirt.cluster import job, journal
-from minirt.rendering import settings
-render.LONG, job.RAYS, journal.SHARE = 0, 40 * 16 * 4, 1e9
-rendered, calls = settings.rendered, []
-def killed(*arguments, **settings):
-    calls.append(1)
-    if len(calls) == 4:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return rendered(*arguments, **settings)
-settings.rendered = killed
-main(sys.argv[1:])
-"""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
-@EVERY
-def test_a_killed_program_goes_on(run: Run, folder: Path, renders: Renders, arguments: tuple[str, ...]) -> None:
-    wanted = undisturbed(run, folder, arguments)
-    ended = processes.run([sys.executable, "-c", KILLED, *arguments], cwd=folder, env=environment())
-    assert ended.returncode == -signal.SIGKILL
-    assert (folder / f".{arguments[-1]}.journal").exists()
-    renders.until(0)
-    assert run(*arguments, "--resume").status == 0
-    assert renders.count == 2
-    assert {name: data for name, data in contents(folder).items() if not name.endswith(".tmp")} == wanted
-
-
 def test_parts_are_not_kept_where_that_takes_longer_than_they_are_worth(
     run: Run, folder: Path, renders: Renders, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -220,35 +172,6 @@ def test_parts_are_not_kept_where_that_takes_longer_than_they_are_worth(
     renders.until(0)
     assert run(*STILL, "--resume").status == 0
     assert renders.count == 4
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files")
-@pytest.mark.parametrize("share", [0.0, 0.1, 0.9, 1.0])
-@EVERY
-def test_a_disk_that_fills_leaves_only_what_is_named(
-    run: Run, folder: Path, renders: Renders, arguments: tuple[str, ...], share: float
-) -> None:
-    """Files may have no more bytes than a share of the output, for all of which there is room if less is kept."""
-    import resource
-
-    wanted, journal = undisturbed(run, folder, arguments), f".{arguments[-1]}.journal"
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    least, most = min(map(len, wanted.values())), max(map(len, wanted.values()))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (most if share == 1 else int(share * least), before[1]))
-    try:
-        ended = run(*arguments)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    if share == 1:
-        assert (ended, contents(folder)) == ((0, b"", ""), wanted)
-        return
-    assert (ended.status, ended.out) == (1, b"")
-    assert "cannot write: File too large" in ended.err
-    is_kept = f" kept in {journal}; miniRT " in ended.err
-    assert is_kept == (share == 0.9 and arguments is not NUMBERED)
-    assert set(contents(folder)) == ({journal} if is_kept else set())
-    assert run(*arguments, *["--resume"] * is_kept) == (0, b"", "")
-    assert contents(folder) == wanted
 
 
 def test_short_work_leaves_nothing_and_removes_what_was_left(

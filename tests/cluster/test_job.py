@@ -6,7 +6,6 @@ import shutil
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from math import isclose
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -25,16 +24,6 @@ from minirt.rendering.settings import RenderSettings
 from tests.cluster.scenes import BALL, with_files
 
 SIZE = 70, 61
-
-
-@pytest.mark.parametrize("settings", [{}, {"samples": 3, "dither": True}], ids=str)
-def test_rows_are_those_of_the_whole_picture(settings: dict[str, Any]) -> None:
-    scene = BALL.replace(BALL.camera, tone="filmic") if settings else BALL
-    picture = minirt.render(scene, *SIZE, **settings)
-    for first, end in ((0, 61), (17, 18), (30, 61)):
-        some = minirt.render(scene, *SIZE, **settings, rows=(first, end))
-        assert np.array_equal(some.array, picture.array[first:end])
-        assert np.array_equal(some.linear, picture.linear[first:end])
 
 
 @pytest.mark.parametrize("rows", [(-1, 5), (3, 3), (5, 62)])

@@ -66,13 +66,6 @@ def test_tone_dithering_and_more_bits_are_those_of_the_picture(tmp_path: Path) -
     assert np.array_equal(tifffile.imread(tmp_path / "c.tif"), minirt.render(scene, *SIZE).linear.astype(np.float32))
 
 
-def test_a_region_has_the_pixels_of_the_picture(tmp_path: Path) -> None:
-    minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, region=(37, 21, 300, 370))
-    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), picture()[21:391, 37:337])
-    with pytest.raises(RenderError, match="does not lie in the picture"):
-        minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, region=(37, 21, 600, 370))
-
-
 def test_an_error_is_reached_by_the_whole_picture(tmp_path: Path) -> None:
     """The estimate, and the error against a picture of many samples."""
     reached = minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, samples="auto", error=0.004, bits=16)

@@ -16,6 +16,7 @@ from tests.faults.calls import UNUSABLE
 from tests.faults.judge import Judge
 from tests.faults.supervised import KILL, Fault, run
 from tests.faults.workloads import NAMES, Laboratory, Workload
+from tests.seeds import seed_of
 
 SAMPLE = 8  # faults of each workload: a third of a minute in all
 
@@ -45,8 +46,7 @@ def workloads(laboratory: Laboratory) -> dict[str, Workload]:
 def test_a_fault_leaves_old_or_new_files_and_is_one_sentence(
     name: str, laboratory: Laboratory, workloads: dict[str, Workload]
 ) -> None:
-    seed = random.SystemRandom().randrange(2**32)
-    print(f"seed {seed}")
+    seed = seed_of(f"faults of {name}")
     judge = Judge(laboratory, workloads[name])
     wrong = [judge.verdict(each) for each in random.Random(seed).sample(judge.faults(), SAMPLE)]
     assert not list(filter(None, wrong)), f"seed {seed}"

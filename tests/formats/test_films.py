@@ -225,23 +225,6 @@ def test_other_formats_give_numbered_files(tmp_path: Path) -> None:
     assert np.array_equal(np.asarray(pillow.open(written[1])), film()[1].array)
 
 
-@pytest.mark.parametrize("name", ["a.gif", "a.png"])
-def test_an_interrupted_movie_leaves_no_half_file(tmp_path: Path, name: str) -> None:
-    def pictures() -> Iterator[Image]:
-        yield film()[0]
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        save_movie(pictures(), tmp_path / name)
-    assert [file.name for file in tmp_path.iterdir()] == ([] if name == "a.gif" else ["a-0001.png"])
-
-
-@pytest.mark.parametrize("name", ["a.gif", "a.png"])
-def test_a_film_in_no_folder_is_an_error(tmp_path: Path, name: str) -> None:
-    with pytest.raises(RenderError, match="cannot write"):
-        save_movie(film(), tmp_path / "none" / name)
-
-
 def test_a_turntable_circles_the_scene_once() -> None:
     start = scene()
     middle = scene_centre(start)

@@ -56,25 +56,6 @@ assert status == 0
 assert numpy.array_equal(minirt.render(scene, 40, 30).array, before)  # the parent goes on, too
 """
 
-POOL = """
-import multiprocessing, sys
-import numpy, minirt
-
-def picture(samples):
-    return minirt.render(minirt.load("ball.rt"), 40, 30, samples=samples).array
-
-if __name__ == "__main__":
-    expected = [picture(samples) for samples in (1, 2, 3)]
-    with multiprocessing.get_context(sys.argv[1]).Pool(2) as pool:
-        assert all(map(numpy.array_equal, pool.map(picture, (1, 2, 3)), expected))
-        try:
-            pool.apply(minirt.load, ("bad.rt",))
-        except minirt.SceneError as error:
-            assert error.problems[0].line == 1, error.problems
-        else:
-            raise AssertionError("no error")
-"""
-
 
 def run_script(folder: Path, source: str, *arguments: str) -> None:
     """Run a program in a folder with a scene and a file that is no scene; it must end without errors."""
@@ -88,11 +69,6 @@ def run_script(folder: Path, source: str, *arguments: str) -> None:
 
 def test_a_child_renders_and_traces_that_was_forked_while_another_thread_rendered(tmp_path: Path) -> None:
     run_script(tmp_path, FORKED)
-
-
-@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
-def test_a_pool_of_processes_renders_and_reports_errors(tmp_path: Path, method: str) -> None:
-    run_script(tmp_path, POOL, method)
 
 
 def holds_in_child(condition: Callable[[], bool]) -> bool:

@@ -61,14 +61,6 @@ def test_what_the_process_holds_is_counted() -> None:
     assert before > 0
 
 
-def test_a_large_picture_is_refused_with_both_sizes() -> None:
-    minirt.limit_memory(system.resident() + 50 * MIB)
-    with pytest.raises(
-        minirt.RenderError, match=r"4000x3000 pixels needs about 80(.\d)? MiB of memory, allowed \d\d MiB"
-    ):
-        minirt.render(minirt.loads(SCENE), 4000, 3000)
-
-
 @pytest.mark.parametrize("arguments", [["-o", "x.png"], ["-o", "x.exr"], ["-o", "x.gif", "--turntable", "3"]])
 def test_the_program_refuses_a_large_picture(
     arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -70,25 +70,6 @@ def test_compiled_and_interpreted_pictures_are_the_same(scene: Scene) -> None:
     assert len(np.unique(pixels.reshape(-1, 4), axis=0)) > 400
 
 
-@pytest.mark.parametrize(
-    ("element_type", "change"),
-    [
-        (Background, {"paint": (0, 0, 0)}),
-        (FurtherLight, {"fade": None}),
-        (ParallelLight, {"brightness": 0.0}),
-        (SpotLight, {"angle": 20.0}),
-        (Plane, {"checker": None}),
-        (Plane, {"mirror": None}),
-        (Sphere, {"specular": None}),
-        (Cylinder, {"texture": None}),
-    ],
-)
-def test_each_feature_changes_the_picture(scene: Scene, element_type: type, change: dict[str, object]) -> None:
-    element = next(each for each in scene.elements if type(each) is element_type)
-    without = scene.replace(element, **change)
-    assert (interpreted(scene, 16, 10)[1] != interpreted(without, 16, 10)[1]).any(axis=-1).mean() > 0.02
-
-
 WIDTH, HEIGHT, SAMPLES = 40, 24, 2
 PACKETS = 10 * 6 * SAMPLES
 

@@ -13,11 +13,11 @@ from minirt.kernel import frame, trace
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing import lights
-from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Cylinder, Plane, Shape, Sphere, plane
 from tests import reference
 from tests.compare import edges
-from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, TWO, interpreted, linear, picture
+from tests.kernel.pictures import ALL, BLUE, GREEN, RED, TWO, interpreted, linear, picture
 
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
 
@@ -38,29 +38,6 @@ def test_every_pixel_is_rendered_at_every_size(width: int, height: int) -> None:
     interpreted_pixels, interpreted_light = interpreted(ALL, width, height)
     assert np.abs(light - interpreted_light).max() <= 1e-12
     assert np.array_equal(pixels, interpreted_pixels)
-
-
-def test_a_small_picture_is_part_of_a_larger_one() -> None:
-    # The middle of nine rows equals the only row of a picture as wide, although they fall into different packets.
-    assert np.allclose(linear(ALL, 21, 9)[4:5], linear(ALL, 21, 1), atol=1e-12, rtol=0)
-    odd = linear(ALL, 63, 27)
-    assert np.allclose(odd[1::3, 1::3], linear(ALL, 21, 9), atol=1e-12, rtol=0)
-
-
-def test_bytes_are_clamped_and_rounded() -> None:
-    pixels, light = picture(ALL, 60, 40)
-    expected = np.floor(np.clip(light, 0, 1) * 255 + 0.5)
-    assert np.array_equal(pixels[..., 2::-1], expected)
-    flash = FurtherLight(EYE.position, 1, LAMP.colour)
-    pixels, light = picture(Scene((AMBIENT, EYE, flash, flash, flash, *SHAPES)), 60, 40)
-    assert light.max() > 1.5
-    assert np.array_equal(pixels[..., 2::-1], np.floor(np.clip(light, 0, 1) * 255 + 0.5))
-
-
-def test_many_samples_approach_the_mean_of_finer_pixels() -> None:
-    # A single sample is in the centre; many approach the mean over the pixel's area, as 81 finer pixels do.
-    fine = linear(ALL, 24 * 9, 16 * 9).reshape(16, 9, 24, 9, 3).mean(axis=(1, 3))
-    assert np.abs(linear(ALL, samples=256) - fine).mean() < 0.15 * np.abs(linear(ALL) - fine).mean()
 
 
 @pytest.mark.parametrize(("width", "height"), [*SIZES, (60, 40), (150, 83)])

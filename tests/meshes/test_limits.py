@@ -21,6 +21,7 @@ from minirt.meshes import gltf, load_mesh, obj
 from tests import processes
 from tests.guards import must_not_open
 from tests.materials.test_pictures import encoded, png
+from tests.seeds import seed_of
 
 trimesh = pytest.importorskip("trimesh", reason="pip install trimesh scipy")
 
@@ -267,9 +268,7 @@ def damaged(data: bytes, chance: random.Random) -> bytes:
 
 def test_nothing_is_written_about_damaged_files(tmp_path: Path) -> None:
     """Neither by libtiff, which is no Python, nor by the loggers of Pillow and trimesh, nor as warnings of numpy."""
-    seed = random.randrange(10**6)
-    print(f"seed {seed}")
-    chance = random.Random(seed)
+    chance = random.Random(seed_of("damaged meshes and pictures"))
     box = trimesh.creation.box()
     files = [("tif", encoded("TIFF", mode, compression=each)) for mode, each in TIFF]
     files += [("glb", glb(*tree_of(encoded("TIFF", compression="tiff_lzw"))))]

@@ -13,7 +13,6 @@ import minirt.mlx.memory as memory_module
 from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
 from minirt.mlx.display import TICK
 from minirt.mlx.memory import Memory
-from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
     from minirt.mlx import Window
@@ -107,16 +106,6 @@ def test_a_program_that_does_not_end_raises(clock: Clock, hook: Hook | None) -> 
     assert clock.now - start == pytest.approx(PATIENCE, abs=0.5)
 
 
-def test_another_thread_wakes_a_loop_without_a_script() -> None:
-    _, m, mlx, _ = opened(10, 10, HANG_LIMIT)
-    m.mlx_wake_hook(mlx, lambda _: m.mlx_loop_exit(mlx))
-    thread = threading.Thread(target=m.mlx_wake, args=(mlx,))
-    m.mlx_text_hook(mlx.windows[0], lambda *_: thread.start())
-    mlx.text("a")
-    assert m.mlx_loop(mlx) == 0
-    thread.join()
-
-
 def test_a_window_of_fixed_size_keeps_it() -> None:
     """A window of fixed size that is shown larger keeps its size, and its picture is stretched."""
     memory, m, mlx, win = opened(2, 1)
@@ -127,16 +116,3 @@ def test_a_window_of_fixed_size_keeps_it() -> None:
     memory.play()
     assert m.mlx_get_window_size(win) == (0, 2, 1)
     assert memory.screenshot()[..., 0].tolist() == [[0, 0, 255, 255]] * 2
-
-
-def test_a_hidden_window_is_redrawn_when_it_is_shown_again() -> None:
-    memory, m, mlx, win = opened(4, 3)
-    memory.play()
-    memory.minimise(True)
-    memory.play()
-    m.mlx_pixel_put(mlx, win, 1, 1, 0xFFFFFFFF)
-    m.mlx_sync(mlx, m.SYNC_WIN_FLUSH, win)
-    assert not memory.screenshot()[..., :3].any()  # a buffer swap of a hidden window may take a second
-    memory.minimise(False)
-    memory.play()
-    assert memory.screenshot()[1, 1].tolist() == [255] * 4

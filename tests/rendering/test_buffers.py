@@ -23,6 +23,7 @@ TURNED = minirt.Sphere(
 MADE = minirt.Scene((minirt.Ambient(0.1, WHITE), CAMERA, minirt.Light((9, 9, -9), 1), TURNED))
 SCENES = {
     "turned": MADE,
+    "from afar": MADE.replace(CAMERA, position=(1e3, 5, -7), direction=(-0.98, -0.01, 0.01), fov=1),
     "checkered": MADE.replace(TURNED, mirror=0.5, checker=minirt.Checker(0.2)),
     "exposed": MADE.replace(CAMERA, tone="filmic", exposure=3).replace(TURNED, specular=minirt.Specular(1, 5)),
     **{name: minirt.example(name) for name in ("shapes", "material-texture", "material-glass")},

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import random
 from contextlib import suppress
 from itertools import product
 
@@ -27,6 +26,7 @@ from minirt.shapes import ALL_KINDS, Mesh, Shape
 from tests.fuzz.mutations import seeded
 from tests.fuzz.scenes import make_extreme, read
 from tests.kernel.pictures import LAMP
+from tests.seeds import seed_of
 from tests.shapes.examples import example
 
 WIDTH, HEIGHT = 8, 6
@@ -46,7 +46,7 @@ def pack(scene: Scene) -> None:
 
 def test_kernels_previews_and_clicks_take_extreme_scenes() -> None:
     """The scene is packed as for the process that compiles its kernel, which is not started."""
-    seed = random.SystemRandom().randrange(10**9)
+    seed = seed_of("extreme scenes")
     for number in range(60):
         print(seed, number)  # in the report of a failure
         scene = read(make_extreme(seeded("prepare", seed + number)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import _thread
 import gc
 import os
+import signal
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
@@ -282,13 +283,17 @@ def test_an_error_of_a_job_is_raised_and_cancels_the_others(helps: bool) -> None
 def test_ctrl_c_just_before_the_wait_is_seen() -> None:
     """`interrupt_main` does what the handler of a signal does, but ends no wait of the main thread."""
     cancelled, seen = Event(), list[bool]()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 
     def job() -> None:
         _thread.interrupt_main()
         seen.append(cancelled.wait(HANG_LIMIT))
 
-    with pytest.raises(KeyboardInterrupt):
-        ThreadPool(1).run([job], cancelled.set)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            ThreadPool(1).run([job], cancelled.set)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert seen == [True]
 
 

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from random import SystemRandom
 from typing import Any
 
 import numpy as np
@@ -29,6 +28,7 @@ from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes import ALL_KINDS, Cylinder, Plane, Sphere
 from tests.kernel.pictures import ALL, EYE, SHAPES
 from tests.random_scenes import random_scene
+from tests.seeds import seed_of
 from tests.shapes.examples import example
 
 
@@ -101,7 +101,7 @@ def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
 
 
 def test_a_crowd_packed_in_columns_has_the_numbers_of_its_shapes_packed_one_by_one() -> None:
-    seed = SystemRandom().randrange(2**32)
+    seed = seed_of("a crowd")
     crowded = [kind for kind in ALL_KINDS if kind.element.columnar]
     assert crowded
     for kind in crowded:
@@ -229,7 +229,7 @@ def follow_edits(seed: int, precision: str) -> None:
 def test_lists_in_the_memory_of_those_before_are_those_of_the_new_scene(
     precision: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    seed = SystemRandom().randrange(2**32)
+    seed = seed_of(f"edits in {precision}")
     monkeypatch.setattr(shape_arrays, "morton_order", lambda boxes: np.arange(len(boxes))[::-1])  # also after edits
     for each in range(seed, seed + 4):
         monkeypatch.setattr(shape_arrays, "CROWD", (50_000, 0)[each % 2])
@@ -285,8 +285,7 @@ def follows(seed: int, precision: str) -> int:
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_arrays_follow_a_camera_that_moves_and_turns(precision: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    seed = SystemRandom().randrange(2**32)  # each run tries other walks
-    print(f"seeds from {seed} on")
+    seed = seed_of(f"walks in {precision}")
     assert sum(follows(seed + i, precision) for i in range(8)) > 8 * STEPS / 4
     follow = View.follow  # says where lists of lights and materials change, too
     monkeypatch.setattr(View, "follow", lambda *arguments: follow(*arguments) or True)
@@ -360,18 +359,6 @@ def test_many_shapes_have_the_numbers_of_each() -> None:
     assert [arrays.planes[i, :3].tolist() for i in range(10)] == [list(mixed[i].normal) for i in arrays.plane_indices]
     assert not arrays.update(tuple(arrays.shapes))
     assert not arrays.update((*mixed,))
-
-
-def test_adding_or_removing_a_kind_allocates_all_arrays_anew() -> None:
-    arrays = ShapeArrays()
-    for shapes in (MANY[:3], SHAPES, MANY[:2], (), SHAPES):
-        assert arrays.update(tuple(shapes))
-        assert [len(rows) for rows in arrays.rows] == [
-            sum(type(each) is kind for each in shapes) for kind in arrays.group_numbers
-        ]
-        assert sum(map(len, arrays.rows)) == len(shapes)
-        assert arrays.first_primitive.tolist() == [*range(len(shapes) + 1)]
-        assert (len(arrays.first_ball), arrays.first_ball[-1]) == (len(shapes) + 1, len(arrays.balls))
 
 
 def test_extents_and_boxes_of_several_shapes() -> None:

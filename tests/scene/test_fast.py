@@ -24,7 +24,7 @@ from minirt.scene import describe, element_reader, fast, parse, parser
 from minirt.scene.lines import Log, line_from
 from minirt.scene.parser import read_lines
 from tests.scene.conftest import exact, no_plain_lines, read_by_both
-from tests.scene.examples import CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
+from tests.scene.examples import CYLINDER, PLANE, SPHERE, problems, scene_with
 from tests.scene.strategies import ANY
 
 MANY = fast.MANY_LINES  # of a file, so that the fast path reads it
@@ -75,27 +75,6 @@ def test_the_fast_path_reads_comments_and_blank_lines(line: str) -> None:
     log = Log("test.rt", lenient=False)
     assert list(fast.read([SPHERE, line, SPHERE], MANY))[1] == line == parser.read_line(line_from(2, line), {}, log)
     assert not log.errors + log.notices
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        *("//", "# a\r#", "\v", "\xa0# a", "#\0", "\ufeff"),
-        *(CAMERA, LIGHT, f"\ufeff{SPHERE}", "l 0,0,0 1", f"{SPHERE} 7", f"{SPHERE} roll:1"),
-        *(SPHERE + end for end in ("\r\r", "#\r\r", "#\0", "\x85", ",", " //")),
-        *(f"sp 0,0,20 {size} 1,2,3" for size in ("0", "-1", "nan", "inf", "1e999", "1_0", "٣", "1.1e15", "0x1")),
-        *(f"sp {centre} 5 1,2,3" for centre in ("0,20", "0,0,20,1", "0,0,1e16", "0,,20", "0,0,20,", "0,0,nan")),
-        *(f"sp 0,0,20 5 {colour}" for colour in ("1,2,256", "1,2,3.0", "1,2,-1", "1,2,1e2", "#ffffff")),
-        *(f"pl 0,0,0 {normal} 1,2,3" for normal in ("0,0,0", "0,0.99,0", "0,1.1,0")),
-        *("l 0,0,0 1.5 1,2,3", f"\v{SPHERE}", "sp\xa00,0,20 5 1,2,3", "sp 0,0,20\v5 1,2,3", "Sp 0,0,20 5 1,2,3"),
-    ],
-)
-def test_the_fast_path_skips_a_line_and_reads_its_neighbours(line: str) -> None:
-    before, element, after = fast.read([SPHERE, line, SPHERE], MANY)
-    assert element is None
-    assert not isinstance(before, str | None)
-    assert not isinstance(after, str | None)
-    assert before.source == after.source == SPHERE
 
 
 def test_the_fast_path_reads_no_lines_with_line_feeds() -> None:

@@ -175,21 +175,15 @@ def test_a_lone_surrogate_is_not_text() -> None:
     ("line", "column", "message"),
     [
         ("sp 0,0,20 " + "9" * 2**20 + " 1,2,3", 11, "sphere diameter must be a number, got 1048576 characters: '999"),
-        ("sp 0,0," + "0" * 2**20 + ".5 5 1,2,3", 8, "sphere centre z must be a number, got 1048578 characters: '000"),
-        ("sp 0,0,20 5 1,2," + "3" * 2**20, 17, "sphere colour B must be a whole number, got 1048576 characters"),
         ("sp 0,0,20 5 1" + "," * 2**20, 17, "sphere colour must be R,G,B"),
         ("sp 0,0,20 5 1,2,3" + " 1" * 2**19, 19, "sphere has no further field '1'"),
-        ("s" * 2**20 + " 0,0,20", 1, "unknown element 'sss"),
         ("sp 0,0,20 " + "x" * 2**20 + ":5 5", 10, "sphere diameter and colour are missing"),
         ("sp 0,0,20 5 1,2,3 " + "x" * 2**20 + ":5", 19, "unknown attribute 'xxx"),
         ("sp 0,0,20 5" + " " * 2**20 + "1,2,x", 2**20 + 16, "sphere colour B must be a whole number, got 'x'"),
-        ("5" * 2**20, 1, "a line begins with one of"),
         ("/" * 2**20, 1, "a comment begins with '#'"),
         ("sp 0,0,20 5 1,2,3" + "\v" * 2**20, 18, "got U+000B"),
-        ("sp 0,0,20 5 1,2,3" + "\tx" * 2**19 + "\v\r", 2**20 + 18, "got U+000B"),
-        ("sp 0,0,20 5 1,2,3" + "x" * 2**20 + "\r\v", 2**20 + 18, "a carriage return"),
     ],
-    ids=range(14),
+    ids=range(8),
 )
 def test_a_line_of_a_megabyte_is_refused_with_a_short_message(line: str, column: int, message: str) -> None:
     with must_end():

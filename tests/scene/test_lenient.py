@@ -10,7 +10,7 @@ from minirt.errors import SceneError
 from minirt.scene import Ambient, Camera, FurtherCamera, FurtherLight, Light, dump, load, parse
 from minirt.scene.dialect_tables import DARK, SECOND
 from minirt.scene.lines import MAX_NOTICES
-from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
+from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, problems, read, scene_with
 
 
 @pytest.mark.parametrize("lenient", [False, True])
@@ -66,23 +66,6 @@ def test_a_scene_without_ambient_light_has_a_black_one() -> None:
     assert notice.message == f"{DARK}: A"
     assert scene.ambient == Ambient(0, (255, 255, 255))
     assert dump(scene) == f"A 0 255,255,255\n{text}"
-
-
-@pytest.mark.parametrize("lenient", [False, True])
-def test_the_example_of_the_subject_is_read(lenient: bool) -> None:
-    scene, notices = parse(SUBJECT, "test.rt", lenient)
-    assert [(each.line, each.column) for each in notices] == [(2, 12), (4, 16)]
-    assert scene.camera.direction == (0, 0, 1)
-    assert scene.planes[0].normal == (0, 1, 0)
-    assert dump(scene) == SUBJECT
-
-
-def test_an_error_in_a_later_light_is_found() -> None:
-    for line, column in (("L 0,0,x 1", 7), ("L 0,0,0 one", 9)):
-        assert [(each.line, each.column) for each in problems(scene_with(LIGHT, line), lenient=True)] == [
-            (4, 1),
-            (4, column),
-        ]
 
 
 @pytest.mark.parametrize(

@@ -152,7 +152,7 @@ def played(
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
     """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
-    return play(scene(text), lines, renderer=FakeRenderer(), size=size, path=path, keys=keys, watch=watch)
+    return play(parse(text, path).scene, lines, renderer=FakeRenderer(), size=size, path=path, keys=keys, watch=watch)
 
 
 def write(path: Path, text: str) -> None:

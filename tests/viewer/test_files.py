@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import threading
 
-import numpy as np
 import pytest
 
 from minirt.helpers.file_io import stamps
 from minirt.scene import load
 from minirt.viewer.app.replay import play
 from minirt.viewer.files import WatchedFile, contents_differ, save_recovery
-from tests.viewer.fake import TEXT, FakeRenderer, colour_of, played, scene, write
+from tests.viewer.fake import TEXT, FakeRenderer, played, scene, write
 from tests.waiting import until
 
 SELECT_SPHERE = ("press Tab", "press Tab")
@@ -33,27 +32,6 @@ def test_copies_are_numbered(path):
         assert load(path.with_name(name)).scene.spheres == ()
 
 
-def test_reading_again_shows_the_scene_of_the_file(path):
-    path.write_text(OTHER)
-    session = played(*SELECT_SPHERE, "press d", "press F5", path=path)
-    assert session.state.scene.spheres[0].diameter == 7
-    assert session.state.element.title == "sphere"
-    assert (session.picture == colour_of(session.state.scene)).all()
-    assert not contents_differ(session.state.scene, session.saved)
-    path.write_text("A 0 0,0,0\nC 0,0,0 0,0,1 60\n")  # which has fewer elements
-    assert played("press Shift+Tab", "press Shift+Tab", "press F5", path=path).state.element.title == "camera"
-
-
-def test_reading_a_broken_file_keeps_the_picture_and_shows_the_error(path):
-    path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
-    session = played("press d", "press F5", path=path)
-    assert f"{path}:5:10: sphere diameter must be > 0" in session.state.message
-    assert "and 1 more" in session.state.message
-    assert session.state.scene.camera.position[0] > 0
-    assert (session.picture == colour_of(session.state.scene)).all()
-    assert not np.array_equal(session.screen.frame, played("press d", path=path).screen.frame)
-
-
 @pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
 def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the_file(tmp_path):
     copy = save_recovery(scene(), tmp_path / "none" / "scene.rt")
@@ -61,51 +39,6 @@ def test_a_recovered_scene_goes_to_a_temporary_folder_if_it_cannot_be_beside_the
     assert load(copy).scene.items == scene().items
     copy.unlink()
     copy.parent.rmdir()
-
-
-CAMERA = ("press C",)
-LOOKING = (
-    "press d",
-    "hold Left 0.3",
-    "press .",
-    "drag 5,3 20,12",
-    "drag 10,10 22,16 right",
-    "drag 33,23 45,15 middle",
-    "wheel up 3",
-    "press L\npress F",
-    "press d\npress Home",
-)
-VALUES = ("text 50\npress Return", "press +", "press T", "move 33,23\npress Shift+F", "press M\npress Return")
-POSED = ("press V\npress V\npress V\npress V\ntext 3\npress Return",)
-
-
-@pytest.mark.parametrize("tone", ["plain", "srgb"])
-@pytest.mark.parametrize(
-    ("lines", "unsaved"),
-    [
-        *((each, False) for each in LOOKING),
-        *((each, True) for each in (*VALUES, *POSED)),
-        ("text 50\npress Return", True),
-    ],
-)
-def test_values_of_the_camera_are_to_be_saved_and_looking_around_is_not(path, tone, lines, unsaved):
-    """With --tone and --exposure the window shows another scene than the file holds, which the user did not change."""
-    saved = load(path).scene
-    shown = saved.replace(saved.camera, tone=tone, exposure=0.0 if tone == "plain" else 1.0)
-
-    def differs(*more: str) -> bool:
-        session = play(
-            shown, [*CAMERA, *lines.split("\n"), *more], renderer=FakeRenderer(), size=(64, 48), path=path, saved=saved
-        )
-        return contents_differ(session.state.scene, session.saved)
-
-    assert differs() == unsaved
-    assert not unsaved or differs("press d", "press Left")
-    assert not differs(*["press Ctrl+Z"] * 3)
-    assert not differs("press Ctrl+S")
-    assert not differs("press Ctrl+S", "press C", "press d")
-    path.write_text(TEXT)
-    assert differs("press Ctrl+S", "press Ctrl+Z") == (unsaved and lines != "press d\npress Home")
 
 
 def test_a_tone_that_a_key_makes_that_of_the_file_again_is_no_change(path):

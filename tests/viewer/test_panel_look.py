@@ -11,7 +11,7 @@ import pytest
 
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
-from minirt.scene import dump, load, parse
+from minirt.scene import dump, parse
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter
@@ -24,7 +24,7 @@ from slimgui import imgui
 from minirt.viewer.panel import style
 from minirt.viewer.panel.numbers import spellings
 from minirt.viewer.panel.pages import step_title
-from tests.viewer.test_panel import User, finished
+from tests.viewer.test_panel import User
 
 SIZES = [(400, 300), (1280, 720), (1920, 1080), (3840, 2160)]
 BOX = TEXT + "bo 0,0,5 0,1,0 1,2,3 9,9,9\n"
@@ -153,14 +153,8 @@ def test_no_text_is_cut_off(size: tuple[int, int], language: str, monkeypatch: p
     assert cut == []
 
 
-def test_a_double_click_selects_all_of_a_number_and_the_picker_reads_hexadecimal_digits() -> None:
+def test_the_picker_reads_hexadecimal_digits() -> None:
     user = User(parse(TEXT, "scene.rt").scene, select=3)
-    user.click("centre: y")
-    user.type("-12.5")
-    user.click("centre: y")
-    user.click("centre: y")
-    user.type("7")
-    assert user.element.centre == (0, 7, 0)
     user.click("colour picker")
     user.click("colour hex")
     user.type("ff8000")
@@ -238,20 +232,6 @@ def test_saved_pictures_are_as_large_as_the_window_and_the_shown_one_stays(tmp_p
     assert (tmp_path / "scene-2.png").read_bytes() == (tmp_path / "scene-1.png").read_bytes()
     assert beside.refinement.latest.job.size == beside.screen.size != beside.window_size
     assert not beside.screenshot_pending
-
-
-def test_a_finished_film_says_so_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "scene.rt").write_text(TEXT)
-    user = User(load(tmp_path / "scene.rt").scene, (640, 480))
-    user.click("Picture")
-    user.panel._pages._pictures = 1
-    bars, bar = itertools.count(), imgui.progress_bar
-    monkeypatch.setattr(imgui, "progress_bar", lambda *_, **options: (next(bars), bar(*_, **options)))
-    user.click("film")
-    assert finished(user) == user.state.message == f"film: {tmp_path / 'scene-1.gif'}"
-    shown = next(bars)
-    user.panel.frame()
-    assert next(bars) == shown + 1  # no bar of progress any more
 
 
 def test_the_steps_of_the_history_are_told_in_french(monkeypatch: pytest.MonkeyPatch) -> None:

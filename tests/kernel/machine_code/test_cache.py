@@ -139,18 +139,6 @@ def test_a_lock_is_free_although_a_forked_process_has_its_file_open(
     os.close(reader)
 
 
-@POSIX
-def test_a_disk_that_fails_at_a_lock_stops_no_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> None:
-        raise OSError(errno.EIO, os.strerror(errno.EIO))
-
-    monkeypatch.setattr("fcntl.flock", fail)
-    done = []
-    with CodeCache(tmp_path).compiling_once("a kernel"):
-        done.append("compiled")
-    assert done == ["compiled"]
-
-
 # The fingerprint: the level of the processor, and all sources of a kernel in a fixed order.
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from math import asin, cos, radians, sin, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
 import pytest
 
 import minirt
-from minirt.materials import Glass, Mirror, Tint
+from minirt.materials import Glass, Tint
 from minirt.rendering.packing.materials import encloses
 from minirt.scene import Ambient, Background, Camera, Light, Scene
-from minirt.shapes import KINDS, Box, Plane, Sphere, Square
+from minirt.shapes import KINDS, Plane, Sphere, Square
 from tests.kernel.pictures import Array, interpreted
 from tests.shapes.examples import example
 
@@ -29,52 +29,11 @@ def seen(*elements: Any, eye: tuple[float, ...] = (0, 0, -9), towards: tuple[flo
     return interpreted(Scene((Camera(eye, towards, 1e-6), *elements)), 4, 4)[1][0, 0]  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("off", [0.0, 1.0, 1.9])
-def test_a_ball_absorbs_along_its_chord(off: float) -> None:
-    chord = 2 * sqrt(4 - off * off)
-    assert np.allclose(seen(SKY, BALL, eye=(off, 0, -9)), LEFT ** (chord / 3) * BEYOND, rtol=1e-6)
-
-
-@pytest.mark.parametrize("angle", [0.0, 40.0, 70.0])
-def test_a_pane_absorbs_along_the_refracted_ray(angle: float) -> None:
-    pane = Box((0, 0, 0), (0, 1, 0), (90, 90, 0.5), WHITE, glass=Glass(1.5, 0.9), tint=Tint(GREEN, 0.25))
-    direction = sin(radians(angle)), 0.0, cos(radians(angle))
-    way = 0.5 / cos(asin(sin(radians(angle)) / 1.5))
-    # Black in its own colour, so that only what comes through is seen.
-    black = pane.replace(colour=(0, 0, 0))
-    eye = tuple(-9 * part for part in direction)
-    assert np.allclose(seen(SKY, black, eye=eye, towards=direction), 0.81 * LEFT ** (way / 0.25) * BEYOND, rtol=1e-6)
-
-
 def test_an_eye_inside_and_shapes_inside() -> None:
     core = Sphere((0, 0, 0), 1, (0, 0, 255))
     assert np.allclose(seen(LIGHT, SKY, BALL, core), LEFT**0.5 * (0, 0, 1), rtol=1e-9)
     assert np.allclose(seen(SKY, BALL, eye=(0, 0, 0.5)), LEFT**0.5 * BEYOND, rtol=1e-9)
     assert np.allclose(seen(LIGHT, SKY, BALL, core, eye=(0, 0, -1.4)), LEFT**0.3 * (0, 0, 1), rtol=1e-9)
-
-
-def test_overlapping_solids_both_absorb() -> None:
-    other = Sphere((0, 0, 1.5), 4, WHITE, glass=CLEAR, tint=Tint(ROSE, 1.0))
-    assert np.allclose(seen(SKY, BALL, other), LEFT ** (4 / 3) * RED_LEFT**4 * BEYOND, rtol=1e-9)
-    assert np.allclose(seen(SKY, BALL, other, eye=(0, 0, 0)), LEFT ** (2 / 3) * RED_LEFT**3.5 * BEYOND, rtol=1e-9)
-
-
-def test_the_side_below_a_plane_is_inside() -> None:
-    water = Plane((0, 0, 0), (0, 0, -1), (0, 0, 0), glass=Glass(1.33), tint=Tint(GREEN, 2.0))
-    ground = Plane((0, 0, 5), (0, 0, -1), ROSE)
-    for eye, way in ((-9, 5), (3, 2)):
-        assert np.allclose(seen(LIGHT, SKY, water, ground, eye=(0, 0, eye)), LEFT ** (way / 2) * RED_LEFT, rtol=1e-9)
-    assert not seen(SKY, water).any()  # nothing is left after an endless way
-
-
-def test_sheets_tint_once_each() -> None:
-    panes = [Square((0, 0, z), (0, 0, 1), 9, WHITE, glass=CLEAR, tint=Tint(GREEN, 7.0)) for z in (0, 1, 5)]
-    assert np.allclose(seen(SKY, *panes), LEFT**3 * BEYOND, rtol=1e-9)
-
-
-def test_black_tint_and_white_tint() -> None:
-    assert np.allclose(seen(SKY, BALL.replace(tint=Tint((0, 255, 255)))), (0, 0.6, 0.4), rtol=1e-9)
-    assert np.array_equal(seen(SKY, BALL.replace(tint=None)), seen(SKY, BALL.replace(tint=Tint(WHITE))))
 
 
 # Light that falls straight down from (0, 9, 0) onto the floor below the balls.
@@ -96,37 +55,6 @@ def test_light_through_glass() -> None:
     assert np.allclose(lit_below(pane), 0.7 * LEFT, rtol=1e-6)
     assert not lit_below(BALL, Sphere((0, 5, 0), 2, WHITE)).any()
     assert not lit_below(BALL, Sphere((0, 5, 0), 2, WHITE, mirror=1.0)).any()
-
-
-def test_a_lamp_inside_and_one_behind_the_floor_and_glass_behind_the_lamp() -> None:
-    assert np.allclose(lit_below(BALL, lamp=Light((0, 1, 0), 1.0)), LEFT, rtol=1e-6)
-    all_inside = BALL.replace(diameter=40.0, tint=Tint(GREEN, 20.0))
-    expected = LEFT ** (4 / 20) * LEFT ** (sqrt(68) / 20)  # from the lamp, and to the eye
-    assert np.allclose(lit_below(all_inside, lamp=Light((0, 1, 0), 1.0)), expected, rtol=1e-6)
-    assert np.allclose(lit_below(BALL.replace(centre=(0, 20, 0))), 1.0)
-
-
-def test_reflected_and_refracted_light_fades_with_the_distance() -> None:
-    """A wall behind the eye is seen in a mirror that ends the light at a distance."""
-    wall, mirror = Plane((0, 0, -12), (0, 0, 1), ROSE), Plane((0, 0, 0), (0, 0, -1), (0, 0, 0))
-    for fade, share in ((0.0, 1.0), (48.0, 0.75), (16.0, 0.25), (12.0, 0.0), (6.0, 0.0)):
-        light = seen(LIGHT, wall, mirror.replace(mirror=Mirror(0.5, fade)))
-        assert np.allclose(light, 0.5 * share * RED_LEFT, rtol=1e-9, atol=1e-12)
-        through = Square((0, 0, -24), (0, 0, -1), 9, (0, 0, 0), glass=Glass(1.0, 0.5, fade))
-        assert np.allclose(seen(LIGHT, wall, through, eye=(0, 0, -30)), 0.5 * share * RED_LEFT, atol=1e-12)
-    assert not seen(SKY, Plane((0, 0, 0), (0, 0, -1), (0, 0, 0), mirror=Mirror(1.0, 1e9))).any()
-
-
-def test_glow_is_added_to_all_other_light() -> None:
-    ball = BALL.replace(glass=None, tint=None, colour=GREEN)
-    glowing, shade = ball.replace(glow=0.25), Sphere((-3, 0, -6), 2, WHITE)
-    lamp = Light((-6, 0, -9), 1.0)
-    for lights in ((), (LIGHT,), (lamp,), (lamp, shade)):
-        assert np.allclose(seen(*lights, glowing), seen(*lights, ball) + 0.25 * LEFT, rtol=1e-12)
-    assert np.allclose(lit_below(glowing), lit_below(ball))  # lights nothing else
-    mirror = Plane((0, 0, 3), (0, 0, -1), (0, 0, 0), mirror=0.5)
-    assert np.allclose(seen(mirror, glowing.replace(centre=(0, 0, -15))), 0.125 * LEFT, rtol=1e-9)
-    assert np.array_equal(seen(LIGHT, ball.replace(glow=0.0)), seen(LIGHT, ball))
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)

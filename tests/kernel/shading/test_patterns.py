@@ -10,15 +10,14 @@ import pytest
 
 import minirt
 from minirt.kernel.shading import patterns
-from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply_patterns, share_and_slope
+from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, share_and_slope
 from minirt.lanes import Vec, load
 from minirt.materials import Clouds, Marble, Wood
 from minirt.rendering.packing.lights import Colours
 from minirt.rendering.packing.materials import pack_patterns
 from minirt.scene import Ambient, Camera, Scene
-from minirt.shapes import KINDS, Cylinder, Kind, Plane, Sphere, Torus
+from minirt.shapes import Plane, Sphere
 from tests.reference import texturing as reference
-from tests.shapes.examples import example
 from tests.shapes.execution_modes import on_lanes, vec_lanes
 
 NUMBERS = {Marble: MARBLE, Wood: WOOD, Clouds: CLOUDS}
@@ -94,49 +93,7 @@ def test_slopes_are_those_of_differences_of_50_digits(kind: Any) -> None:
                 assert np.abs(slope).max() > 0.1
 
 
-def packed(shape: Any) -> Patterns:
-    """Return the patterns of one shape."""
-    return pack_patterns([(0, shape)], 1, np.zeros(1, np.int64), {"patterns"}, Colours())
-
-
-def colours(shape: Any, points: np.ndarray) -> np.ndarray:
-    """Return the colours of a black shape at points (n, 3) seen from nearby."""
-    black = np.zeros(len(points))
-    p = Vec(*points.T)
-    _, colour = apply_patterns(packed(shape), 0, p, black, Vec(black, black, black + 1), Vec(black, black, black))
-    return np.stack([colour.x, colour.y, colour.z], axis=-1)
-
-
 ALL_PATTERNS = {"marble": Marble(0.7, (255, 0, 0)), "wood": Wood(0.5, (0, 255, 0)), "clouds": Clouds(0.9, (0, 0, 255))}
-
-
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-def test_patterns_of_every_kind_are_those_of_the_reference(kind: Kind) -> None:
-    shape = example(kind, np.random.default_rng(3)).replace(**ALL_PATTERNS)
-    points = np.random.default_rng(4).normal(size=(64, 3)) + reference.frame(shape)[0]
-    none = np.zeros_like(points)
-    expected, _ = reference.patterned(shape, points, none[:, 0], none, none + np.array([0, 0, 1]))
-    assert np.abs(colours(shape, points) - expected).max() < 1e-9
-
-
-@pytest.mark.parametrize(
-    "shape",
-    [
-        Sphere((1, 2, 3), 4, WHITE, **ALL_PATTERNS),
-        Cylinder((1, 2, 3), (0.6, 0, 0.8), 4, 5, WHITE, **ALL_PATTERNS),
-        Torus((1, 2, 3), (0.6, 0, 0.8), 4, 1, WHITE, **ALL_PATTERNS),
-    ],
-    ids=lambda shape: shape.title,
-)
-def test_there_is_no_seam_and_no_pole(shape: Any) -> None:
-    # Around circles about the axis, and towards it, colours change by no more than their steepest slope.
-    origin, axes = reference.frame(shape)
-    turns = np.linspace(0, 2 * np.pi, 20_000)
-    for radius, height in ((2.0, 0.1), (1.3, -1.5), (1e-3, 2.0)):
-        circle = np.stack([radius * np.cos(turns), radius * np.sin(turns), np.full_like(turns, height)], axis=-1)
-        found = colours(shape, origin + circle @ axes)
-        assert np.abs(np.diff(found, axis=0)).max() < 40 * radius * turns[1]
-        assert np.abs(found[0] - found[-1]).max() < 1e-9
 
 
 def floor_shares(kind: Any, x: np.ndarray, z: np.ndarray, footprints: np.ndarray) -> np.ndarray:

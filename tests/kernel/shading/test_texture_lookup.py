@@ -57,10 +57,6 @@ def colour_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any)
     return colour.x, colour.y, colour.z
 
 
-def gradient_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any) -> Any:
-    return texturing.height_gradient(texels, pictures, which, load(u, i), load(v, i))
-
-
 def compiled(which: int, u: Array, v: Array) -> Array:
     """Look up colours by the compiled kernel, (n, 3)."""
     return on_lanes(colour_lanes, 3, TEXELS, PICTURES, which, u, v).T
@@ -120,18 +116,6 @@ def test_no_texture_coordinate_leads_out_of_the_picture(which: int, lookup: Look
     assert got.max() <= picture_of(which).max() + 1e-6
 
 
-@pytest.mark.parametrize("which", range(len(IMAGES)))
-def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
-    height, width = IMAGES[which].shape[:2]
-    u, v = np.random.default_rng(which).uniform(-2, 2, (2, 160))
-    slope_u = expected_colours(which, u + 0.5 / width, v) - expected_colours(which, u - 0.5 / width, v)
-    slope_v = expected_colours(which, u, v + 0.5 / height) - expected_colours(which, u, v - 0.5 / height)
-    expected = np.stack([slope_u[:, 0] * width, slope_v[:, 0] * height])
-    lanes = on_lanes(gradient_lanes, 2, TEXELS, PICTURES, which, u, v)
-    for got in (np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
-        assert np.abs(got - expected).max() < 1e-5
-
-
 GREY = (9, 9, 9)
 UP, DOWN, FRONT = (0, 1, 0), (0, -1, 0), (0, 0, -1)
 SHAPES: tuple[Shape, ...] = (
@@ -180,17 +164,6 @@ def test_a_texture_seen_from_the_front_is_upright_and_not_mirrored(shape: Shape,
         assert np.abs(quarter_colours(light) - expected).max() < 1e-3
 
 
-@pytest.mark.parametrize("kind", [Plane, Square, Disc])
-@pytest.mark.parametrize(("normal", "eye"), [(UP, (0, 9, 0)), (DOWN, (0, -9, 0))])
-def test_textures_of_floors_and_ceilings_are_upright_seen_vertically(
-    kind: type[Shape], normal: Triple, eye: Triple, folder: Path
-) -> None:
-    corner = (-0.5, 0, normal[1] * 0.5) if kind is Plane else (0, 0, 0)
-    shape = kind(corner, normal, *(() if kind is Plane else (3.0,)), GREY)
-    light = linear(scene_of(folder, shape, eye, (0, -normal[1], 0)), 32, 32)
-    assert np.abs(quarter_colours(light) - [RED, GREEN, BLUE, WHITE]).max() < 1e-3
-
-
 def test_every_kind_is_tested() -> None:
     missing = {kind.element for kind in KINDS} - {type(shape) for shape in SHAPES}
     if missing:
@@ -219,43 +192,6 @@ def middle_colour(file: Path, direction: Triple, *shapes: Shape) -> tuple[int, i
     return red, green, blue
 
 
-@pytest.mark.parametrize("shapes", [(FAR_OFF,), ()])
-@pytest.mark.parametrize(
-    ("longitude", "latitude", "column", "row"),
-    # Longitude from +z towards -x, which is to the right looking along +z; latitude from the horizon towards +y.
-    [(22.5, 22.5, 4, 1), (-22.5, 22.5, 3, 1), (112.5, -22.5, 6, 2), (-157.5, 67.5, 0, 0), (157.5, -67.5, 7, 3)],
-)
-def test_directions_map_to_pixels_of_the_environment_map(
-    file: Path, longitude: float, latitude: float, column: int, row: int, shapes: tuple[Shape, ...]
-) -> None:
-    a, b = np.radians([longitude, latitude])
-    direction = (-np.sin(a) * np.cos(b), np.sin(b), np.cos(a) * np.cos(b))
-    assert middle_colour(file, direction, *shapes) == (30 * column, 30 * row, 0)
-
-
 def test_straight_up_is_the_upper_row_of_the_environment_map(file: Path) -> None:
     assert middle_colour(file, (0, 1, 0), FAR_OFF)[1] == 0
     assert middle_colour(file, (0, -1, 0), FAR_OFF)[1] == 90  # not interpolated with the row at the other pole
-
-
-def test_a_mirror_reflects_the_environment_map(file: Path) -> None:
-    ball = Sphere((5, 6, 9), 2, PALE, mirror=1.0)
-    # Straight back, which is on the seam.
-    assert middle_colour(file, (0, 0, 1), ball) in {(0, 45, 0), (210, 45, 0), (105, 45, 0)}
-    # The normal is halfway between the directions to the eye and to the mirrored square.
-    mirrored = np.array([-np.sin(np.radians(112.5)), 0, np.cos(np.radians(112.5))]) * np.cos(np.radians(22.5))
-    mirrored[1] = np.sin(np.radians(22.5))
-    normal = mirrored - [0, 0, 1]
-    normal /= np.linalg.norm(normal)
-    hit = np.array([5, 6, 9]) + normal
-    eye = hit - [0, 0, 2]
-    items = (Camera(tuple(eye), (0, 0, 1), 1e-6), Background("sky.png"), ball)
-    assert minirt.render(Scene(items, file), 1, 1).array[0, 0].tolist() == [180, 30, 0]
-
-
-def test_a_background_colour_fills_pixels_without_shapes() -> None:
-    items = (Ambient(1, PALE), Camera((0, 0, -9), (0, 0, 1), 60), Background((20, 130, 240)))
-    for shapes in ((), (Sphere((0, 0, 0), 2, (255, 0, 0)),)):
-        picture = minirt.render(Scene((*items, *shapes)), 16, 16).array
-        assert picture[0, 0].tolist() == [20, 130, 240]
-        assert picture[8, 8].tolist() == ([255, 0, 0] if shapes else [20, 130, 240])

@@ -1,4 +1,4 @@
-"""Checkerboards, bump maps and normal maps; bump maps against the normals of the raised surface."""
+"""Checkerboards, normal maps, and bump maps where a surface has no tangents."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ import pytest
 
 from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped
 from minirt.lanes import Vec, load
-from minirt.shapes import KINDS, Kind
 from tests.kernel.pictures import Array
 from tests.shapes.execution_modes import array, on_lanes, vec, vec_lanes
-from tests.shapes.mapping_checks import SurfaceMapping, cases, interpreted, lengths
+from tests.shapes.mapping_checks import SurfaceMapping, lengths
 from tests.shapes.regimes import random_directions, unit
 
 SIDE = 256  # pixels along an edge of the height map
@@ -79,60 +78,6 @@ def compiled_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Arr
 
 
 EITHER = pytest.mark.parametrize("bend", [interpreted_bend, compiled_bend])
-ALL = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-
-
-def raised_normals(at: Any, normals: Array, strength: float, width: Array) -> Array:
-    """Return the normals of a surface raised by the relief around each of the places, whose u, v and tangents are `at`.
-
-    The surface passes through the place itself; heights are in widths of the picture there.
-    """
-    h = 1e-5
-    slopes = [(height(at.u + a, at.v + b) - height(at.u - a, at.v - b)) / (2 * h) for a, b in ((h, 0), (0, h))]
-    risen = [
-        along + (strength * width * slope)[:, None] * normals
-        for along, slope in zip((at.along_u, at.along_v), slopes, strict=True)
-    ]
-    return unit(np.cross(*risen))
-
-
-def largest_error(kind: Kind, bend: Bend, size: float = 1.0, strength: float = STRENGTH) -> float:
-    """Return the largest distance of a bump-mapped normal from the expected normal."""
-    errors = []
-    for case in cases(kind, size, 0.0):
-        at = interpreted(case.shape, case.points, case.normals)
-        result = bend("bump", height_map(strength), at, case.normals)
-        expected = raised_normals(case.right, case.normals, strength, lengths(at.along_u))
-        errors.append(float(lengths(result - expected).max()))
-    return max(errors)
-
-
-@ALL
-@EITHER
-@pytest.mark.parametrize("size", [1.0, 1e-6, 1e6])
-def test_bump_mapped_normals_are_those_of_the_raised_surface(kind: Kind, bend: Bend, size: float) -> None:
-    for strength in (STRENGTH, -0.3):
-        assert largest_error(kind, bend, size, strength) < 2e-3
-
-
-@EITHER
-def test_bumps_of_a_mirrored_picture_point_outwards_too(bend: Bend) -> None:
-    # Meshes may have mirrored texture coordinates.
-    (case, *_) = cases(KINDS[0], 1.0, 0.0)
-    at, right = interpreted(case.shape, case.points, case.normals), case.right
-    mirrored = at._replace(u=1 - at.u, along_u=-at.along_u)
-    other = right._replace(u=1 - right.u, along_u=-right.along_u)
-    expected = -raised_normals(other, case.normals, STRENGTH, lengths(at.along_u))
-    assert lengths(bend("bump", height_map(), mirrored, case.normals) - expected).max() < 2e-3
-
-
-@EITHER
-def test_a_flat_height_map_changes_no_normal(bend: Bend) -> None:
-    # Even a normal that is not perpendicular to the tangents, as on a mesh with smooth normals.
-    at, _ = skewed_tangents()
-    normals = unit(np.cross(at.along_u, at.along_v) + 0.5 * at.along_u)
-    flat = maps_of(np.full((3, 4, 1), 0.7))
-    assert lengths(bend("bump", flat, at, normals) - normals).max() < 1e-6
 
 
 @EITHER

@@ -12,13 +12,25 @@ from PIL import Image as pillow  # noqa: N813
 
 from minirt.element import fields_of
 from minirt.errors import FileError
-from minirt.materials import Attributes, Bump, Checker, Clouds, Compound, Glass, Marble, Mirror, Specular, Tint, Wood
-from minirt.materials.glass import BLACK
-from minirt.rendering.packing.features import FEATURES, features
+from minirt.materials import (
+    Attributes,
+    Bump,
+    Checker,
+    Clouds,
+    Compound,
+    Glass,
+    Marble,
+    Mirror,
+    Placement,
+    Specular,
+    Tint,
+    Wood,
+)
+from minirt.rendering.packing.features import FEATURES, features, shape_features
 from minirt.rendering.packing.materials import pack_materials
 from minirt.rendering.settings import render
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, load
-from minirt.shapes import Plane, Shape, Sphere, Square
+from minirt.shapes import Plane, Shape, Sphere
 from tests.kernel.pictures import EYE
 
 GREY = (128, 128, 128)
@@ -47,55 +59,6 @@ def test_every_material_names_a_feature() -> None:
     for field in fields_of(Attributes):
         feature = field.record.feature if isinstance(field, Compound) else field.feature
         assert feature in FEATURES, f"{field.name} needs a feature in minirt/rendering/packing/features.py"
-
-
-def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
-    plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert vars(materials_of(plain, np.arange(2))) == {}
-
-
-def test_each_shape_has_its_row(tmp_path: Path) -> None:
-    shapes = (
-        BALL,
-        BALL.replace(specular=Specular(0.5, 20, blinn=True), checker=Checker(0.25, (255, 0, 51))),
-        BALL.replace(mirror=0.25, glass=Glass(1.5, 0.5)),
-        BALL.replace(mirror=0.5, glass=Glass(1.25)),
-    )
-    scene = scene_of(tmp_path, *shapes)
-    packed = materials_of(scene, np.arange(4))
-    reflective, maps = packed.reflective, packed.surface_maps
-    assert np.array_equal(packed.specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
-    assert np.allclose(reflective, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
-    assert np.allclose(maps.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
-    assert np.array_equal(maps.used, [0, 1, 0, 0])
-    assert (maps.textures, maps.bumps, maps.normals) == (None, None, None)
-
-
-def test_mirrors_and_glass_have_their_rows(tmp_path: Path) -> None:
-    shapes = (
-        BALL.replace(mirror=Mirror(0.25, 4.0), fresnel=0.5),
-        BALL.replace(glass=Glass(1.5, 0.9, 8.0), tint=Tint((51, 255, 0), 2.0)),
-        Square((0, 0, 0), (0, 1, 0), 1, GREY, glass=Glass(1.5), mirror=1.0, tint=Tint((51, 255, 0), 2.0)),
-        BALL.replace(glow=0.75, tint=Tint((9, 9, 9)), fresnel=1.0),
-    )
-    scene = scene_of(tmp_path, *shapes)
-    packed = materials_of(scene, np.arange(4))
-    assert np.allclose(packed.reflective, [[0.25, 0, 3], [0, 0.9, 1.5], [0.5, 0.5, 1.5], [0, 0, 1]])
-    assert np.allclose(packed.transparent[:, :4], [[0, 0, 1, 0], [0, 0.9, 1.5, 0], [0.5, 0.5, 1.5, 0], [0, 0, 1, 0]])
-    assert np.allclose(packed.media[1], [np.log2(5) / 2, 0, BLACK, 1, 1, 1])
-    assert np.allclose(packed.media[[0, 2, 3]], [[0, 0, 0, 1, 1, 1], [0, 0, 0, 0.2, 1, 0], [0, 0, 0, 1, 1, 1]])
-    assert np.array_equal(packed.fresnel, [0.5, 0, 0, 1])
-    assert np.allclose(packed.fades, [[0.25, 0], [0, 0.125], [0, 0], [0, 0]])
-    assert np.array_equal(packed.glow, [0, 0, 0, 0.75])
-
-
-def test_the_primitives_of_a_shape_have_its_row(tmp_path: Path) -> None:
-    scene = scene_of(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    packed = materials_of(scene, np.array([0, 1, 1, 1]))
-    maps = packed.surface_maps
-    assert np.array_equal(packed.reflective[:, 0], [0, 0.5, 0.5, 0.5])
-    assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
-    assert np.array_equal(maps.used, [0, 1, 1, 1])
 
 
 def test_a_material_that_no_face_uses_changes_nothing(tmp_path: Path) -> None:
@@ -173,6 +136,22 @@ def test_each_feature_is_found_where_it_is_used() -> None:
     assert features_of(SUN) == {"spots", "parallel"}
     assert features_of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
     assert features_of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
+
+
+FLOOR = Plane((0, 0, 0), (0, 1, 0), GREY)
+GLOBE = BALL.replace(checker=Checker(0.125))
+
+
+def test_the_kernel_has_the_feature_only_where_a_picture_is_placed() -> None:
+    scaled = Placement(2, 2)
+    assert "placements" in shape_features(GLOBE.replace(uv=scaled))
+    assert "placements" not in shape_features(GLOBE.replace(uv=Placement(1, 1)))
+    assert "placements" in shape_features(GLOBE.replace(axis=(1, 0, 0)))
+    assert "placements" in shape_features(GLOBE.replace(roll=-90.0))
+    assert "placements" not in shape_features(GLOBE.replace(roll=360.0))
+    assert "placements" not in shape_features(GLOBE.replace(checker=None, specular=Specular(0.5, 9), roll=5.0))
+    assert "placements" not in shape_features(GLOBE.replace(checker=None, marble=Marble(1.0), roll=5.0))
+    assert "placements" not in shape_features(FLOOR.replace(checker=Checker(1), roll=5.0))
 
 
 def test_elements_without_effect_use_no_feature() -> None:

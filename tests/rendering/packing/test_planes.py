@@ -41,19 +41,6 @@ def test_tiles_above_the_horizon_are_empty(side: int) -> None:
     assert not listed[6:].any()
 
 
-def test_a_wall_beside_the_eye_is_on_one_side() -> None:
-    listed = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), Plane((2, 0, 0), (1, 0, 0), GREY))))
-    left, right = listed[:, :9], listed[:, 11:]  # +x is on the left of an eye that looks along +z
-    assert left.all()
-    assert not right.any()
-
-
-def test_an_eye_that_looks_away_sees_no_plane_and_an_eye_in_it_sees_it_everywhere() -> None:
-    assert not tiles_of_plane(Scene((Camera((0, 0, 0), (0, 1, 0), 60), FLOOR))).any()
-    assert tiles_of_plane(Scene((Camera((0, 0, 0), (0, -1, 0), 60), FLOOR))).all()
-    assert tiles_of_plane(Scene((Camera((5, -1, 0), (0, 1, 0), 60), FLOOR))).all()
-
-
 @pytest.mark.parametrize("size", [1.0, 1e8])
 def test_a_point_on_a_plane_within_rounding_has_height_zero(size: float) -> None:
     random = np.random.default_rng(1)

@@ -24,6 +24,7 @@ from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.paths import SCENES
 from tests.random_scenes import random_scene
 from tests.rendering.test_frame_runner import cancelled
+from tests.seeds import seed_of
 from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 
 Array = NDArray[np.float64]
@@ -225,7 +226,7 @@ def excesses(seed: int, pictures: int = 120) -> np.ndarray:
 
 
 def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytest.MonkeyPatch) -> None:
-    seed = int(np.random.default_rng().integers(2**32))
+    seed = seed_of("misjudged classes")
     kept = excesses(seed)
     assert np.quantile(kept, 0.95) < 1, seed
     assert np.median(kept) > 0.4, seed

@@ -26,6 +26,7 @@ from minirt.rendering.sampling.packets import (
 )
 from tests.kernel.pictures import TWO
 from tests.rendering.sampling.test_auto import HEIGHT, KNOWN, WIDTH, reference, rms
+from tests.seeds import seed_of
 
 RAYS = 4 * PACKET_HEIGHT
 FACTOR = 1.5  # between estimated and true errors of refined pictures
@@ -145,7 +146,7 @@ def test_equal_classes_get_uniform_samples_and_others_what_is_cheaper() -> None:
 
 
 def test_a_packet_is_at_most_two_classes_below_its_neighbours() -> None:
-    random = np.random.default_rng()
+    random = np.random.default_rng(seed_of("classes"))
     classes = np.where(random.random((9, 7)) < 0.1, random.integers(CLASSES, size=(9, 7)), 0).astype(np.uint8)
     found = with_neighbours(classes)
     for y, x in np.ndindex(classes.shape):

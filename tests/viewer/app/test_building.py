@@ -7,7 +7,6 @@ from itertools import pairwise
 from math import dist, hypot
 from pathlib import Path
 
-import numpy as np
 import pytest
 from PIL import Image as pillow  # noqa: N813
 
@@ -145,13 +144,6 @@ def test_letters_and_arrows_choose_from_the_list(keys: list[str], kind: str) -> 
         assert ended.state.aim is None or count
 
 
-def test_letters_are_keys_again_when_the_list_is_closed() -> None:
-    session = played("press N", "press Return", "press d", "press N", "press Return", "press N")
-    assert len(session.state.scene.spheres) == 4
-    assert played("press N", "press d").state.element.title == "disc"
-    assert played("press N", "text 4", "press Return").state.element.diameter == 4
-
-
 @pytest.mark.parametrize("key", ["press Left", "press +", "press Tab", "press Ctrl+Z"])
 def test_after_an_edit_another_element_of_the_same_kind_is_added(key: str) -> None:
     before = played("press N", "press N", "press N")
@@ -164,17 +156,6 @@ def test_an_element_without_attributes_has_no_list_of_them() -> None:
     ambient = played("press Shift+Tab", "press M")
     assert "no attribute that can be added" in ambient.state.message
     assert title(ambient) == ""
-
-
-def test_attributes_are_chosen_from_a_list() -> None:
-    session = played(*SPHERE, "press M", "press g", "press l", "press a")
-    assert session.state.element.glass is not None
-    assert session.state.element.specular is None
-    assert session.state.active is not None
-    assert session.state.active.field.name == "glass"
-    mirror = played(*SPHERE, *(f"press {letter}" for letter in "Mmirror")).state.element
-    assert mirror.mirror is not None
-    assert played(*SPHERE, "press M", "press Escape").state.element == scene().spheres[0]
 
 
 @pytest.mark.parametrize(
@@ -251,17 +232,6 @@ def test_a_minus_after_equals_begins_a_negative_number() -> None:
     assert played(*SPHERE, "text -").state.element.diameter < 2  # the key by itself is that of a step
 
 
-def test_a_new_cone_stands_on_its_base() -> None:
-    cone = played("press N", "press c", "press o", "press n", "press e", text=BLANK).state.element
-    assert cone.axis == (0, -1, 0)
-    assert cone.apex[1] == pytest.approx(cone.height)
-
-
-def test_each_typed_character_is_drawn_at_once() -> None:
-    frames = [played(*SPHERE, f"text {typed}").screen.frame for typed in ("3", "3.", "3.5")]
-    assert not any(np.array_equal(one, other) for one, other in pairwise(frames))
-
-
 def test_the_line_of_information_says_what_keys_do() -> None:
     state = played(*SPHERE, "text 3.8", "press Return").state
     assert "+ - diameter" in hints(state, every=False)
@@ -271,9 +241,3 @@ def test_the_line_of_information_says_what_keys_do() -> None:
     assert isinstance(brim.element, Cylinder)
     assert "+ - height" in hints(brim, every=True)
     assert "height [0.25]" in fitting_words(brim, 600, 16)
-
-
-def test_a_new_element_is_under_the_pointer_on_the_grid() -> None:
-    """On the ground a pixel is 1 / 8 wide, and a cell of the grid 1 / 10."""
-    added = played("move 40,20", "press N", text="A 0.2 255,255,255\nC 0,4,0 0,-1,0 90\n").state.element
-    assert [abs(added.centre[axis]) for axis in (0, 2)] == pytest.approx([1.1, 0.4])  # 8.5 / 8, 3.5 / 8

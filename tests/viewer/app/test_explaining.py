@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -23,10 +21,7 @@ from minirt.viewer.display.views import VIEWS, view_pixels
 from minirt.viewer.editing.projection import projection_of
 from tests.viewer.app.test_lists import SIZE_OF_WINDOW as SIZE
 from tests.viewer.app.test_lists import clicked, play, right_click
-from tests.viewer.app.test_real_window import picture, viewing
 from tests.viewer.fake import played, scene
-from tests.waiting import until
-from tests.windows import Desktop
 
 MIDDLE = "move 320,240"  # of the window of recorded keys: on the sphere
 
@@ -162,21 +157,3 @@ def test_a_view_follows_the_camera() -> None:
 
 def test_a_view_that_is_not_wanted_any_more_is_not_made() -> None:
     assert view_pixels(scene(), "depth", 64, 48, lambda: False) is None
-
-
-@pytest.mark.window
-def test_a_real_window_draws_rays_and_views(desktop: Desktop, tmp_path: Path) -> None:
-    with viewing(desktop, tmp_path / "scene.rt") as viewer:
-        viewer.key("i", "i")
-        viewer.shows(picture(viewer.path))
-        viewer.key("i")  # with text and rays again
-        desktop.move(viewer.window, 160, 120)
-        viewer.key("y", "a", "a")  # which moves the camera, so that the ray from the eye is no point
-        beside = slice(100, 140), slice(200, 300)  # where the ray from the old eye comes from the right
-        until(lambda: (desktop.screenshot(viewer.window)[beside] == 255).all(axis=-1).any(), "a white ray")
-        viewer.key("Home", "o", "i", "i")  # the last ones hide what the window says about the view
-        normals = view_pixels(minirt.load(viewer.path), "normals", 320, 240)
-        assert normals is not None
-        viewer.shows(normals[..., 2::-1])
-        viewer.key("o", "o", "o", "i", "i", "i")
-        viewer.shows(picture(viewer.path))

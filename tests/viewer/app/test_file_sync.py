@@ -345,17 +345,6 @@ def test_the_changes_of_a_killed_program_are_offered_until_they_are_taken(path):
     assert "unsaved" not in opened(path).session.screen.banner
 
 
-def test_taken_changes_can_be_undone(path):
-    killed_after_an_edit(path)
-    harness = opened(path)
-    harness.play("press F5")
-    harness.play(UNDO)
-    assert dump(harness.session.state.scene) == TEXT
-    harness.play("press F5")
-    assert "read again" in harness.session.state.message
-    end_recovery(harness.session)
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [

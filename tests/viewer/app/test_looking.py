@@ -90,13 +90,6 @@ def test_steps_that_follow_each_other_look_once_for_what_is_there(monkeypatch: p
     assert asked == [(33, 23), (34, 23), (34, 23)]
 
 
-def test_the_wheel_with_shift_changes_the_active_value_by_whole_steps() -> None:
-    for wheel, diameter in (("up", 2.1), ("down", 2 / 1.05)):
-        session = played("click 33,23", "down Shift", f"wheel {wheel} 1 5,5", "up Shift")
-        assert session.state.scene.spheres[0].diameter == pytest.approx(diameter, abs=1e-4)
-        assert camera_of(session) == scene().camera.position
-
-
 LOOKING = (
     "drag 5,3 20,12",
     "wheel up 3 33,23",

@@ -207,11 +207,6 @@ def test_the_window_shows_the_tone_and_the_dithering_of_the_file_and_a_key_chang
         assert "scene.recovered.rt" in out  # a tone is a value to be saved
 
 
-def test_escape_right_after_the_start_ends_the_program(viewer):
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
-
-
 def test_keys_of_a_stopped_program_count_when_it_goes_on_and_ctrl_c_ends_it(viewer):
     path = viewer.path
     viewer.key("i", "i")
@@ -228,20 +223,6 @@ def test_keys_of_a_stopped_program_count_when_it_goes_on_and_ctrl_c_ends_it(view
     os.killpg(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
     assert list(path.parent.iterdir()) == [path]
-
-
-@pytest.mark.each_python
-def test_keys_edit_and_save_the_scene(viewer):
-    viewer.key("i", "i")
-    viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere
-    until(lambda: viewer.path.read_text() != WITH_CYLINDER, "the saved scene")
-    scene = minirt.load(viewer.path)
-    assert scene.spheres[0].centre[1] > 0
-    assert scene.spheres[0].diameter == pytest.approx(2.1)
-    viewer.key("Tab")  # clears the message
-    viewer.shows(picture(viewer.path))
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
 
 
 def test_a_file_that_is_not_there_opens_as_a_new_scene_and_is_written_by_a_key(desktop, tmp_path):
@@ -263,33 +244,3 @@ def test_a_file_that_is_not_there_opens_as_a_new_scene_and_is_written_by_a_key(d
         viewer.key("Escape")
         assert viewer.end() == (0, "", "")
     assert len(list(tmp_path.iterdir())) == 2
-
-
-def test_a_scene_in_a_dialect_opens_says_what_is_missing_and_is_saved_after_a_question(desktop, tmp_path):
-    path, foreign = tmp_path / "other.rt", WITH_CYLINDER + "qd 1,2,3 4 5,6,7\nsp 0,3,0 1 red 100\n"
-    with viewing(desktop, path, text=foreign, title=": 1 shape is missing: qd") as viewer:
-        viewer.key("i", "i", "ctrl+s", "ctrl+shift+s")  # the first one asks
-        until((tmp_path / "other-1.rt").exists, "the copy")
-        assert path.read_text() == foreign
-        viewer.key("ctrl+s")
-        until(lambda: path.read_text() != foreign, "the saved scene")
-        assert minirt.load(path).spheres[-1].specular == minirt.Specular(0.5, 100)
-        viewer.key("Escape")
-        status, told, errors = viewer.end()
-    assert (status, errors[:6], errors.splitlines()[-1][:17]) == (0, "Error\n", "The window shows ")
-    assert [line.split(":")[2] for line in told.splitlines() if line.startswith("notice")] == ["7", "8", "8"]
-
-
-def test_dropped_files_are_opened(viewer, tmp_path):
-    viewer.key("i", "i")
-    viewer.shows(picture(viewer.path))
-    for types in (1, 3, 5):
-        other = tmp_path / f"another {types}.rt"
-        other.write_text(WITH_CYLINDER.replace("sp 0,0,0 2", f"sp 0,0,0 1.{types}"))
-        where = [str(viewer.window), "20", "20"]
-        viewer.desktop.run(sys.executable, "-m", "tests.mlx.drag_source", *where, str(types), str(other))
-        assert viewer.desktop.find(f"miniRT - {other.name}") == viewer.window
-        viewer.key("Tab")  # clears the message
-        viewer.shows(picture(other))
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")

@@ -166,14 +166,6 @@ def test_lines_that_are_left_out_are_counted():
     assert last_lines("a\nb\nc", 1) == "c"
 
 
-def test_the_line_level_draws_one_line():
-    pixels = blank()
-    assert draw_hud(pixels, initial_state(scene()), Outcome(Job(scene(), 640, 480)), HudLevel.LINE, 0.0, 16) == 0
-    changed = (pixels != 255).any(axis=(1, 2))
-    assert changed[:20].any()
-    assert not changed[40:].any()
-
-
 def test_a_message_is_wrapped_and_drawn_above_the_status():
     pixels = blank(300, 200)
     draw_lines(pixels, -MARGIN - 27, wrap("a very long message " * 10, 300, 16), MESSAGE_COLOUR, 16)

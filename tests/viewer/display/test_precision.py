@@ -17,6 +17,7 @@ from tests.viewer.fake import TEXT, FakeRenderer
 from tests.waiting import HANG_LIMIT
 
 SIZE = 96, 64
+BALL = "A 0.2 255,255,255\nC 0,0,10 0,0,-1 90\nsp 0,0,0 2 255,0,0"  # of one kind: its kernels compile sooner
 MOST_LEVELS = ROOT / "scenes" / "eval-shadows-many.rt"  # where rounding decides levels of many pixels
 
 
@@ -62,16 +63,16 @@ def test_what_moves_is_single_and_what_has_settled_is_double_bit_for_bit(samples
 
 
 @pytest.mark.parametrize(
-    ("line", "precision"),
+    ("text", "precision"),
     [
-        ("", "single"),  # by the user's wish: there is one renderer
-        ("sp 0,0,-1000 0.0001 255,255,255", "double"),  # stiff: small for its distance
-        ("sp 0,3,0 1 255,255,255 mirror:0.5", "double"),
-        ("dl 0,-1,0 0.1 255,255,255" + "\nsp 0,3,0 1 255,255,255" * 9, "double"),  # its shadows need a BVH
+        (TEXT, "single"),  # by the user's wish: there is one renderer
+        (f"{TEXT}sp 0,0,-1000 0.0001 255,255,255", "double"),  # stiff: small for its distance
+        (f"{BALL} mirror:0.5", "double"),
+        (f"{BALL}\ndl 0,-1,0 0.1 255,255,255" + "\nsp 0,3,0 1 255,255,255" * 9, "double"),  # its shadows need a BVH
     ],
 )
-def test_scenes_that_single_precision_cannot_show_move_in_double(line: str, precision: str) -> None:
-    assert not any(each.single for each in pictures(f"{TEXT}{line}\n", 1, precision))
+def test_scenes_that_single_precision_cannot_show_move_in_double(text: str, precision: str) -> None:
+    assert not any(each.single for each in pictures(text, 1, precision))
 
 
 def test_single_precision_is_left_where_it_is_not_faster() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from math import asin, atan, degrees, dist, tan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,17 +13,17 @@ from minirt.element import Element
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH
 from minirt.materials import Checker
 from minirt.rendering.packing.camera import camera_frame
-from minirt.scene import Camera, Scene, describe, dump, load, parse
-from minirt.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere, Square, Torus, Triangle
+from minirt.scene import Camera, Scene, describe, dump, parse
+from minirt.shapes import Box, Cylinder, Ellipsoid, Plane, Sphere, Square, Torus
 from minirt.shapes.shape import Flat, Oriented
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import scene_size
-from minirt.viewer.editing.rigid import rodrigues, rotate
+from minirt.viewer.editing.rigid import rotate
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.values import round_changes, values
 from tests.reference.uv_mapping import right_and_up_on
 from tests.reference.vectors import own_x_and_z
-from tests.viewer.fake import played, scene
+from tests.viewer.fake import scene
 
 Matrix = NDArray[np.float64]
 GREY, BOARD = (200, 200, 200), Checker(0.125)
@@ -175,29 +174,6 @@ def test_a_shape_that_looks_the_same_is_not_turned() -> None:
     for shape, listed in ((pole, False), (pole.replace(checker=BOARD), True), (plain, False), (globe, True)):
         assert ("roll" in {value.name for value in values(shape)}) == listed
     assert "roll" in {value.name for value in values(BLOCK)}
-
-
-def test_keys_and_drags_in_a_window_turn_and_save_a_square_on_the_floor(tmp_path: Path) -> None:
-    text = "A 0.2 255,255,255\nC 0,3,-6 0,-0.4,1 60\nsq 0,0,0 0,1,0 4 200,100,50  # a tile\n"
-    path = tmp_path / "tile.rt"
-    path.write_text(text)
-    session = played("click 32,24", "press Right", "press Right", "press Ctrl+S", text=text, path=path)
-    assert path.read_text() == text.replace("50  #", "50 roll:10  #")
-    assert load(path).scene.items == session.state.scene.items
-    dragged = played("down Shift", "drag 32,24 44,24", "up Shift", text=text)
-    assert dragged.state.element == parse(text).scene.shapes[0].replace(roll=45.0)
-
-
-def test_a_triangle_turns_right_handed_about_its_centre() -> None:
-    triangle = Triangle((0, 0, 7), (3, 0, 7), (0, 3, 7), (9, 9, 9))  # around 1,1,7
-    turned = rotate(triangle, (0, 0, 1), 90)
-    assert [turned.a, turned.b, turned.c] == [pytest.approx(each) for each in ((2, 0, 7), (2, 3, 7), (-1, 0, 7))]
-
-
-def test_a_third_of_a_turn_about_the_diagonal_exchanges_the_axes() -> None:
-    diagonal, axes = (3**-0.5,) * 3, [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
-    turned = [rodrigues(each, diagonal, 120) for each in axes]
-    assert turned == [pytest.approx(each, abs=1e-15) for each in (axes[1], axes[2], axes[0])]
 
 
 # Sizes of scenes, and positions of the camera that frame an element.

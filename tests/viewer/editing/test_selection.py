@@ -146,11 +146,6 @@ def test_a_name_is_typed_and_written_into_the_line(tmp_path) -> None:
     assert dump(played(*named, "press F2", "press Return", "press Ctrl+Z").state.scene) == TEXT
 
 
-def test_keys_are_letters_while_a_name_is_typed() -> None:
-    state = played("click 32,24", "press F2", "press d", "press Delete", "text d", "press Return").state
-    assert "sp 0,0,0 2 255,0,0 # d\n" in dump(state.scene)
-
-
 def test_a_name_is_an_unsaved_change_and_looking_around_none() -> None:
     from minirt.viewer.files import contents_differ
 

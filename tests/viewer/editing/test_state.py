@@ -10,17 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from minirt.scene import Scene, describe, dump, load, parse
+from minirt.scene import Scene, describe, dump, parse
 from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.display.overlay import element_line
 from minirt.viewer.editing import state as state_module
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import SAMPLE_SIZE, scene_size
-from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, index_of, initial_state, stack_after_reading
+from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state, stack_after_reading
 from minirt.viewer.editing.values import leading_decimal, nice_number
-from tests.paths import ROOT
-from tests.viewer.fake import TEXT, played, scene
+from tests.viewer.fake import played, scene
 
 HEAD = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 0,0,0 1\n"
 EDITS = ("right", "turn left", "grow", "undo", "redo", "duplicate", "delete", "look at", "reset camera", "undo", "undo")
@@ -31,17 +30,13 @@ CHOICES = ("select next", "select previous", "select camera", "select light", "n
 @pytest.mark.parametrize(
     ("actions", "fov", "moves", "message"),
     [
-        ("grow, moment, grow, moment, grow, moment, grow", 98, False, ""),
         ("grow, moment, grow, moment, grow, moment, grow, undo", 90, False, ""),
         ("grow, moment, grow, moment, grow, moment, grow, undo, redo", 98, False, ""),
         ("grow, pause, grow, undo", 92, False, ""),
-        ("grow, right, grow, turn left, undo", 94, True, ""),
-        ("grow, right, grow, turn left, undo, undo", 92, True, ""),
         ("grow, right, grow, turn left, undo, undo, undo", 92, False, ""),
         ("grow, right, grow, turn left, undo, undo, undo, undo", 90, False, ""),
         ("grow, select next, select camera, grow, undo", 92, False, ""),
         ("grow, next value, next value, next value, next value, grow, undo", 92, False, ""),
-        ("grow, right, undo, undo, redo, redo", 92, True, ""),
         ("grow, right, undo, undo, redo, redo, redo", 92, True, "nothing to redo"),
         ("grow, undo, right, redo", 90, True, "nothing to redo"),
         ("undo", 90, False, "nothing to undo"),
@@ -151,7 +146,6 @@ def test_the_last_of_many_elements_is_selected(many: Scene) -> None:
 WILD = "# by hand\nA 0.2 255,255,255\n\tC  0.123456789012345,0,10   0,0,-1 90  # eye\nL 5,5,5 0.5\n\n" + "\n".join(
     f"sp   {i}.000,{i / 3!r},-{i}e0 1.50\t{i},0,0   spc:.50,3e1   mir:0.250\t # no. {i}" for i in range(20)
 )
-FILES = sorted((*ROOT.glob("scenes/*.rt"), *ROOT.glob("tests/scene/wild/*.rt")))
 WILDS = (WILD, WILD.replace("\n", "\r\n"), f"\ufeff{WILD}\n\n\n")
 
 
@@ -203,16 +197,6 @@ def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag, wi
     assert dump(session.state.scene).encode() == path.read_bytes()
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_moving_a_shape_of_any_scene_changes_one_line(path):
-    scene = load(path, lenient=True).scene
-    old = dump(scene).split("\n")
-    for shape in scene.shapes[:: max(1, len(scene.shapes) // 20)]:
-        state = apply(initial_state(scene).select(index_of(scene, shape)), "right")
-        new = dump(state.scene).split("\n")
-        assert sum(a != b for a, b in zip(old, new, strict=True)) == 1
-
-
 def test_editing_an_attribute_changes_one_word_of_its_line(tmp_path):
     path = tmp_path / "wild.rt"
     path.write_bytes(WILDS[1].encode())
@@ -221,12 +205,3 @@ def test_editing_an_attribute_changes_one_word_of_its_line(tmp_path):
     old, new = WILDS[1].split("\n"), path.read_bytes().decode().split("\n")
     ((before, after),) = ((a, b) for a, b in zip(old, new, strict=True) if a != b)
     assert before.replace("spc:.50,3e1", "spc:0.55,30") == after
-
-
-def test_unchanged_coordinates_keep_all_their_digits():
-    text = TEXT.replace("sp 0,0,0 2", "sp 0.1234567890123,0.98765432109876,0 2.0000000001")
-    state = apply(apply(apply(initial_state(scene(text)), "select next"), "select next"), "next frame")
-    x, y, z = apply(state, "right").element.centre
-    assert (y, z) == (0.98765432109876, 0)
-    assert len(str(x)) < 12
-    assert apply(state, "right").element.diameter == 2.0000000001
