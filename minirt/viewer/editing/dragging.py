@@ -24,6 +24,7 @@ from minirt.viewer.editing.projection import UP, Pixel, Projection, dot, extent,
 from minirt.viewer.editing.rigid import can_turn, shifted
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value, leading_decimal, values
+from minirt.viewer.language import GAP
 
 PIXEL_CENTRE = 0.5  # pixels
 CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
@@ -134,7 +135,8 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
         step = SNAP_ANGLE if start.snaps else FINE if start.fine else 1.0
         angle = snapped((first - last) * facing, step)
         turned = motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
-        return turned.with_message(f"turned by {angle:.3g} degrees    Ctrl: by steps of {SNAP_ANGLE:g}")
+        said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
+        return turned.with_message(GAP.join(said))
     if handle.kind == SLIDE:  # in the level plane
         depths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in (view.ray(*at) for at in ends)]
         ways = [linear_combination(depth, view.ray(*at), 0.0, centre) for depth, at in zip(depths, ends, strict=True)]
