@@ -55,8 +55,9 @@ class Judge:
         self.inner = self.judged & self.is_inner()
         self.fit = self.fitted(guess)
         sky = lighting.background(case.scene)
-        shown = (np.abs(self.colours - sky).max(axis=-1) > tolerance) | (self.seen.owner >= 0)
-        self.counted = self.inner & shown  # background where the guess expects it is no evidence
+        differ, drawn = (np.abs(each - sky).max(axis=-1) > tolerance for each in (self.colours, self.fit.shown))
+        self.counted = self.inner & (differ | (self.seen.owner >= 0))  # background where it is expected is no evidence
+        self.lit = self.counted & (differ | drawn)  # nor are shadows alone that are as dark as the background
 
     def look(self, guess: Guess, across: int = 0, down: int = 0) -> Seen:
         """Trace the sample, or the pixels beside it."""
@@ -83,13 +84,14 @@ class Judge:
     def even(self, guess: Guess) -> NDArray[np.bool_]:
         """Whether inner pixels fit to the others of their shapes, whatever their light."""
         seen = self.look(guess)
-        residual = lighting.unevenness(seen, self.colours, guess)[self.counted]
+        residual = lighting.unevenness(seen, self.colours, guess)[self.lit]
         even: NDArray[np.bool_] = residual < (lighting.STEADY / 2) ** 2
         return even
 
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""
-        return float((fit.error[self.counted] > self.tolerance).mean()) if self.counted.any() else 1.0
+        off = fit.error > self.tolerance
+        return max(float(off[mask].mean()) if mask.any() else 1.0 for mask in (self.counted, self.lit))
 
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
@@ -171,7 +173,7 @@ def causes(judge: Judge, guess: Guess) -> list[Cause]:
             continue
         sentence, told = row.sentence, row.value
         if name == "specular":
-            sentence = FREE["share"].format(sentence=sentence, value=round(fit.specular, 2))
+            sentence = FREE["share"].format(sentence=sentence, value=round(float(fit.factors[lighting.SPECULAR]), 2))
         if name == "background":
             told = [round(each * 255) for each in fit.background]
             here = [round(each * 255) for each in lighting.background(scene)]
@@ -191,9 +193,9 @@ def factors(judge: Judge) -> list[Cause]:
     diffuse = [round(float(each), 2) for each in fit.diffuse]
     if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
         diffuse = diffuse[:1]
-    told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
+    told = {"ambient": [round(float(fit.factors[lighting.AMBIENT]), 2)], "diffuse": diffuse}
     if lighting.has_highlights(judge.case.scene) and not guess["specular"]:
-        told["specular"] = [round(fit.specular, 2)]
+        told["specular"] = [round(float(fit.factors[lighting.SPECULAR]), 2)]
     if guess["fading"]:
         del told["diffuse"]  # whose unit is a free choice of the other program
     found = []

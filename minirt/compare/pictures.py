@@ -121,13 +121,13 @@ def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
     """Return the reference under a guess; black where the light of shapes is not known."""
     height, width, _ = theirs.shape
     case = Case(scene, theirs / 255)
-    fit, reach = case.fit(guess, LARGE), case.see(guess, LARGE).reach
+    fit = case.fit(guess, LARGE)
     under = np.zeros_like(theirs)
     rows = max(BAND // width, 1)
     for start in range(0, height, rows):
         y, x = np.mgrid[start : min(start + rows, height), 0:width].reshape(2, -1).astype(float)
-        seen = see(scene, (width, height), x, y, guess)._replace(reach=reach)
-        shown = lighting.drawn(lighting.columns(scene, seen, guess), seen, guess, fit.factors, fit.background)
+        seen = see(scene, (width, height), x, y, guess)
+        shown = lighting.drawn(lighting.columns(scene, seen, guess, fit.factors), seen, guess, fit.factors, fit.background)
         shown = shown[:, ::-1] if guess["colours"] == "swapped" else shown
         shown[~case.judged[seen.owner]] = 0
         under[start : start + rows] = np.rint(255 * shown).reshape(-1, width, 3)

@@ -63,7 +63,7 @@ class Case:
 
     def see(self, guess: Guess, count: int) -> Seen:
         """Return what the pixels of a sample show under a guess; the last ones are kept."""
-        key = count, *(guess[name] for name in GEOMETRIC)
+        key = count, guess["reflections"], *(guess[name] for name in GEOMETRIC)
         if key not in self.kept:
             if len(self.kept) > 400:
                 self.kept.clear()
