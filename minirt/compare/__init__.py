@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.compare import answer, pictures
+from minirt.compare import answer, lighting, pictures
 from minirt.compare.answer import Cause, Rest
 from minirt.compare.search import Case, search
 from minirt.compare.table import OURS, Guess
@@ -90,7 +90,7 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
         return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
     if int(np.ptp(theirs, axis=(0, 1)).max()) <= pictures.EDGE:
         return Comparison(False, 0.0, (), (), (*notices, "The picture has one colour alone."), scene, theirs, OURS)
-    tolerance = answer.tolerance_of(is_lossy)
+    tolerance = lighting.LEVEL * ((pictures.CLOSE_LOSSY if is_lossy else pictures.CLOSE) + 0.5)
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
     judge = answer.at_edges(answer.needed(case, OURS if is_alike else search(case), tolerance))

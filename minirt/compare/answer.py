@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import atan, degrees
 from typing import Any, NamedTuple
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from minirt.compare import lighting
 from minirt.compare.geometry import Seen, changed_scene, on_cap, owners, see, slopes
-from minirt.compare.lighting import LEVEL, Fit
+from minirt.compare.lighting import Fit
 from minirt.compare.search import GEOMETRIC, Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
 
@@ -72,8 +73,7 @@ class Judge:
             near = self.look(self.guess, across, down)
             inner &= near.owner == self.seen.owner
             inner &= (near.open_to == self.seen.open_to).all(axis=0)
-            bent = np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1)
-            inner &= bent < 0.5
+            inner &= np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1) < 0.5
         return inner
 
     def fitted(self, guess: Guess, fixed: str = "") -> Fit:
@@ -84,8 +84,7 @@ class Judge:
     def even(self, guess: Guess) -> NDArray[np.bool_]:
         """Whether inner pixels fit to the others of their shapes, whatever their light."""
         seen = self.look(guess)
-        residual = lighting.unevenness(seen, self.colours, guess)[self.lit]
-        even: NDArray[np.bool_] = residual < (lighting.STEADY / 2) ** 2
+        even: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess)[self.lit] < (lighting.STEADY / 2) ** 2
         return even
 
     def left(self, fit: Fit) -> float:
@@ -104,36 +103,37 @@ def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:
     return won - lost if won > CLEARLY * lost else 0.0
 
 
+def plainer(guess: Guess, names: Iterable[str]) -> dict[str, Guess]:
+    """Return a guess without each of its differences among some parameters."""
+    found = {}
+    for name in names:
+        if guess[name] != OURS[name]:
+            found[name] = guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))}
+    return found
+
+
 def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
-    """Leave out, one by one, what a guess explains nothing by; return the judge of the guess that remains."""
+    """Leave out, one by one, what a guess explains nothing by; return the judge of the guess that remains.
+
+    What has no difference instead may need no factor that is not this program's.
+    """
     while True:
         judge = Judge(case, guess, tolerance)
-        different = [name for name in guess if guess[name] != OURS[name] and name != "pixel"]
-        plainer = [guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))} for name in different]
-        fits = [judge.fitted(each) for each in plainer]
-        gains = [(judge.gain(fit), number) for number, fit in enumerate(fits) if is_simpler(fit, judge.fit)]
+        others = [each for name, each in plainer(guess, guess).items() if name != "pixel"]
+        fits = [judge.fitted(each) for each in others]
+        gains = [(judge.gain(fit), number) for number, fit in enumerate(fits) if fit.odd <= judge.fit.odd]
         if not gains or min(gains)[0] > LEAST_GAIN:
             return judge
-        guess = plainer[min(gains)[1]]
-
-
-def is_simpler(one: Fit, other: Fit) -> bool:
-    """Whether a fit, which has a difference less than another, has no factor more that is not this program's."""
-    return one.odd <= other.odd
+        guess = others[min(gains)[1]]
 
 
 def shapes_alone(judge: Judge) -> Guess:
     """Return what a guess says of camera and shapes, if that puts the shapes into their places; else nothing."""
     even = judge.even(judge.guess)
-    told = dict(OURS)
     if not len(even) or even.mean() < IN_PLACE:
-        return told
-    for name in GEOMETRIC:
-        if judge.guess[name] != OURS[name]:
-            plainer = judge.guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))}
-            if gain(even, judge.even(plainer)) > LEAST_IN_PLACE:
-                told[name] = judge.guess[name]
-    return told
+        return OURS
+    others = plainer(judge.guess, GEOMETRIC).items()
+    return OURS | {name: judge.guess[name] for name, each in others if gain(even, judge.even(each)) > LEAST_IN_PLACE}
 
 
 def at_edges(judge: Judge) -> Judge:
@@ -236,8 +236,3 @@ def shape_name(case: Case, owner: int) -> str:
     kind = type(shapes[owner])
     number = sum(type(shape) is kind for shape in shapes[: owner + 1])
     return f"{kind.title} {number}"
-
-
-def tolerance_of(is_lossy: bool) -> float:
-    """The error up to which a pixel is explained."""
-    return (12.5 if is_lossy else 4.5) * LEVEL

@@ -102,7 +102,7 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
     plain = np.ones_like(colours)
     forms = {"object x light": colours * tint, "light alone": plain * tint, "light plus object": plain * tint,
-             "object alone": colours * grey, "of the lamps": colours * np.sum([np.zeros(3), *bright], axis=0)}  # fmt: skip
+             "object alone": colours * grey, "of the lamps": colours * np.sum([0 * tint, *bright], axis=0)}  # fmt: skip
     lit = guess["ambient_in_shadow"] | (light > 0).any(axis=0)
     terms = np.zeros((*colours.shape, LAMPS + len(lamps)))
     terms[..., AMBIENT] = forms.get(guess["ambient"], 0 * colours) * lit[:, None]
@@ -196,7 +196,7 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
     step = len(values) // MOST_ROWS + 1
     rows, values = rows[::step], values[::step]
     weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
-    terms_of = {"ambient": AMBIENT, "diffuse": slice(LAMPS, None), "specular": SPECULAR}
+    terms_of: dict[str, Any] = {"ambient": AMBIENT, "diffuse": slice(LAMPS, None), "specular": SPECULAR}
     held = terms_of.get(fixed, slice(0))
     weight[held, held] *= HELD
     factors, kept = usual, np.ones(len(values), bool)
@@ -211,7 +211,8 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
 
 def drawn(terms: Floats, seen: Seen, guess: Guess, factors: Floats, sky: Floats) -> Floats:
     """Return the levels of pixels, (n, 3) from 0 to 1, in the order of the scene's colours."""
-    shown = shown_levels(terms @ factors, guess)
+    direct = terms[..., FADED:] @ factors[FADED:]  # of lamps; no less than 0 where light fades
+    shown = shown_levels(terms @ factors - np.minimum(direct, 0), guess)
     shown[seen.owner < 0] = sky
     return shown
 

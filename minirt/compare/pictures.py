@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import product
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageFilter
 
 from minirt.compare import lighting
 from minirt.compare.geometry import see
@@ -106,14 +106,8 @@ def blocks_with(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def edges(levels: Levels) -> NDArray[np.bool_]:
     """Whether pixels are near an edge: their neighbourhoods have different colours."""
-    padded = np.pad(levels, ((1, 1), (1, 1), (0, 0)), mode="edge")
-    height, width, _ = levels.shape
-    low, high = levels.copy(), levels.copy()
-    for i, j in product(range(3), range(3)):
-        near = padded[i : i + height, j : j + width]
-        np.minimum(low, near, out=low)
-        np.maximum(high, near, out=high)
-    result: NDArray[np.bool_] = (high - low).max(axis=-1) > EDGE
+    around = (Image.fromarray(levels).filter(extreme(3)) for extreme in (ImageFilter.MaxFilter, ImageFilter.MinFilter))
+    result: NDArray[np.bool_] = np.subtract(*map(np.asarray, around)).max(axis=-1) > EDGE
     return result
 
 
@@ -127,7 +121,9 @@ def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
     for start in range(0, height, rows):
         y, x = np.mgrid[start : min(start + rows, height), 0:width].reshape(2, -1).astype(float)
         seen = see(scene, (width, height), x, y, guess)
-        shown = lighting.drawn(lighting.columns(scene, seen, guess, fit.factors), seen, guess, fit.factors, fit.background)
+        shown = lighting.drawn(
+            lighting.columns(scene, seen, guess, fit.factors), seen, guess, fit.factors, fit.background
+        )
         shown = shown[:, ::-1] if guess["colours"] == "swapped" else shown
         shown[~case.judged[seen.owner]] = 0
         under[start : start + rows] = np.rint(255 * shown).reshape(-1, width, 3)

@@ -55,8 +55,13 @@ class Hypothesis(NamedTuple):
         return self.others or {self.name: self.value}
 
 
+def rows(*given: tuple[Any, ...]) -> tuple[Hypothesis, ...]:
+    """Return rows of the table."""
+    return tuple(Hypothesis(*each) for each in given)
+
+
 SHORTEST = "which rolls it: build right = direction x (0,1,0), up = right x direction"
-GEOMETRY = tuple(Hypothesis(*each) for each in (
+GEOMETRY = rows(
     ("mirrored", True, "left and right are swapped: negate the camera's right vector (right = direction x up)"),
     ("flipped", True, "the picture is upside down: row 0 is the upper one, y grows downwards in pictures"),
     ("direction", "reversed", "the camera looks backwards: negate the viewing direction"),
@@ -71,8 +76,8 @@ GEOMETRY = tuple(Hypothesis(*each) for each in (
     ("fov", "full angle", "tan(fov) is used in place of tan(fov/2): the field of view is the whole angle"),
     ("fov", "not normalised",
      "right and up are too short where the camera looks up or down: normalise the product direction x up"),
-    ("fov", "too near", "the picture plane is too near where the camera looks up or down: put it at distance 1 along the "
-     "direction, not along the ground, and normalise the product direction x up"),
+    ("fov", "too near", "the picture plane is too near where the camera looks up or down: normalise the product "
+     "direction x up, and put the plane at distance 1 along the direction"),
     ("pixel", "corner", "rays go through the corners of pixels: add 0.5 to x and y to hit their centres"),
     ("radius", "spheres", "the diameter of spheres is used as their radius: divide it by 2"),
     ("radius", "cylinders", "the diameter of cylinders is used as their radius: divide it by 2"),
@@ -80,7 +85,8 @@ GEOMETRY = tuple(Hypothesis(*each) for each in (
     ("cylinder", "base", "the point of a cylinder is taken as the centre of its base: it is half-way up"),
     ("cylinder", "top", "the point of a cylinder is taken as the centre of its top: it is half-way up"),
     ("cylinder", "doubled", "cylinders reach by their whole height to either side of their point: use half of it"),
-    ("cylinder", "turned", "the point of a cylinder is turned with its axis about the origin: turn it first, then move it"),
+    ("cylinder", "turned",
+     "the point of a cylinder is turned with its axis about the origin: turn it first, then move it"),
     ("axis", "upright", "the axis of cylinders is ignored: they all stand along y"),
     ("axis", "-x", "the x of cylinders' axes is negated: they lean to the other side"),
     ("axis", "-z", "the z of cylinders' axes is negated: they lean to the other side"),
@@ -90,10 +96,10 @@ GEOMETRY = tuple(Hypothesis(*each) for each in (
     ("caps", False, "cylinders and cones have no caps: one looks into them"),
     ("inside", False,
      "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
-))  # fmt: skip
+)  # fmt: skip
 
 EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 512, 1000
-LIGHT = tuple(Hypothesis(*each) for each in (
+LIGHT = rows(
     ("ambient", "light alone", "the ambient light is added as it is: multiply it by the colour of the object"),
     ("ambient", "light plus object",
      "the ambient light and a share of the object's colour are added: multiply one by the other instead"),
@@ -109,7 +115,7 @@ LIGHT = tuple(Hypothesis(*each) for each in (
      "things behind the lamp cast shadows, too: only hits nearer than the lamp count"),
     ("normals", "outward", "normals are not turned towards the eye: flip them where they face away from it"),
     ("normals", "both sides", "the absolute value of the cosine is used: surfaces are lit from both sides"),
-    ("fading", 1, "light fades as 1/distance: often the direction to the lamp is not normalised; here it does not fade"),
+    ("fading", 1, "light fades as 1/distance, often for a direction that is not normalised: here it does not fade"),
     ("fading", 2, "light fades as 1/distance^2: here it does not fade"),
     ("fading", "linear", "light fades in proportion to the distance from the lamp: here it does not fade"),
     ("colours", "light ignored", "the colours of the lamps are ignored"),
@@ -126,7 +132,7 @@ LIGHT = tuple(Hypothesis(*each) for each in (
     ("reflections", True, "all shapes are mirrors, too, for which the scene does not ask"),
     ("background", "own", "the background is {colour}: here it is {ours}"),
     ("acne", True, "lit surfaces have dark specks: start shadow rays a little (0.0001) above the surface"),
-))  # fmt: skip
+)  # fmt: skip
 # Numbers that are found without a row for each value.
 FREE = {
     "roll": "the camera is rolled by {value} degrees",
