@@ -18,7 +18,6 @@ from minirt.compare.table import OURS, Guess
 from minirt.rendering.settings import render
 from minirt.scene import Scene, check_scene
 
-MOSTLY = 0.9  # share of pixels that are judged, below which the answer says so
 KNOWN = 0.8  # share of the inner pixels; what explains less is not told
 
 
@@ -94,9 +93,9 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
     judge = answer.at_edges(answer.needed(case, OURS if is_alike else search(case), tolerance))
-    if judge.judged.mean() < MOSTLY:
+    if not judge.judged.all():
         what = "textures, bumps, mirrors or glass"
-        notices += (f"{1 - judge.judged.mean():.0%} of the pixels show {what}: their light is not judged.",)
+        notices += (f"{1 - judge.judged.mean():.1%} of the pixels show {what}: their light is not judged.",)
     explained = 1 - judge.left(judge.fit)
     is_known = explained >= KNOWN
     guess = judge.guess if is_known else answer.shapes_alone(judge)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Seen, changed_scene, on_cap, owners, see, slopes
+from minirt.compare.geometry import Seen, changed_scene, on_cap, see, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.search import GEOMETRIC, Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
@@ -18,9 +18,8 @@ from minirt.compare.table import FREE, OURS, TABLE, Guess
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.001  # of inner pixels that a cause explains
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
-MOST_PIXELS, MOST_EDGES = 2_000_000, 5000  # of a picture, in which pixels at edges are looked for
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
-LEAST_EDGES = 50
+LEAST_EDGES = 50  # pixels of the sample
 EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
 LEAST_REST = 0.001  # share of pixels of a part that is worth a line
@@ -137,29 +136,18 @@ def shapes_alone(judge: Judge) -> Guess:
 
 
 def at_edges(judge: Judge) -> Judge:
-    """Return the judge of the guess that explains the edges of shapes best, which tell small changes of the camera."""
-    case, guess = judge.case, judge.guess
-    rows = min(case.height, MOST_PIXELS // case.width)
-    first = (case.height - rows) // 2
-    y, x = np.mgrid[first : first + rows, 0 : case.width].astype(float)
-    size = case.width, case.height
-    owner = owners(case.scene, size, x.ravel(), y.ravel(), guess).reshape(x.shape)
-    beside = (owner[1:, 1:] != owner[1:, :-1]) | (owner[1:, 1:] != owner[:-1, 1:])
-    places = np.flatnonzero(beside)
-    places = places[:: len(places) // MOST_EDGES + 1]
-    if len(places) < LEAST_EDGES:
+    """Return the judge of the guess that explains pixels at edges best, which tell small changes of the camera."""
+    case, guess, edges = judge.case, judge.guess, judge.judged & ~judge.inner
+    if edges.sum() < LEAST_EDGES:
         return judge
-    at = x[1:, 1:].ravel()[places], y[1:, 1:].ravel()[places]
-    colours = case.picture[at[1].astype(int), at[0].astype(int)]
 
     def left(each: Guess) -> float:
-        seen = see(case.scene, size, *at, each)
-        fit = lighting.fit(case.scene, seen, colours, each, case.judged[seen.owner])
+        seen = see(case.scene, (case.width, case.height), judge.x[edges], judge.y[edges], each)
+        fit = lighting.fit(case.scene, seen, judge.colours[edges], each, case.judged[seen.owner])
         return float((fit.error > judge.tolerance).mean())
 
     tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
-    others = [guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts]
-    best = min(others, key=left)
+    best = min((guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts), key=left)
     return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
 
 

@@ -156,14 +156,6 @@ def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np
     return result
 
 
-def owners(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> NDArray[np.int64]:
-    """Return the index of the shape that each pixel shows, -1 for the background."""
-    scene = changed_scene(scene, guess)
-    ways = directions(scene, size, x, y, guess)
-    owner: NDArray[np.int64] = hits(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)[1]
-    return owner
-
-
 def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any, ...]:
     """Return distance, owner, point and normal of what rays meet, past the surfaces that the guess does not draw."""
     found = trace(scene, origins, ways, threads=1)
