@@ -205,7 +205,8 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
         found = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
         factors = np.maximum(found, 0).astype(np.float64)
         off = np.abs(rows @ factors - values)
-        kept = off < max(2 * np.median(off), 3 * LEVEL) if len(off) else kept
+        is_lit = rows[:, FADED:] @ factors[FADED:] >= 0  # as far as lamps reach that fade
+        kept = (off < max(2 * np.median(off[is_lit]), 3 * LEVEL)) & is_lit if is_lit.any() else kept
     return factors
 
 

@@ -33,7 +33,6 @@ NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same dif
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
 FIRST_EXPONENTS, STEPS = (8, 50, 200), 2  # of highlights: those that are tried first, and how far others are from them
-SOURCES = "cylinder", "radius", "cone"
 
 
 class Case:
@@ -91,27 +90,25 @@ GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "s
 
 def search(case: Case) -> Guess:
     """Find the guess that explains the picture best."""
-    seen_from = ranked(case, case.cameras)
+    seen_from = sorted(case.cameras, key=case.unevenness)
     if case.unevenness(seen_from[0]) > EVEN:  # sizes may hide the camera
         radii = [row.changes for row in GEOMETRY if row.name == "radius"]
         named = [each for each in seen_from if each["scale"] == 1.0]
-        seen_from = ranked(case, [*seen_from, *(each | changes for each in named for changes in radii)])
+        seen_from += [each | changes for each in named for changes in radii]
+        seen_from.sort(key=case.unevenness)
     free = [each for each in seen_from if each["scale"] != 1.0]
     seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
-    names = [name for name in SOURCES if used(case.scene, name)]
+    cylinders, cones, spheres = case.scene.cylinders, case.scene.cones, case.scene.spheres
+    there = {"cylinder": cylinders, "radius": spheres + cylinders, "cone": cones}
+    names = [name for name, shapes in there.items() if shapes]
     shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
     variants = [each | dict(zip(names, values, strict=True)) for values in product(*shaped) for each in seen_from]
-    variants = ranked(case, variants)
+    variants.sort(key=case.unevenness)
     matt = [row for row in case.light if row.name not in ("specular", "reflections")]
-    lit = [descend(case, each, matt, 1) for each in [OURS, *variants[:BEGINNINGS]]]
+    lit = [descend(case, each, by_gain(case, each, matt), 1) for each in [OURS, *variants[:BEGINNINGS]]]
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
     found = [simplest(case, descend(case, each, case.table, 3)) for each in best]
     return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
-
-
-def ranked(case: Case, guesses: Iterable[Guess]) -> list[Guess]:
-    """Sort guesses by how even they make the shapes."""
-    return sorted(guesses, key=case.unevenness)
 
 
 def speck_share(picture: Floats) -> float:
@@ -119,12 +116,6 @@ def speck_share(picture: Floats) -> float:
     light = picture.sum(axis=-1)
     beside = np.minimum(light[:, :-2], light[:, 2:])
     return float((beside - light[:, 1:-1] > SPECK).mean())
-
-
-def used(scene: Scene, name: str) -> bool:
-    """Whether a scene has shapes that a parameter changes."""
-    wanted = {"cylinder": scene.cylinders, "cone": scene.cones, "radius": (*scene.spheres, *scene.cylinders)}
-    return bool(wanted[name])
 
 
 def cameras(case: Case) -> Iterator[Guess]:
@@ -178,6 +169,11 @@ def is_near(highlight: Any, other: tuple[str, int, str]) -> bool:
     if not highlight:
         return other[1] in FIRST_EXPONENTS
     return abs(EXPONENTS.index(highlight[1]) - EXPONENTS.index(other[1])) <= STEPS
+
+
+def by_gain(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> list[Hypothesis]:
+    """Sort rows by how well a guess explains the picture with each of them."""
+    return sorted(rows, key=lambda row: case.fit(guess | row.changes).score)
 
 
 def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
