@@ -67,9 +67,9 @@ class Judge:
     def is_inner(self) -> NDArray[np.bool_]:
         """Whether pixels are neither beside another face nor at the edge of a shadow."""
         inner = np.ones(len(self.x), bool)
-        normal = np.nan_to_num(self.seen.normal)
+        normal, plain = np.nan_to_num(self.seen.normal), self.guess | {"reflections": False}
         for across, down in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            near = self.look(self.guess, across, down)
+            near = self.look(plain, across, down)
             inner &= near.owner == self.seen.owner
             inner &= (near.open_to == self.seen.open_to).all(axis=0)
             inner &= np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1) < 0.5

@@ -31,9 +31,9 @@ GAP = 4  # pixels between panels
 BRIGHTER = 4  # times the difference, in its panel
 
 
-def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
+def read(path: Path) -> tuple[Levels, tuple[str, ...], bool, int]:
     """Return a picture without its border and with single pixels in place of blocks, what is to be told about that,
-    and whether its format is lossy."""
+    whether its format is lossy, and the side of the blocks."""
     levels, notices = picture(path), []
     left, above, right, below = border(levels)
     if left and above and right and below:
@@ -47,7 +47,7 @@ def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
         notices.append(f"Blocks of {side}x{side} pixels have one colour: {size_text(levels)} of them are compared.")
     if min(levels.shape[:2]) < SMALLEST:
         raise FileError(path, f"has {size_text(levels)} pixels, too few to compare: {SMALLEST}x{SMALLEST} at least")
-    return np.ascontiguousarray(levels), tuple(notices), path.suffix.lower() in LOSSY
+    return np.ascontiguousarray(levels), tuple(notices), path.suffix.lower() in LOSSY, side
 
 
 def size_text(levels: Levels) -> str:
