@@ -96,7 +96,7 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     if not judge.judged.all():
         what = "textures, bumps, mirrors or glass"
         notices += (f"{1 - judge.judged.mean():.1%} of the pixels show {what}: their light is not judged.",)
-    explained = 1 - judge.left(judge.fit)
+    explained = 1 - judge.left(judge.fit) if judge.sees_enough() else 0.0
     is_known = explained >= KNOWN
     guess = judge.guess if is_known else answer.shapes_alone(judge)
     if not is_known:

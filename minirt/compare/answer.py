@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from minirt.compare import lighting
 from minirt.compare.geometry import Seen, changed_scene, on_cap, see, slopes
 from minirt.compare.lighting import Fit
-from minirt.compare.search import GEOMETRIC, Case
+from minirt.compare.search import CAMERA, GEOMETRIC, Case
 from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.001  # of inner pixels that a cause explains
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
+LEAST_SEEN = 0.005  # share of pixels of a shape that tells the camera
 LEAST_EDGES = 50  # pixels of the sample
 EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
@@ -86,6 +87,11 @@ class Judge:
         even: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess)[self.lit] < (lighting.STEADY / 2) ** 2
         return even
 
+    def sees_enough(self) -> bool:
+        """Whether enough shapes are seen for the differences of the camera: one shape fits to many cameras."""
+        shapes = np.bincount(self.seen.owner + 1, self.lit)[1:] > LEAST_SEEN * len(self.x)
+        return sum(self.guess[name] != OURS[name] for name in CAMERA) <= np.count_nonzero(shapes) + 1
+
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""
         off = fit.error > self.tolerance
@@ -129,7 +135,7 @@ def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
 def shapes_alone(judge: Judge) -> Guess:
     """Return what a guess says of camera and shapes, if that puts the shapes into their places; else nothing."""
     even = judge.even(judge.guess)
-    if not len(even) or even.mean() < IN_PLACE:
+    if not len(even) or even.mean() < IN_PLACE or not judge.sees_enough():
         return OURS
     others = plainer(judge.guess, GEOMETRIC).items()
     return OURS | {name: judge.guess[name] for name, each in others if gain(even, judge.even(each)) > LEAST_IN_PLACE}
