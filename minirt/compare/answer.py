@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from minirt.compare import lighting
 from minirt.compare.geometry import Seen, changed_scene, on_cap, see, slopes
 from minirt.compare.lighting import Fit
-from minirt.compare.search import CAMERA, GEOMETRIC, Case
+from minirt.compare.search import CAMERA, GEOMETRIC, Case, differences
 from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
@@ -90,7 +90,8 @@ class Judge:
     def sees_enough(self) -> bool:
         """Whether enough shapes are seen for the differences of the camera: one shape fits to many cameras."""
         shapes = np.bincount(self.seen.owner + 1, self.lit)[1:] > LEAST_SEEN * len(self.x)
-        return sum(self.guess[name] != OURS[name] for name in CAMERA) <= np.count_nonzero(shapes) + 1
+        camera = OURS | {name: self.guess[name] for name in CAMERA}
+        return differences(camera) <= int(np.count_nonzero(shapes)) + 1
 
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""
