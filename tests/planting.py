@@ -20,7 +20,7 @@ from PIL import Image
 
 import minirt
 from minirt.compare import Comparison, compare, lighting
-from minirt.compare.geometry import see
+from minirt.compare.geometry import reach, see
 from minirt.compare.pictures import EDGE
 from minirt.compare.table import OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
@@ -76,10 +76,12 @@ def draw(scene: Scene, guess: Guess, size: tuple[int, int] = SIZE, seed: int = 0
     width, height = size
     y, x = np.mgrid[0:height, 0:width].reshape(2, -1).astype(float)
     seen = see(scene, size, x, y, guess)
-    terms = lighting.columns(scene, seen, guess)
-    factors = np.ones(terms.shape[-1])
-    factors[1], factors[-1] = 0.1, 0.5
-    factors[2:-1] = (8 / seen.reach) ** guess["fading"]
+    factors = lighting.usual_factors(scene, guess)
+    factors[[lighting.OBJECT, lighting.SPECULAR, lighting.MIRROR]] = 0.1, 0.5, 0.3
+    power = lighting.exponent(guess)
+    factors[lighting.LAMPS :] *= (8 / reach(scene)) ** power
+    factors[lighting.FADED] = 0.02 * reach(scene) * (guess["fading"] == "linear")
+    terms = lighting.columns(scene, seen, guess, factors)
     own = guess["background"] == "own"
     shown = lighting.drawn(terms, seen, guess, factors, lighting.numbers(SKY) if own else lighting.background(scene))
     if guess["acne"]:

@@ -11,14 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.compare import answer, pictures
+from minirt.compare import answer, lighting, pictures
 from minirt.compare.answer import Cause, Rest
 from minirt.compare.search import Case, search
 from minirt.compare.table import OURS, Guess
 from minirt.rendering.settings import render
 from minirt.scene import Scene, check_scene
 
-MOSTLY = 0.9  # share of pixels that are judged, below which the answer says so
 KNOWN = 0.8  # share of the inner pixels; what explains less is not told
 
 
@@ -83,26 +82,28 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     The picture may have any size from 16x16 pixels on. FileError if it cannot be read.
     """
     check_scene(scene, "compare")
-    theirs, notices, is_lossy = pictures.read(Path(picture))
+    theirs, notices, is_lossy, side = pictures.read(Path(picture))
     height, width, _ = theirs.shape
     reference = render(scene, width, height).array
     if pictures.are_equal(theirs, reference, is_lossy):
         return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
     if int(np.ptp(theirs, axis=(0, 1)).max()) <= pictures.EDGE:
         return Comparison(False, 0.0, (), (), (*notices, "The picture has one colour alone."), scene, theirs, OURS)
-    tolerance = answer.tolerance_of(is_lossy)
+    tolerance = lighting.LEVEL * ((pictures.CLOSE_LOSSY if is_lossy else pictures.CLOSE) + 0.5)
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
     judge = answer.at_edges(answer.needed(case, OURS if is_alike else search(case), tolerance))
-    if judge.judged.mean() < MOSTLY:
+    if not judge.judged.all():
         what = "textures, bumps, mirrors or glass"
-        notices += (f"{1 - judge.judged.mean():.0%} of the pixels show {what}: their light is not judged.",)
-    explained = 1 - judge.left(judge.fit)
+        notices += (f"{1 - judge.judged.mean():.1%} of the pixels show {what}: their light is not judged.",)
+    explained = 1 - judge.left(judge.fit) if judge.sees_enough() else 0.0
     is_known = explained >= KNOWN
     guess = judge.guess if is_known else answer.shapes_alone(judge)
     if not is_known:
         judge = answer.Judge(case, guess, tolerance)
     found = answer.causes(judge, guess) + (answer.factors(judge) if is_known else [])
+    if side > 1:  # where in its block a ray went is a choice of a preview
+        found = [each for each in found if each.name != "pixel"]
     if is_alike and not found:
         return Comparison(True, 1.0, (), answer.rest(judge), notices, scene, theirs, OURS)
     return Comparison(False, explained, tuple(found), answer.rest(judge), notices, scene, theirs, guess)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import atan, degrees
 from typing import Any, NamedTuple
 
@@ -9,17 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Seen, changed_scene, on_cap, owners, see, slopes
-from minirt.compare.lighting import LEVEL, Fit
-from minirt.compare.search import GEOMETRIC, Case
+from minirt.compare.geometry import Seen, changed_scene, on_cap, see, slopes
+from minirt.compare.lighting import Fit
+from minirt.compare.search import CAMERA, GEOMETRIC, Case, differences
 from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.001  # of inner pixels that a cause explains
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
-MOST_PIXELS, MOST_EDGES = 2_000_000, 5000  # of a picture, in which pixels at edges are looked for
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
-LEAST_EDGES = 50
+LEAST_SEEN = 0.005  # share of pixels of a shape that tells the camera
+LEAST_EDGES = 50  # pixels of the sample
 EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
 LEAST_REST = 0.001  # share of pixels of a part that is worth a line
@@ -55,8 +56,9 @@ class Judge:
         self.inner = self.judged & self.is_inner()
         self.fit = self.fitted(guess)
         sky = lighting.background(case.scene)
-        shown = (np.abs(self.colours - sky).max(axis=-1) > tolerance) | (self.seen.owner >= 0)
-        self.counted = self.inner & shown  # background where the guess expects it is no evidence
+        differ, drawn = (np.abs(each - sky).max(axis=-1) > tolerance for each in (self.colours, self.fit.shown))
+        self.counted = self.inner & (differ | (self.seen.owner >= 0))  # background where it is expected is no evidence
+        self.lit = self.counted & (differ | drawn)  # nor are shadows alone that are as dark as the background
 
     def look(self, guess: Guess, across: int = 0, down: int = 0) -> Seen:
         """Trace the sample, or the pixels beside it."""
@@ -66,13 +68,12 @@ class Judge:
     def is_inner(self) -> NDArray[np.bool_]:
         """Whether pixels are neither beside another face nor at the edge of a shadow."""
         inner = np.ones(len(self.x), bool)
-        normal = np.nan_to_num(self.seen.normal)
+        normal, plain = np.nan_to_num(self.seen.normal), self.guess | {"reflections": False}
         for across, down in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            near = self.look(self.guess, across, down)
+            near = self.look(plain, across, down)
             inner &= near.owner == self.seen.owner
             inner &= (near.open_to == self.seen.open_to).all(axis=0)
-            bent = np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1)
-            inner &= bent < 0.5
+            inner &= np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1) < 0.5
         return inner
 
     def fitted(self, guess: Guess, fixed: str = "") -> Fit:
@@ -83,13 +84,19 @@ class Judge:
     def even(self, guess: Guess) -> NDArray[np.bool_]:
         """Whether inner pixels fit to the others of their shapes, whatever their light."""
         seen = self.look(guess)
-        residual = lighting.unevenness(seen, self.colours, guess)[self.counted]
-        even: NDArray[np.bool_] = residual < (lighting.STEADY / 2) ** 2
+        even: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess)[self.lit] < (lighting.STEADY / 2) ** 2
         return even
+
+    def sees_enough(self) -> bool:
+        """Whether enough shapes are seen for the differences of the camera: one shape fits to many cameras."""
+        shapes = np.bincount(self.seen.owner + 1, self.lit)[1:] > LEAST_SEEN * len(self.x)
+        camera = OURS | {name: self.guess[name] for name in CAMERA}
+        return differences(camera) <= int(np.count_nonzero(shapes)) + 1
 
     def left(self, fit: Fit) -> float:
         """The share of inner pixels that a fit does not explain."""
-        return float((fit.error[self.counted] > self.tolerance).mean()) if self.counted.any() else 1.0
+        off = fit.error > self.tolerance
+        return max(float(off[mask].mean()) if mask.any() else 1.0 for mask in (self.counted, self.lit))
 
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
@@ -102,62 +109,52 @@ def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:
     return won - lost if won > CLEARLY * lost else 0.0
 
 
+def plainer(guess: Guess, names: Iterable[str]) -> dict[str, Guess]:
+    """Return a guess without each of its differences among some parameters."""
+    found = {}
+    for name in names:
+        if guess[name] != OURS[name]:
+            found[name] = guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))}
+    return found
+
+
 def needed(case: Case, guess: Guess, tolerance: float) -> Judge:
-    """Leave out, one by one, what a guess explains nothing by; return the judge of the guess that remains."""
+    """Leave out, one by one, what a guess explains nothing by; return the judge of the guess that remains.
+
+    What has no difference instead may need no factor that is not this program's.
+    """
     while True:
         judge = Judge(case, guess, tolerance)
-        different = [name for name in guess if guess[name] != OURS[name] and name != "pixel"]
-        plainer = [guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))} for name in different]
-        fits = [judge.fitted(each) for each in plainer]
-        gains = [(judge.gain(fit), number) for number, fit in enumerate(fits) if is_simpler(fit, judge.fit)]
+        others = [each for name, each in plainer(guess, guess).items() if name != "pixel"]
+        fits = [judge.fitted(each) for each in others]
+        gains = [(judge.gain(fit), number) for number, fit in enumerate(fits) if fit.odd <= judge.fit.odd]
         if not gains or min(gains)[0] > LEAST_GAIN:
             return judge
-        guess = plainer[min(gains)[1]]
-
-
-def is_simpler(one: Fit, other: Fit) -> bool:
-    """Whether a fit, which has a difference less than another, has no factor more that is not this program's."""
-    return one.odd <= other.odd
+        guess = others[min(gains)[1]]
 
 
 def shapes_alone(judge: Judge) -> Guess:
     """Return what a guess says of camera and shapes, if that puts the shapes into their places; else nothing."""
     even = judge.even(judge.guess)
-    told = dict(OURS)
-    if not len(even) or even.mean() < IN_PLACE:
-        return told
-    for name in GEOMETRIC:
-        if judge.guess[name] != OURS[name]:
-            plainer = judge.guess | {each: OURS[each] for each in TOGETHER.get(name, (name,))}
-            if gain(even, judge.even(plainer)) > LEAST_IN_PLACE:
-                told[name] = judge.guess[name]
-    return told
+    if not len(even) or even.mean() < IN_PLACE or not judge.sees_enough():
+        return OURS
+    others = plainer(judge.guess, GEOMETRIC).items()
+    return OURS | {name: judge.guess[name] for name, each in others if gain(even, judge.even(each)) > LEAST_IN_PLACE}
 
 
 def at_edges(judge: Judge) -> Judge:
-    """Return the judge of the guess that explains the edges of shapes best, which tell small changes of the camera."""
-    case, guess = judge.case, judge.guess
-    rows = min(case.height, MOST_PIXELS // case.width)
-    first = (case.height - rows) // 2
-    y, x = np.mgrid[first : first + rows, 0 : case.width].astype(float)
-    size = case.width, case.height
-    owner = owners(case.scene, size, x.ravel(), y.ravel(), guess).reshape(x.shape)
-    beside = (owner[1:, 1:] != owner[1:, :-1]) | (owner[1:, 1:] != owner[:-1, 1:])
-    places = np.flatnonzero(beside)
-    places = places[:: len(places) // MOST_EDGES + 1]
-    if len(places) < LEAST_EDGES:
+    """Return the judge of the guess that explains pixels at edges best, which tell small changes of the camera."""
+    case, guess, edges = judge.case, judge.guess, judge.judged & ~judge.inner
+    if edges.sum() < LEAST_EDGES:
         return judge
-    at = x[1:, 1:].ravel()[places], y[1:, 1:].ravel()[places]
-    colours = case.picture[at[1].astype(int), at[0].astype(int)]
 
     def left(each: Guess) -> float:
-        seen = see(case.scene, size, *at, each)
-        fit = lighting.fit(case.scene, seen, colours, each, case.judged[seen.owner])
+        seen = see(case.scene, (case.width, case.height), judge.x[edges], judge.y[edges], each)
+        fit = lighting.fit(case.scene, seen, judge.colours[edges], each, case.judged[seen.owner])
         return float((fit.error > judge.tolerance).mean())
 
     tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
-    others = [guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts]
-    best = min(others, key=left)
+    best = min((guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts), key=left)
     return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
 
 
@@ -171,7 +168,7 @@ def causes(judge: Judge, guess: Guess) -> list[Cause]:
             continue
         sentence, told = row.sentence, row.value
         if name == "specular":
-            sentence = FREE["share"].format(sentence=sentence, value=round(fit.specular, 2))
+            sentence = FREE["share"].format(sentence=sentence, value=round(float(fit.factors[lighting.SPECULAR]), 2))
         if name == "background":
             told = [round(each * 255) for each in fit.background]
             here = [round(each * 255) for each in lighting.background(scene)]
@@ -191,9 +188,9 @@ def factors(judge: Judge) -> list[Cause]:
     diffuse = [round(float(each), 2) for each in fit.diffuse]
     if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
         diffuse = diffuse[:1]
-    told = {"ambient": [round(fit.ambient, 2)], "diffuse": diffuse}
+    told = {"ambient": [round(float(fit.factors[lighting.AMBIENT]), 2)], "diffuse": diffuse}
     if lighting.has_highlights(judge.case.scene) and not guess["specular"]:
-        told["specular"] = [round(fit.specular, 2)]
+        told["specular"] = [round(float(fit.factors[lighting.SPECULAR]), 2)]
     if guess["fading"]:
         del told["diffuse"]  # whose unit is a free choice of the other program
     found = []
@@ -234,8 +231,3 @@ def shape_name(case: Case, owner: int) -> str:
     kind = type(shapes[owner])
     number = sum(type(shape) is kind for shape in shapes[: owner + 1])
     return f"{kind.title} {number}"
-
-
-def tolerance_of(is_lossy: bool) -> float:
-    """The error up to which a pixel is explained."""
-    return (12.5 if is_lossy else 4.5) * LEVEL

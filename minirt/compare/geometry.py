@@ -34,11 +34,11 @@ class Seen(NamedTuple):
     strength: Floats  # (lamps, n) of spots and lamps that fade
     open_to: NDArray[np.bool_]  # (lamps, n) whether nothing lies between the point and the lamp
     open_beyond: NDArray[np.bool_]  # (lamps, n) nor behind the lamp
-    reach: float  # median distance of points from lamps, the unit in which light fades
+    mirror: Seen | None = None  # what the reflected rays meet
 
 
 def unit(v: Floats) -> Floats:
-    """Scale vectors to length 1."""
+    """Scale vectors to length 1; those of length 0 stay."""
     result: Floats = v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-30)
     return result
 
@@ -55,7 +55,9 @@ def frame(camera: Camera, guess: Guess) -> Floats:
     if guess["direction"] == "reversed":
         forward = -forward
     if guess["up"].startswith("from the "):
-        right, up = shortest_rotation(np.array(AXES[guess["up"].removeprefix("from the ")], float), forward)
+        axis = np.array(AXES[guess["up"].removeprefix("from the ")], float)
+        turned = rotation(axis, forward)
+        right, up = turned @ np.cross(axis, (0.0, 1.0, 0.0)), turned @ np.array([0.0, 1.0, 0.0])
     elif guess["up"] == "x first":
         up = unit(np.cross((-1.0, 0.0, 0.0), forward))
         up = up if up.any() else np.array([0.0, 0.0, 1.0])
@@ -71,13 +73,12 @@ def frame(camera: Camera, guess: Guess) -> Floats:
     return np.array([right, -up if guess["flipped"] else up, forward])
 
 
-def shortest_rotation(axis: Floats, forward: Floats) -> tuple[Floats, Floats]:
-    """Return right and up of a camera along an axis that is turned by the shortest way onto its direction."""
-    across, cosine = np.cross(axis, forward), float(axis @ forward)
-    x, y, z = across
+def rotation(axis: Floats, onto: Floats) -> Floats:
+    """Return the matrix that turns an axis by the shortest way onto another."""
+    x, y, z = np.cross(axis, onto)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    turn = np.eye(3) + cross + cross @ cross / max(1 + cosine, 1e-12)
-    return turn @ np.cross(axis, (0.0, 1.0, 0.0)), turn @ np.array([0.0, 1.0, 0.0])
+    result: Floats = np.eye(3) + cross + cross @ cross / max(1 + float(axis @ onto), 1e-12)
+    return result
 
 
 def slopes(camera: Camera, aspect: float, guess: Guess) -> tuple[float, float]:
@@ -141,6 +142,8 @@ def cylinder_changes(shape: Cylinder, radius: str, cylinder: str, axis: str) -> 
     if cylinder in ("base", "top"):
         sign = 1 if cylinder == "base" else -1
         changes["centre"] = tuple(np.array(shape.centre) + sign * shape.height / 2 * way)
+    if cylinder == "turned":
+        changes["centre"] = tuple(rotation(np.array((0.0, 1.0, 0.0)), way) @ shape.centre)
     if cylinder == "doubled":
         changes["height"] = shape.height * 2
     return changes
@@ -151,14 +154,6 @@ def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np
     axes = np.array([shape.axis if isinstance(shape, Capped) else (0, 0, 0) for shape in scene.shapes] + [(0, 0, 0)])
     result: NDArray[np.bool_] = np.abs(dots(normal, axes[owner])) > ON_CAP
     return result
-
-
-def owners(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> NDArray[np.int64]:
-    """Return the index of the shape that each pixel shows, -1 for the background."""
-    scene = changed_scene(scene, guess)
-    ways = directions(scene, size, x, y, guess)
-    owner: NDArray[np.int64] = hits(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)[1]
-    return owner
 
 
 def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any, ...]:
@@ -183,11 +178,20 @@ def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any
 
 
 def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Seen:
-    """Trace pixels of a picture, and from what they show to all lamps."""
+    """Trace pixels of a picture, from what they show to all lamps, and the same of what mirrors show."""
     scene = changed_scene(scene, guess)
     ways = directions(scene, size, x, y, guess)
-    eye = np.broadcast_to(np.array(scene.camera.position), ways.shape)
-    _, owner, point, normal = hits(scene, eye, ways, guess)
+    seen = met(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)
+    if not guess["reflections"]:
+        return seen
+    there, normal = (seen.owner >= 0)[:, None], np.nan_to_num(seen.normal)
+    mirrored = ways - 2 * dots(ways, normal)[:, None] * normal
+    return seen._replace(mirror=met(scene, np.where(there, seen.point, scene.camera.position), mirrored, guess))
+
+
+def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:
+    """Trace rays, and from what they meet to all lamps."""
+    _, owner, point, normal = hits(scene, origins, ways, guess)
     lamps, count = scene.lights, len(owner)
     to_light, distance = np.zeros((len(lamps), count, 3)), np.full((len(lamps), count), np.inf)
     strength, open_to, open_beyond = np.ones((len(lamps), count)), *np.zeros((2, len(lamps), count), bool)
@@ -207,6 +211,11 @@ def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess)
         occluder = hits(scene, point[there], to_light[i, there], guess)[0]
         open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)
         open_beyond[i, there] = np.isinf(occluder)
-    known = distance[np.isfinite(distance)]
-    reach = float(np.median(known)) if len(known) else 1.0
-    return Seen(owner, point, normal, ways, to_light, distance, strength, open_to, open_beyond, reach)
+    return Seen(owner, point, normal, ways, to_light, distance, strength, open_to, open_beyond)
+
+
+def reach(scene: Scene) -> float:
+    """The median distance of lamps from the camera: the unit in which light fades."""
+    places = [lamp.position for lamp in scene.lights if lamp.position is not None]
+    away = [float(np.linalg.norm(np.subtract(place, scene.camera.position))) for place in places]
+    return max(float(np.median(away)), 1e-3) if away else 1.0

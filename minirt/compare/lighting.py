@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.compare.geometry import Floats, Seen, dots, unit
+from minirt.compare.geometry import Floats, Seen, dots, reach, unit
 from minirt.compare.table import OURS, Guess
 from minirt.element import fields_of
 from minirt.materials import Attributes
@@ -23,6 +23,8 @@ SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a
 STEADY = 0.1  # a difference within a shape that is larger counts as this one
 MOST_ROWS = 4000  # of least squares
 MOST_SPECKS = 0.6  # of the pixels of shapes: more dark ones are no acne
+AMBIENT, OBJECT, SPECULAR, MIRROR, FADED, LAMPS = range(6)  # places of terms of light; lamps are the last ones
+MIRROR_ROUNDS = 3  # of the light in mirrors, which needs factors
 ROUNDS = 4  # of least squares, each without what the one before did not explain
 PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
 
@@ -32,10 +34,9 @@ class Fit(NamedTuple):
 
     score: float  # mean error plus the price of the guess
     error: Floats  # (n,) of the worst channel, from 0 to 1
+    shown: Floats  # (n, 3) levels under the guess, from 0 to 1
     factors: Floats  # of all terms of light
-    ambient: float  # factors; 1 in this program
-    diffuse: Floats  # (lamps,)
-    specular: float
+    diffuse: Floats  # (lamps,) factors; 1 in this program
     background: Floats
     odd: int  # factors, of ambient light and of lamps, that are not those of this program
 
@@ -72,58 +73,62 @@ def arriving(seen: Seen, guess: Guess) -> Floats:
     return seen.strength * (seen.open_beyond if guess["shadows"] == "behind the lamp" else seen.open_to)
 
 
-def highlights(seen: Seen, normal: Floats, form: str, exponent: Any) -> Floats:
+def highlights(seen: Seen, normal: Floats, form: str, power: Any) -> Floats:
     """Return the highlights of each lamp, (lamps, n), without its colour."""
     if form == "blinn":
         base = dots(unit(seen.to_light - seen.direction), normal)
     else:
         along = dots(seen.to_light, normal) * dots(normal, -seen.direction)
         base = 2 * along + dots(seen.to_light, seen.direction)
-    result: Floats = np.clip(base, 0, 1) ** exponent
+    result: Floats = np.clip(base, 0, 1) ** power
     return result
 
 
-def columns(scene: Scene, seen: Seen, guess: Guess) -> Floats:
-    """Return the terms of the light at each point, (n, 3, 2 + lamps + 1): ambient, a share of the object's own colour,
-    each lamp's, highlights."""
-    shapes = scene.shapes
+def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
+    """Return the terms of the light at each point, (n, 3, LAMPS + lamps), in the order of their factors; those of what
+    mirrors show are added up by `factors`."""
+    shapes, lamps = scene.shapes, scene.lights
     colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
     if guess["colours"] == "object ignored":
         colours = np.ones_like(colours)
-    lamp_colours = [numbers((255, 255, 255) if guess["colours"] == "light ignored" else lamp.colour)
-                    for lamp in scene.lights]  # fmt: skip
+    is_white = guess["colours"] == "light ignored"
+    bright = [numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness for lamp in lamps]
     normal, cosine = cosines(seen, guess)
     arrived = arriving(seen, guess)
     light = cosine * arrived
-    if guess["fading"]:
-        distance = np.where(np.isfinite(seen.distance), seen.distance, seen.reach)  # parallel light does not fade
-        light = light / np.maximum(distance / seen.reach, 1e-3) ** guess["fading"]
+    distance = np.where(np.isfinite(seen.distance), seen.distance / reach(scene), 1.0)  # parallel light does not fade
+    light = light / np.maximum(distance, 1e-3) ** exponent(guess)
     tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
-    forms = {"object x light": colours * tint, "light alone": tint + 0 * colours, "object alone": colours * grey}
-    ambient = forms.get(guess["ambient"], 0 * colours)
-    if not guess["ambient_in_shadow"]:
-        lit: NDArray[np.bool_] = np.any(light > 0, axis=0)
-        ambient = ambient * lit[:, None]
-    terms = [ambient, 0 * colours]
-    if guess["ambient"] == "light plus object":
-        terms = [tint + 0 * colours, colours]
-    glint = np.zeros_like(colours)
-    materials = [getattr(shape, "specular", None) for shape in shapes]
-    for i, lamp in enumerate(scene.lights):
-        terms.append(colours * lamp_colours[i] * lamp.brightness * light[i][:, None])
-        if guess["specular"]:
-            form, exponent, of_object = guess["specular"]
-            shine = highlights(seen, normal, form, exponent)[i] * arrived[i] * (cosine[i] > 0)
-            glint += shine[:, None] * (colours if of_object else 1) * lamp_colours[i] * lamp.brightness
-    for number, material in enumerate(materials):
-        if material:
+    plain = np.ones_like(colours)
+    forms = {"object x light": colours * tint, "light alone": plain * tint, "light plus object": plain * tint,
+             "object alone": colours * grey, "of the lamps": colours * np.sum([0 * tint, *bright], axis=0)}  # fmt: skip
+    lit = guess["ambient_in_shadow"] | (light > 0).any(axis=0)
+    terms = np.zeros((*colours.shape, LAMPS + len(lamps)))
+    terms[..., AMBIENT] = forms.get(guess["ambient"], 0 * colours) * lit[:, None]
+    terms[..., OBJECT] = colours * (guess["ambient"] == "light plus object")
+    for i, tone in enumerate(bright):
+        terms[..., LAMPS + i] = colours * tone * light[i][:, None]
+        if guess["fading"] == "linear":
+            terms[..., FADED] -= terms[..., LAMPS + i] * distance[i][:, None]
+    shining = (cosine > 0) * arrived
+    if guess["specular"]:
+        form, power, of_object = guess["specular"]
+        tones = np.einsum("ln,lc->nc", highlights(seen, normal, form, power) * shining, bright)
+        terms[..., SPECULAR] = tones * (colours if of_object else 1)
+    for number, shape in enumerate(shapes):
+        if material := getattr(shape, "specular", None):
             form = "blinn" if material.blinn else "phong"
-            shine = material.share * highlights(seen, normal, form, material.exponent) * arrived * (cosine > 0)
-            for i, lamp in enumerate(scene.lights):
-                own = (seen.owner == number) * shine[i]
-                glint += own[:, None] * lamp_colours[i] * lamp.brightness
-    return np.stack([*terms, glint], axis=-1)
+            own = material.share * highlights(seen, normal, form, material.exponent) * shining * (seen.owner == number)
+            terms[..., SPECULAR] += np.einsum("ln,lc->nc", own, bright)
+    if seen.mirror is not None:
+        terms[..., MIRROR] = columns(scene, seen.mirror, guess, factors) @ factors
+    return terms
+
+
+def exponent(guess: Guess) -> int:
+    """The power of the distance by which light fades."""
+    return 0 if guess["fading"] == "linear" else int(guess["fading"])
 
 
 def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
@@ -149,30 +154,32 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
     program.
     """
     theirs = colours[:, ::-1] if guess["colours"] == "swapped" else colours
-    terms = columns(scene, seen, guess)
     own, beyond = judged & (seen.owner >= 0), judged & (seen.owner < 0)
-    factors = least_squares(terms[own], theirs[own], guess["gamma"], usual_factors(scene, guess), fixed)
+    factors = usual = usual_factors(scene, guess)
+    for _ in range(MIRROR_ROUNDS if seen.mirror else 1):
+        terms = columns(scene, seen, guess, factors)
+        factors = least_squares(terms[own], theirs[own], guess["gamma"], usual, fixed)
     own_sky = guess["background"] == "own" and beyond.any()
     sky = np.median(theirs[beyond], axis=0) if own_sky else background(scene)
-    error = np.abs(drawn(terms, seen, guess, factors, sky) - theirs).max(axis=-1)
+    shown = drawn(terms, seen, guess, factors, sky)
+    error = np.abs(shown - theirs).max(axis=-1)
     if guess["acne"]:
-        dark = np.abs(drawn(terms[..., :2], seen, guess, factors[:2], sky) - theirs).max(axis=-1)
+        dark = np.abs(drawn(terms[..., :SPECULAR], seen, guess, factors[:SPECULAR], sky) - theirs).max(axis=-1)
         specks = (dark < error - WORST) & own
         if specks.sum() < MOST_SPECKS * own.sum():
             error = np.where(specks, dark, error)
-    diffuse = factors[2:-1] * seen.reach ** guess["fading"]
-    odd = differs(float(factors[0])) + differs(middle(diffuse), slack(guess))
+    diffuse = factors[LAMPS:] * reach(scene) ** exponent(guess)
+    odd = differs(float(factors[AMBIENT])) + differs(middle(diffuse), FADING_SLACK if exponent(guess) else SLACK)
     differences = [guess[name] != value for name, value in OURS.items()].count(True)
     score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
-    score += PRICE * (differences + odd)
-    return Fit(score, error, factors, float(factors[0]), diffuse, float(factors[-1]), sky, odd)
+    return Fit(score + PRICE * (differences + odd), error, shown, factors, diffuse, sky, odd)
 
 
 def usual_factors(scene: Scene, guess: Guess) -> Floats:
-    """The factors of this program: one, but for a share of the object's colour and highlights that no material has."""
-    factors = np.ones(len(scene.lights) + 3)
-    factors[1] = 0.0
-    factors[-1] = 1.0 if has_highlights(scene) and not guess["specular"] else 0.0
+    """The factors of this program: one, but for what it does not add."""
+    factors = np.ones(LAMPS + len(scene.lights))
+    factors[[OBJECT, MIRROR, FADED]] = 0.0
+    factors[SPECULAR] = float(has_highlights(scene) and not guess["specular"])
     return factors
 
 
@@ -189,7 +196,8 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
     step = len(values) // MOST_ROWS + 1
     rows, values = rows[::step], values[::step]
     weight = PRIOR * max(len(values), 1) * np.eye(len(usual))
-    held = {"ambient": slice(1), "diffuse": slice(2, -1), "specular": slice(-1, None)}.get(fixed, slice(0))
+    terms_of: dict[str, Any] = {"ambient": AMBIENT, "diffuse": slice(LAMPS, None), "specular": SPECULAR}
+    held = terms_of.get(fixed, slice(0))
     weight[held, held] *= HELD
     factors, kept = usual, np.ones(len(values), bool)
     for _ in range(ROUNDS):
@@ -197,20 +205,17 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
         found = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
         factors = np.maximum(found, 0).astype(np.float64)
         off = np.abs(rows @ factors - values)
-        kept = off < max(2 * np.median(off), 3 * LEVEL) if len(off) else kept
+        is_lit = rows[:, FADED:] @ factors[FADED:] >= 0  # as far as lamps reach that fade
+        kept = (off < max(2 * np.median(off[is_lit]), 3 * LEVEL)) & is_lit if is_lit.any() else kept
     return factors
 
 
 def drawn(terms: Floats, seen: Seen, guess: Guess, factors: Floats, sky: Floats) -> Floats:
     """Return the levels of pixels, (n, 3) from 0 to 1, in the order of the scene's colours."""
-    shown = shown_levels(terms @ factors, guess)
+    direct = terms[..., FADED:] @ factors[FADED:]  # of lamps; no less than 0 where light fades
+    shown = shown_levels(terms @ factors - np.minimum(direct, 0), guess)
     shown[seen.owner < 0] = sky
     return shown
-
-
-def slack(guess: Guess) -> float:
-    """By how much the factor of the lamps may differ from 1: more where light fades, in a unit of their own."""
-    return FADING_SLACK if guess["fading"] else SLACK
 
 
 def middle(factors: Floats) -> float:

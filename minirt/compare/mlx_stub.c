@@ -7,8 +7,8 @@
 **     MLX_PICTURE=mine.ppm ./mini scene.rt
 **
 ** Windows and images are arrays of pixels (blue, green, red, unused). mlx_loop calls the loop hook MLX_FRAMES times
-** (3 without), writes the window to MLX_PICTURE (window.ppm without) and ends the program. Keys and buttons are never
-** pressed.
+** (without: until the window has not changed for 3 turns, at most 20000), writes the window to MLX_PICTURE (window.ppm
+** without) and ends the program.
 */
 
 #include <stdio.h>
@@ -135,18 +135,37 @@ int	mlx_pixel_put(void *mlx, void *window, int x, int y, int colour)
 	return (0);
 }
 
+static unsigned long	sum_of_window(void)
+{
+	unsigned long	sum;
+	size_t			i;
+
+	sum = 0;
+	i = 0;
+	while (g_window && i < 4 * (size_t)g_window->width * g_window->height)
+		sum = sum * 31 + g_window->data[i++];
+	return (sum);
+}
+
 int	mlx_loop(void *mlx)
 {
-	int	frames;
+	unsigned long	sum;
+	int				left;
+	int				still;
 
 	(void)mlx;
-	frames = 3;
+	left = 20000;
 	if (getenv("MLX_FRAMES"))
-		frames = atoi(getenv("MLX_FRAMES"));
+		left = atoi(getenv("MLX_FRAMES"));
 	if (g_expose_hook)
 		g_expose_hook(g_expose_data);
-	while (g_loop_hook && frames-- > 0)
+	still = 0;
+	while (g_loop_hook && left-- > 0 && (still < 3 || getenv("MLX_FRAMES")))
+	{
+		sum = sum_of_window();
 		g_loop_hook(g_loop_data);
+		still = (still + 1) * (sum == sum_of_window());
+	}
 	write_window();
 	return (0);
 }
@@ -182,30 +201,6 @@ int	mlx_hook(void *window, int event, int mask, int (*hook)(), void *data)
 	return (0);
 }
 
-int	mlx_key_hook(void *window, int (*hook)(), void *data)
-{
-	(void)window;
-	(void)hook;
-	(void)data;
-	return (0);
-}
-
-int	mlx_mouse_hook(void *window, int (*hook)(), void *data)
-{
-	return (mlx_key_hook(window, hook, data));
-}
-
-int	mlx_string_put(void *mlx, void *window, int x, int y, int colour, char *text)
-{
-	(void)mlx;
-	(void)window;
-	(void)x;
-	(void)y;
-	(void)colour;
-	(void)text;
-	return (0);
-}
-
 int	mlx_clear_window(void *mlx, void *window)
 {
 	t_pixels	*cleared;
@@ -216,39 +211,27 @@ int	mlx_clear_window(void *mlx, void *window)
 	return (0);
 }
 
-/* Nothing is destroyed: the window is written when the program ends. */
+/*
+** Keys and buttons are never pressed, text and cursors are not drawn, and nothing is destroyed: the window is written
+** when the program ends. Each of these functions takes any arguments.
+*/
 
-int	mlx_destroy_window(void *mlx, void *window)
-{
-	(void)mlx;
-	(void)window;
-	return (0);
-}
+#define NOTHING(name) int	name(void) { return (0); }
 
-int	mlx_destroy_image(void *mlx, void *image)
-{
-	return (mlx_destroy_window(mlx, image));
-}
-
-int	mlx_destroy_display(void *mlx)
-{
-	return (mlx_destroy_window(mlx, NULL));
-}
-
-int	mlx_do_sync(void *mlx)
-{
-	return (mlx_destroy_window(mlx, NULL));
-}
-
-int	mlx_do_key_autorepeaton(void *mlx)
-{
-	return (mlx_destroy_window(mlx, NULL));
-}
-
-int	mlx_do_key_autorepeatoff(void *mlx)
-{
-	return (mlx_destroy_window(mlx, NULL));
-}
+NOTHING(mlx_key_hook)
+NOTHING(mlx_mouse_hook)
+NOTHING(mlx_string_put)
+NOTHING(mlx_set_font)
+NOTHING(mlx_destroy_window)
+NOTHING(mlx_destroy_image)
+NOTHING(mlx_destroy_display)
+NOTHING(mlx_do_sync)
+NOTHING(mlx_sync)
+NOTHING(mlx_do_key_autorepeaton)
+NOTHING(mlx_do_key_autorepeatoff)
+NOTHING(mlx_mouse_move)
+NOTHING(mlx_mouse_hide)
+NOTHING(mlx_mouse_show)
 
 int	mlx_get_screen_size(void *mlx, int *width, int *height)
 {
@@ -287,4 +270,15 @@ void	*mlx_xpm_file_to_image(void *mlx, char *file, int *width, int *height)
 	if (pixels)
 		memset(pixels->data, 128, 4 * (size_t)*width * *height);
 	return (pixels);
+}
+
+void	*mlx_png_file_to_image(void *mlx, char *file, int *width, int *height)
+{
+	return (mlx_xpm_file_to_image(mlx, file, width, height));
+}
+
+void	*mlx_xpm_to_image(void *mlx, char **lines, int *width, int *height)
+{
+	(void)lines;
+	return (mlx_xpm_file_to_image(mlx, NULL, width, height));
 }

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import product
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageFilter
 
 from minirt.compare import lighting
 from minirt.compare.geometry import see
@@ -31,9 +31,9 @@ GAP = 4  # pixels between panels
 BRIGHTER = 4  # times the difference, in its panel
 
 
-def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
+def read(path: Path) -> tuple[Levels, tuple[str, ...], bool, int]:
     """Return a picture without its border and with single pixels in place of blocks, what is to be told about that,
-    and whether its format is lossy."""
+    whether its format is lossy, and the side of the blocks."""
     levels, notices = picture(path), []
     left, above, right, below = border(levels)
     if left and above and right and below:
@@ -47,7 +47,7 @@ def read(path: Path) -> tuple[Levels, tuple[str, ...], bool]:
         notices.append(f"Blocks of {side}x{side} pixels have one colour: {size_text(levels)} of them are compared.")
     if min(levels.shape[:2]) < SMALLEST:
         raise FileError(path, f"has {size_text(levels)} pixels, too few to compare: {SMALLEST}x{SMALLEST} at least")
-    return np.ascontiguousarray(levels), tuple(notices), path.suffix.lower() in LOSSY
+    return np.ascontiguousarray(levels), tuple(notices), path.suffix.lower() in LOSSY, side
 
 
 def size_text(levels: Levels) -> str:
@@ -106,14 +106,8 @@ def blocks_with(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def edges(levels: Levels) -> NDArray[np.bool_]:
     """Whether pixels are near an edge: their neighbourhoods have different colours."""
-    padded = np.pad(levels, ((1, 1), (1, 1), (0, 0)), mode="edge")
-    height, width, _ = levels.shape
-    low, high = levels.copy(), levels.copy()
-    for i, j in product(range(3), range(3)):
-        near = padded[i : i + height, j : j + width]
-        np.minimum(low, near, out=low)
-        np.maximum(high, near, out=high)
-    result: NDArray[np.bool_] = (high - low).max(axis=-1) > EDGE
+    around = (Image.fromarray(levels).filter(extreme(3)) for extreme in (ImageFilter.MaxFilter, ImageFilter.MinFilter))
+    result: NDArray[np.bool_] = np.subtract(*map(np.asarray, around)).max(axis=-1) > EDGE
     return result
 
 
@@ -121,13 +115,15 @@ def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
     """Return the reference under a guess; black where the light of shapes is not known."""
     height, width, _ = theirs.shape
     case = Case(scene, theirs / 255)
-    fit, reach = case.fit(guess, LARGE), case.see(guess, LARGE).reach
+    fit = case.fit(guess, LARGE)
     under = np.zeros_like(theirs)
     rows = max(BAND // width, 1)
     for start in range(0, height, rows):
         y, x = np.mgrid[start : min(start + rows, height), 0:width].reshape(2, -1).astype(float)
-        seen = see(scene, (width, height), x, y, guess)._replace(reach=reach)
-        shown = lighting.drawn(lighting.columns(scene, seen, guess), seen, guess, fit.factors, fit.background)
+        seen = see(scene, (width, height), x, y, guess)
+        shown = lighting.drawn(
+            lighting.columns(scene, seen, guess, fit.factors), seen, guess, fit.factors, fit.background
+        )
         shown = shown[:, ::-1] if guess["colours"] == "swapped" else shown
         shown[~case.judged[seen.owner]] = 0
         under[start : start + rows] = np.rint(255 * shown).reshape(-1, width, 3)

@@ -15,7 +15,7 @@ import numpy as np
 from minirt.compare import lighting
 from minirt.compare.geometry import Floats, Seen, frame, see, slopes
 from minirt.compare.lighting import Fit
-from minirt.compare.table import GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
+from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
@@ -32,7 +32,7 @@ NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
-SOURCES = "cylinder", "radius", "cone"
+FIRST_EXPONENTS, STEPS = (8, 50, 200), 2  # of highlights: those that are tried first, and how far others are from them
 
 
 class Case:
@@ -45,6 +45,7 @@ class Case:
         has_specks = speck_share(picture) > SPECKLED
         self.table = [row for row in TABLE if row.name != "acne" or has_specks]
         self.light = [row for row in self.table if row in LIGHT]
+        self.cameras = tuple(cameras(self))
         self.kept: dict[Any, Seen] = {}
         self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
 
@@ -63,7 +64,7 @@ class Case:
 
     def see(self, guess: Guess, count: int) -> Seen:
         """Return what the pixels of a sample show under a guess; the last ones are kept."""
-        key = count, *(guess[name] for name in GEOMETRIC)
+        key = count, guess["reflections"], *(guess[name] for name in GEOMETRIC)
         if key not in self.kept:
             if len(self.kept) > 400:
                 self.kept.clear()
@@ -83,32 +84,31 @@ class Case:
         return float(np.minimum(residual, lighting.STEADY**2).mean())
 
 
+CAMERA = "direction", "flipped", "mirrored", "up", "fov", "scale", "roll"
 GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "scale", "roll"
 
 
 def search(case: Case) -> Guess:
     """Find the guess that explains the picture best."""
-    seen_from = ranked(case, cameras(case))
+    seen_from = sorted(case.cameras, key=case.unevenness)
     if case.unevenness(seen_from[0]) > EVEN:  # sizes may hide the camera
         radii = [row.changes for row in GEOMETRY if row.name == "radius"]
         named = [each for each in seen_from if each["scale"] == 1.0]
-        seen_from = ranked(case, [*seen_from, *(each | changes for each in named for changes in radii)])
+        seen_from += [each | changes for each in named for changes in radii]
+        seen_from.sort(key=case.unevenness)
     free = [each for each in seen_from if each["scale"] != 1.0]
     seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
-    names = [name for name in SOURCES if used(case.scene, name)]
+    cylinders, cones, spheres = case.scene.cylinders, case.scene.cones, case.scene.spheres
+    there = {"cylinder": cylinders, "radius": spheres + cylinders, "cone": cones}
+    names = [name for name, shapes in there.items() if shapes]
     shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
     variants = [each | dict(zip(names, values, strict=True)) for values in product(*shaped) for each in seen_from]
-    variants = ranked(case, variants)
-    matt = [row for row in case.light if row.name != "specular"]
-    lit = [steepest(case, each, matt) for each in [OURS, *variants[:BEGINNINGS]]]
+    variants.sort(key=case.unevenness)
+    matt = [row for row in case.light if row.name not in ("specular", "reflections")]
+    lit = [descend(case, each, by_gain(case, each, matt), 1) for each in [OURS, *variants[:BEGINNINGS]]]
     best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
-    found = [with_simplest_light(case, simplify(case, descend(case, each, case.table, 3))) for each in best]
+    found = [simplest(case, descend(case, each, case.table, 3)) for each in best]
     return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
-
-
-def ranked(case: Case, guesses: Iterable[Guess]) -> list[Guess]:
-    """Sort guesses by how even they make the shapes."""
-    return sorted(guesses, key=case.unevenness)
 
 
 def speck_share(picture: Floats) -> float:
@@ -116,12 +116,6 @@ def speck_share(picture: Floats) -> float:
     light = picture.sum(axis=-1)
     beside = np.minimum(light[:, :-2], light[:, 2:])
     return float((beside - light[:, 1:-1] > SPECK).mean())
-
-
-def used(scene: Scene, name: str) -> bool:
-    """Whether a scene has shapes that a parameter changes."""
-    wanted = {"cylinder": scene.cylinders, "cone": scene.cones, "radius": (*scene.spheres, *scene.cylinders)}
-    return bool(wanted[name])
 
 
 def cameras(case: Case) -> Iterator[Guess]:
@@ -156,7 +150,7 @@ def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
     found: dict[str, list[Guess]] = {}
     for row in rows:
         (name, value), *_ = row.changes.items()
-        if guess[name] != value:
+        if guess[name] != value and (name != "specular" or is_near(guess[name], value)):
             found.setdefault(name, []).append(guess | row.changes)
     for name, near in found.items():
         if guess[name] != OURS[name]:
@@ -168,6 +162,18 @@ def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
         found["roll"] = [guess | {"roll": guess["roll"] + sign * turn} for turn in ROLLS for sign in (1, -1)]
         found["roll"].append(guess | {"roll": 0.0})
     return found
+
+
+def is_near(highlight: Any, other: tuple[str, int, str]) -> bool:
+    """Whether the exponent of a highlight is a step from that of another, or one of the first ones to be tried."""
+    if not highlight:
+        return other[1] in FIRST_EXPONENTS
+    return abs(EXPONENTS.index(highlight[1]) - EXPONENTS.index(other[1])) <= STEPS
+
+
+def by_gain(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> list[Hypothesis]:
+    """Sort rows by how well a guess explains the picture with each of them."""
+    return sorted(rows, key=lambda row: case.fit(guess | row.changes).score)
 
 
 def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
@@ -185,39 +191,18 @@ def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, c
     return guess
 
 
-def steepest(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> Guess:
-    """Take the step that explains the picture best, again and again, until none explains it clearly better."""
-    best = case.fit(guess).score
-    while True:
-        scored = [(case.fit(each).score, each) for near in steps(guess, rows).values() for each in near]
-        score, near = min(scored, key=lambda each: each[0])
-        if score >= best * BETTER:
-            return guess
-        guess, best = near, score
-
-
-def simplify(case: Case, guess: Guess) -> Guess:
-    """Return the simplest guess that explains the picture as well: with a named camera in place of free numbers."""
-    limit = case.fit(guess).score * ALIKE + NEAR_SCORE
-    plain = {"roll": 0.0, "scale": 1.0, "fov": "horizontal", "up": "y", "mirrored": False, "flipped": False}
-    named = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS]
-    named += [each | {"roll": 0.0, "up": up} for each in (guess, *named) for up in UPS]
-    flips = product((False, True), (False, True), UPS)
-    named += [guess | {"mirrored": left, "flipped": down, "up": up} for left, down, up in flips]
-    named += [guess | {name: value} for name, value in plain.items()]
-    simpler = sorted((each for each in named if differences(each) < differences(guess)), key=differences)
+def simplest(case: Case, guess: Guess) -> Guess:
+    """Return the guess of fewest differences that explains the picture as well: with a camera of the table that draws
+    nearly the same in place of free numbers, and with plainer light."""
     key = drawn_by(case, guess)
-    for each in simpler:
-        if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR and case.fit(each).score < limit:
-            return each
+    cameras = [guess | {name: each[name] for name in CAMERA} for each in case.cameras]
+    cameras += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS] + [guess | {"roll": 0.0}]
+    near = [each for each in cameras if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR]
+    forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]
+    lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
+    for others in ([{name: each[name] for name in CAMERA} for each in near], lights):
+        fits = [(each, case.fit(each)) for each in [guess, *(guess | changes for changes in others)]]
+        limit = fits[0][1].score * ALIKE + NEAR_SCORE
+        alike = [(differences(each) + fit.odd, number) for number, (each, fit) in enumerate(fits) if fit.score <= limit]
+        guess = fits[min(alike)[1]][0]
     return guess
-
-
-def with_simplest_light(case: Case, guess: Guess) -> Guess:
-    """Return the guess with the ambient light and the fading of fewest differences that explain as much."""
-    limit = case.fit(guess).score * ALIKE + NEAR_SCORE
-    forms = ["object x light", *(row.changes["ambient"] for row in LIGHT if "ambient" in row.changes)]
-    others = [guess | {"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
-    fits = [(each, case.fit(each)) for each in [guess, *others]]
-    alike = [(differences(each) + fit.odd, number) for number, (each, fit) in enumerate(fits) if fit.score <= limit]
-    return fits[min(alike)[1]][0]
