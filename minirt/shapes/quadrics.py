@@ -201,10 +201,10 @@ def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Numb
     """Solve as `negative_interval` does. Where a line starts `on` the surface the nearer end is exactly 0.
 
     The third number is that end without this. If b is 0 to rounding, the start lies midway between both ends, and both
-    are 0: `error` is the square of that of b.
+    are 0 unless the line is steep: `error` is the square of that of b.
     """
     square, half = value(a), value(b)
-    both = on & (half * half <= error)
+    both = on & (half * half <= error) & (square >= 0.0)
     b = where(both, 0.0, b[0]), where(both, 0.0, b[1])
     c = where(both, 0.0, c[0]), where(both, 0.0, c[1])
     D = value(minus(times(b, b), times(a, c)))
