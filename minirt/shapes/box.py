@@ -79,8 +79,10 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None 
     hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
     if limit is None:
         error = position_error(origin, origin - box.centre)
-        x, y, z = fabs(fabs(p.x) - box.half.x), fabs(fabs(p.y) - box.half.y), fabs(fabs(p.z) - box.half.z)
-        if rarely(minimum(minimum(x, y), z) <= error):
+        over = maximum(maximum(fabs(p.x) - box.half.x, fabs(p.y) - box.half.y), fabs(p.z) - box.half.z)
+        close = fabs(over) <= error
+        if rarely(close):
+            error = where(close, error, -1.0)
             enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
             enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
             enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
