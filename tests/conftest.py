@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, settings
 
 from tests import environment, scheduling
 from tests.paths import ROOT
+from tests.seeds import SEED
 from tests.windows import desktop
 
 __all__ = ["desktop"]
@@ -44,6 +45,11 @@ def pytest_configure() -> None:
     for number in {getattr(signal, name, signal.SIGINT) for name in ("SIGHUP", "SIGQUIT", "SIGTERM")}:
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, lambda *_: None)
+
+
+def pytest_report_header() -> str:
+    """Say how to run the same random tests again."""
+    return f"MINIRT_SEED={SEED}"
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

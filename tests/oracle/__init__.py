@@ -26,6 +26,7 @@ from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary, DoubleDouble, unit
 from tests.oracle.numbers import Along, Array, Number, in_digits
 
+FARTHEST = 1e100  # t beyond which no shape is: squares of greater numbers overflow
 SHARES = np.array([0.5, 0.2, 0.8])[:, None, None]  # of a piece: places at which it is looked at
 
 
@@ -75,7 +76,7 @@ def size(shape: Shape) -> float:
 
 
 class Heights(NamedTuple):
-    """Heights of points (...) above the faces and beyond the limits of a shape, to first order, and the slopes there."""
+    """Heights of points (...) above the faces and limits of a shape, to first order, and the slopes there."""
 
     faces: Array  # (k, ...)
     limits: Array  # (l, ...)
@@ -143,6 +144,7 @@ class Crossed:
         negative inside, (k, n), and where. Pieces of no length have the height 0.
         """
         cuts = np.concatenate([self.of_faces, self.of_limits])
+        cuts[np.abs(cuts) > FARTHEST] = np.nan
         far = 4 * (np.nanmax(np.abs([*(cuts - self.approach), 0 * self.approach]), axis=0) + size(self.shape))
         begin = self.approach - far if start is None else start
         end = np.maximum(self.approach, begin) + far

@@ -237,7 +237,8 @@ def between_turns(c: Polynomial) -> list[Number]:
     # All roots lie within twice the largest |a[n-k] / a[n]|^(1/k) (Fujiwara 1916).
     end = np.asarray(4 * np.maximum.reduce(np.broadcast_arrays(*shares)))
     found = []
-    for low, high in pairwise([-end, *np.where(np.isnan(turns), end, turns), end]):
+    for ends in pairwise([-end, *np.where(np.isnan(turns), end, turns), end]):
+        low, high = ends
         below = at(c, low).high
         crosses = (below * at(c, high).high <= 0) & (low < high)
         for _ in range(BISECTIONS):

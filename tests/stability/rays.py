@@ -1,9 +1,9 @@
 """Hard shapes and rays of any kind: place x distance x units in the last place.
 
 Nothing here knows a kind of shape. Its places are the points, axes and planes that its fields give, and where one, two
-or three of the faces of its `boundary` meet: surface, edges and rims, corners and apexes. Ways through them are those to
-another place, along axes, normals and edges, in tangent planes, and along the straight lines in a curved surface, where
-its curvature vanishes: generators, rulings, asymptotes.
+or three of the faces of its `boundary` meet: surface, edges and rims, corners and apexes. Ways through them are those
+to another place, along axes, normals and edges, in tangent planes, and along the straight lines in a curved surface,
+where its curvature vanishes: generators, rulings, asymptotes.
 """
 
 from __future__ import annotations
@@ -99,9 +99,13 @@ def meeting(shape: Shape, near: Array, faces: Array) -> Array:
     `faces` (k, n) are their numbers.
     """
     first = oracle.points(shape)[0]
-    centred = shape.replace(**{
-        each.name: tuple(np.array(getattr(shape, each.name)) - first) for each in fields_of(type(shape)) if isinstance(each, Point)
-    })
+    centred = shape.replace(
+        **{
+            each.name: tuple(np.array(getattr(shape, each.name)) - first)
+            for each in fields_of(type(shape))
+            if isinstance(each, Point)
+        }
+    )
     at = near - first
     for _ in range(8):
         found = oracle.heights(centred, Vec(*map(DoubleDouble, at.T)))
@@ -109,13 +113,17 @@ def meeting(shape: Shape, near: Array, faces: Array) -> Array:
         slopes = np.take_along_axis(found.normals, faces[:, None], axis=0).transpose(2, 0, 1)
         with np.errstate(all="ignore"):
             step = np.nan_to_num(np.linalg.pinv(np.nan_to_num(slopes), rcond=1e-12) @ above)[..., 0]
-        at = at - np.clip(step, -1e3 * oracle.size(shape), 1e3 * oracle.size(shape)) if oracle.size(shape) else at - step
+        at = (
+            at - np.clip(step, -1e3 * oracle.size(shape), 1e3 * oracle.size(shape)) if oracle.size(shape) else at - step
+        )
     return first + at
 
 
 def axes_of(shape: Shape) -> list[Array]:
     """The frames about the axes and normals of a shape, or the scene's axes."""
-    given = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Direction) and not each.keyed]
+    given = [
+        getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Direction) and not each.keyed
+    ]
     frames = [np.array([[v.x, v.y, v.z] for v in basis(tuple(map(float, axis)))]) for axis in given]
     return list(np.concatenate(frames or [np.eye(3)]))
 
@@ -142,7 +150,9 @@ def straight(shape: Shape, at: Array, normal: Array, random: Random) -> Array:
     """Directions in the tangent plane along which a surface does not bend, or bends least."""
     u = unit(np.cross(normal, random_directions(random, len(at))))
     v = np.cross(normal, u)
-    step = 1e-4 * min((np.min(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, Length)), default=1.0)
+    step = 1e-4 * min(
+        (np.min(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, Length)), default=1.0
+    )
     over_u, over_v = ((oracle.normals(shape, at + step * w) - oracle.normals(shape, at - step * w)) for w in (u, v))
     a, b, c = ((x * w).sum(axis=1) for x, w in ((over_u, u), (over_u, v), (over_v, v)))
     root = np.sqrt(np.maximum(b * b - a * c, 0.0)) * random.choice([-1.0, 1.0], len(at))
@@ -180,7 +190,7 @@ def ways(shape: Shape, at: Array, random: Random) -> Array:
 
 
 def rays(shape: Shape, random: Random, n: int) -> tuple[Array, Array]:
-    """Origins and unit directions of n rays, (n, 3) each: through places, from there or from afar, exactly or beside."""
+    """Origins and unit directions of n rays, (n, 3) each: through places or beside, from there or from afar."""
     around, at = oracle.size(shape) or 1.0, places(shape, random, n)
     way = tilted(random, ways(shape, at, random))
     off = around * log_uniform(random, 1e-17, 1e-3, n, 1) * random_directions(random, n)

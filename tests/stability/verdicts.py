@@ -8,7 +8,7 @@ such piece. A sheet has no inside: a hit is right within 64 roundings of its pla
 so close to the given one passes beside it.
 
 A ray that starts within 8 roundings of its coordinates of the surface starts on it. It may start on either side, and it
-must not hit the surface where it starts; a sheet it does not hit at all. One that is flatter than 2^-16 only touches.
+must not hit the surface where it starts; a sheet it does not hit at all. One that is flatter than 2^-10 only touches.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Mask = NDArray[np.bool_]
 U = 2.0**-53
 SLACK = 64 * U
 START = 8 * U  # of the largest coordinate of a start
-STEEP = 2.0**-16
+STEEP = 2.0**-10
 BOUND = 4.0  # of the backward error of any hit by each face
 
 
@@ -51,7 +51,9 @@ def right(shape: Shape, origins: Array, directions: Array, t: Array, digits: boo
             for side in (-1, 0, 1):
                 surely &= rays.heights(exact + side * play).beyond < -band
             near = (np.abs(at.faces[0]) <= band) & (at.beyond <= band) & (t > 0)
-            return np.where(hit, near & ~(starts & (np.abs(start.faces[0]) < rounding / 2)), ~surely | (slope <= SLACK) | starts)
+            return np.where(
+                hit, near & ~(starts & (np.abs(start.faces[0]) < rounding / 2)), ~surely | (slope <= SLACK) | starts
+            )
         starts = np.abs(start.above) <= 2 * rounding
         blur = np.where(starts, 2 * rounding, 0.0)
         cuts, above, where = rays.pieces(np.zeros(len(t)))
@@ -64,12 +66,18 @@ def right(shape: Shape, origins: Array, directions: Array, t: Array, digits: boo
         # A hit where the ray starts must be another crossing than that of the start, or the ray starts beside an apex.
         steep = np.abs(np.einsum("kjn,nj->kn", start.normals[: len(start.faces)], directions))
         nearest = np.take_along_axis(steep, np.abs(start.faces).argmin(axis=0)[None], axis=0)[0]
-        again = (np.abs(start.above) <= rounding / 4) & (start.beyond <= 0) & hit & (nearest > STEEP) & (t * nearest <= 8 * rounding)
+        again = (
+            (np.abs(start.above) <= rounding / 4)
+            & (start.beyond <= -2 * rounding)
+            & hit
+            & (nearest > STEEP)
+            & (t * nearest <= 8 * rounding)
+        )
         if again.any():
             crossings = rays.crossings()
             own = np.nanargmin(np.where(np.isnan(crossings), np.inf, np.abs(crossings)), axis=0)[None]
             np.put_along_axis(crossings, own, np.nan, axis=0)
-            good &= ~again | (np.abs(crossings - t) <= 1e-3 * t).any(axis=0)
+            good &= ~again | (np.abs(crossings - t) <= 0.1 * t).any(axis=0)
     return np.asarray(good)
 
 
@@ -94,9 +102,7 @@ def wrong(shape: Shape, origins: Array, directions: Array, t: Array, most: int =
     rays = origins[seem], directions[seem]
     surely = np.flatnonzero(~right(shape, *rays, t[seem], True))
     exact = Crossed(shape, *rays, True).nearest()
-    return [
-        Wrong(shape, *(part[i].tolist() for part in rays), float(t[seem][i]), float(exact[i])) for i in surely
-    ]
+    return [Wrong(shape, *(part[i].tolist() for part in rays), float(t[seem][i]), float(exact[i])) for i in surely]
 
 
 def certified(shape: Shape, origins: Array, directions: Array, t: Array) -> certificates.Certificate:
