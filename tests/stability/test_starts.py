@@ -1,0 +1,148 @@
+"""Rays that start on a surface as `minirt.kernel.shading.shade` starts them do not hit it again, and do not leave a
+solid; flat solids have no holes; and the length of a direction does not matter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.scene import Scene
+from minirt.shapes import (
+    KINDS,
+    Box,
+    Cone,
+    Cylinder,
+    Disc,
+    Hyperboloid,
+    Kind,
+    Paraboloid,
+    Shape,
+    Sphere,
+    Square,
+    Torus,
+    quadrics,
+)
+from tests import oracle
+from tests.seeds import SEED
+from tests.shapes.examples import place, shadow_offsets
+from tests.shapes.execution_modes import Intersect, on_arrays
+from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, random_perpendiculars, unit
+from tests.stability.mutants import as_of_a_shadow_ray
+from tests.stability.rays import Pose, pose, rays
+from tests.stability.test_exact import EYE, KIND, struck
+
+SHAPES, DIRECTIONS = 40, 256
+ANYWHERE = Pose((1e-8, 1e8), (1.0, 1e8), (0.1, 10.0))
+Offset = Callable[[Array, list[Shape]], Array]
+
+
+def away_from(random: Random, normals: Array) -> Array:
+    """Directions away from a surface: half of them anywhere, half of them grazing it, to a cosine of 1e-8."""
+    n = len(normals)
+    low = random.random((n, 1)) < 0.5
+    cosine = np.where(low, log_uniform(random, 1e-8, 1e-2, n, 1), random.uniform(0.01, 1, (n, 1)))
+    return unit(cosine * normals + np.sqrt(1 - cosine**2) * random_perpendiculars(random, normals, n))
+
+
+def sent(
+    kind: Kind, intersect: Intersect, offset: Offset, side: float = 1.0, drawn: Pose = ANYWHERE
+) -> tuple[int, int]:
+    """The numbers of rays from points that were hit, to the outer side or to the inner one, that hit where there is
+    nothing to hit (shadow acne), and that leave a solid unseen."""
+    random, acne, leaks = np.random.default_rng(SEED), 0, 0
+    for _ in range(SHAPES):
+        with np.errstate(all="ignore"):
+            shape = pose(kind, random, drawn)
+            origins, directions = rays(shape, random, DIRECTIONS)
+            points, out = struck(shape, origins, directions)
+        if points is origins:
+            continue
+        points, out = (np.resize(part, (DIRECTIONS, 3)) for part in (points, side * out))
+        apart = offset(points[None], [shape])[0]
+        starts, ways = points + apart * out, away_from(random, out)
+        t = intersect([shape], starts[None], ways[None])[0]
+        ray = oracle.Crossed(shape, starts, ways)
+        if oracle.is_sheet(shape):
+            acne += int(np.isfinite(t).sum())
+            continue
+        cuts, above, _ = ray.pieces(np.zeros(len(t)))
+        real = ((above < -2 * apart[:, 0]) & (cuts[:-1] <= 10 * t)).any(axis=0)
+        acne += int((np.isfinite(t) & ~real).sum())
+        leaks += int((np.isinf(t) & (ray.heights(0 * t).above < 0)).sum())
+    return acne, leaks
+
+
+@KIND
+def test_no_ray_hits_the_surface_again_from_which_it_starts(kind: Kind) -> None:
+    for intersect in (on_arrays, as_of_a_shadow_ray):
+        assert sent(kind, intersect, shadow_offsets)[0] == 0, SEED
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.element.solid and not kind.element.infinite])
+def test_no_ray_leaves_a_solid_unseen(kind: Kind) -> None:
+    assert sent(kind, on_arrays, shadow_offsets, -1.0)[1] == 0, SEED
+
+
+def fixed(points: Array, shapes: list[Shape]) -> Array:
+    return np.full((*points.shape[:2], 1), 1e-4)
+
+
+def none(points: Array, shapes: list[Shape]) -> Array:
+    return np.zeros((*points.shape[:2], 1))
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.element not in (Sphere, Torus, Box, Disc, Square)])
+def test_other_offsets_do_not_pass(kind: Kind) -> None:
+    """The kinds that are left out are hit by no ray where it starts."""
+    assert sent(kind, as_of_a_shadow_ray, none)[0] > 100
+    assert sent(kind, as_of_a_shadow_ray, fixed, drawn=Pose((1e13, 1e13), (1.0, 1.0), (1.0, 1.0)))[0] > 100
+
+
+FLAT: dict[str, Callable[[Random, float], Shape]] = {
+    "cylinder": lambda random, thin: Cylinder(*posed(random), 1, thin, GREY),
+    "cone": lambda random, thin: Cone(*posed(random), 1, thin, GREY),
+    "paraboloid": lambda random, thin: Paraboloid(*posed(random), 1, thin, GREY),
+    "hyperboloid": lambda random, thin: Hyperboloid(*posed(random), 0.5, 1, thin, GREY),
+}
+
+
+def posed(random: Random) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    return tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
+
+
+def holes(title: str, intersect: Intersect) -> int:
+    """The number of rays that miss the middles of solids thinner than the rounding of the rays' coordinates."""
+    random, missed = np.random.default_rng(SEED), 0
+    for thickness, far in ((1e-9, 1e7), (1e-12, 1e5), (1e-14, 30.0)) * 20:
+        shape = FLAT[title](random, thickness)
+        axis = np.array(shape.axis)  # type: ignore[attr-defined]
+        aside = random.uniform(0, 0.2, (RAYS, 1)) * random_perpendiculars(random, axis, RAYS)
+        origins = place(shape) + aside + far * random_directions(random, RAYS)
+        t = intersect([shape], origins[None], unit(place(shape) + aside - origins)[None])
+        missed += int(np.isinf(t).sum())
+    return missed
+
+
+@pytest.mark.parametrize("intersect", [on_arrays, as_of_a_shadow_ray])
+@pytest.mark.parametrize("title", FLAT)
+def test_flat_solids_have_no_holes(title: str, intersect: Intersect) -> None:
+    assert holes(title, intersect) == 0, SEED
+
+
+def test_a_flat_paraboloid_whose_intervals_must_overlap_has_holes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(quadrics, "BESIDE", 0.0)
+    assert holes("paraboloid", on_arrays) > 0
+
+
+@KIND
+def test_the_length_of_a_direction_does_not_matter(kind: Kind) -> None:
+    random = np.random.default_rng(SEED)
+    for power in random.integers(-1000, 1000, 20):
+        shape = pose(kind, random)
+        origins, directions = rays(shape, random, RAYS)
+        scene = Scene((EYE, shape))
+        one, other = (minirt.trace(scene, origins, scale * directions) for scale in (1.0, 2.0 ** int(power)))
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, other, strict=True)), (SEED, power)
