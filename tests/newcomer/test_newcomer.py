@@ -81,7 +81,7 @@ def test_a_new_shape_passes_the_questions_asked_of_every_shape(copy: Path) -> No
         "no:xdist",
         "-rs",
         "-k",
-        "gate and not compiled and not traced or every_kind",
+        "gate or every_kind",
         *QUESTIONS,
     )
     assert "passed" in told

@@ -107,7 +107,7 @@ def meeting(shape: Shape, near: Array, faces: Array) -> Array:
         }
     )
     at = near - first
-    for _ in range(8):
+    for _ in range(5):
         found = oracle.heights(centred, Vec(*map(DoubleDouble, at.T)))
         above = np.take_along_axis(np.concatenate([found.faces, found.limits]), faces, axis=0).T[..., None]
         slopes = np.take_along_axis(found.normals, faces[:, None], axis=0).transpose(2, 0, 1)
@@ -172,9 +172,10 @@ def ways(shape: Shape, at: Array, random: Random) -> Array:
         )
         tangent = np.cross(normal, random_directions(random, n))
         aligned = np.cross(normal, np.eye(3)[random.integers(3, size=n)])
+        elsewhere = places(shape, random, n) - at
         options = [
-            places(shape, random, n) - at,
-            places(shape, random, n) - at,
+            elsewhere,
+            elsewhere,
             axes[random.integers(len(axes), size=n)],
             normal,
             tangent,

@@ -1,10 +1,11 @@
 """Certificates of hits: how far a computed hit is from the exact surface, and how much the data's errors move it.
 
-**Backward error** of a hit at distance t along a ray from o in the direction d: the least e such that the point
-o + t d lies on a face of the shape after each face and edge was moved by at most e u M. Here u is 2^-53, and
-M = t + |o - c| + size is what t is computed from: t itself, the way from the ray's origin to the first point c that
-the shape is given by, and the sum of the shape's lengths and of the distances between its points. An algorithm is
-backward stable if the error is a small constant, wherever the ray comes from.
+**Backward error** of a hit at distance t along a ray from o in the direction d: the distance of the point o + t d from
+the surface, from its faces, edges and corners, in units of u M. Here u is 2^-53, and M = t + |o - c| + size is what t
+is computed from: t itself, the way from the ray's origin to the first point c that the shape is given by, and the sum
+of the shape's lengths and of the distances between its points. An algorithm is backward stable if the error is a small
+constant, wherever the ray comes from. Beyond a sharp rim, where two faces meet at an angle a, the distance may be
+1 / sin(a / 2) times that from each face.
 
 **Condition number** of t: its relative change per relative change of the data. If o - c, the lengths and the distance
 along d change by at most e of each, the point o + t d moves relative to the surface by at most e M, and t follows by
