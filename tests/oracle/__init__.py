@@ -145,7 +145,7 @@ class Crossed:
         """
         cuts = np.concatenate([self.of_faces, self.of_limits])
         cuts[np.abs(cuts) > FARTHEST] = np.nan
-        far = 4 * (np.nanmax(np.abs([*(cuts - self.approach), 0 * self.approach]), axis=0) + size(self.shape))
+        far = 4 * (np.fmax.reduce([*np.abs(cuts - self.approach), 0 * self.approach]) + size(self.shape))
         begin = self.approach - far if start is None else start
         end = np.maximum(self.approach, begin) + far
         cuts = np.sort(np.where((cuts > begin) & (cuts < end), cuts, end), axis=0)
