@@ -71,7 +71,7 @@ def sent(
         cuts, above, _ = ray.pieces(np.zeros(len(t)))
         real = ((above < -2 * apart[:, 0]) & (cuts[:-1] <= 10 * t)).any(axis=0)
         acne += int((np.isfinite(t) & ~real).sum())
-        leaks += int((np.isinf(t) & (ray.heights(0 * t).above < 0)).sum())
+        leaks += int((np.isinf(t) & (ray.heights(np.zeros_like(t)).above < 0)).sum())
     return acne, leaks
 
 

@@ -65,13 +65,14 @@ def right(shape: Shape, origins: Array, directions: Array, t: Array, digits: boo
         good = np.where(hit, (t > 0) & (np.abs(at.above) <= band + blur) & (t < turn), np.isinf(turn) & ~np.isnan(t))
         # A hit where the ray starts must be another crossing than that of the start, or the ray starts beside an apex.
         steep = np.abs(np.einsum("kjn,nj->kn", start.normals[: len(start.faces)], directions))
-        slope = np.where(np.abs(start.faces) <= 8 * rounding, steep, 1.0).min(axis=0)
+        near = np.abs(start.faces) <= 8 * rounding
+        slope, steepest = np.where(near, steep, 1.0).min(axis=0), np.where(near, steep, 0.0).max(axis=0)
         again = (np.abs(start.above) <= rounding / 4) & (start.beyond <= -2 * rounding) & hit
         again &= (slope > STEEP) & (t * slope <= 8 * rounding)
         if again.any():
             crossings = rays.crossings()
             own = np.nanargmin(np.where(np.isnan(crossings), np.inf, np.abs(crossings)), axis=0)[None]
-            far = np.abs(np.take_along_axis(crossings, own, axis=0)) * slope > rounding
+            far = np.abs(np.take_along_axis(crossings, own, axis=0)) * steepest > rounding
             np.put_along_axis(crossings, own, np.where(far, np.take_along_axis(crossings, own, axis=0), np.nan), axis=0)
             good &= ~again | (np.abs(crossings - t) <= 0.1 * t).any(axis=0)
     return np.asarray(good)
