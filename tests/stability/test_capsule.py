@@ -84,7 +84,7 @@ def boundary(capsule: Any, point: Vec) -> Boundary:
 
 
 CAPSULE = Kind(Capsule, PackedCapsule, intersect, surface, cylinder.mapping, boundary)
-OUTSIDE = Pose((1e-3, 1e3), (1.0, 1e3), (1e-3, 1e3))
+OUTSIDE = Pose((1e-3, 1e3), (1.0, 1.0), (0.1, 10.0))  # the ends of its formula are rounded like its coordinates
 
 
 @pytest.fixture(autouse=True)
