@@ -33,6 +33,7 @@ from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_
 from tests.stability.mutants import as_of_a_shadow_ray
 from tests.stability.rays import Pose, pose, rays
 from tests.stability.test_exact import EYE, KIND, struck
+from tests.stability.verdicts import START
 
 SHAPES, DIRECTIONS = 40, 256
 ANYWHERE = Pose((1e-8, 1e8), (1.0, 1e8), (0.1, 10.0))
@@ -71,7 +72,8 @@ def sent(
         cuts, above, _ = ray.pieces(np.zeros(len(t)))
         real = ((above < -2 * apart[:, 0]) & (cuts[:-1] <= 10 * t)).any(axis=0)
         acne += int((np.isfinite(t) & ~real).sum())
-        leaks += int((np.isinf(t) & (ray.heights(np.zeros_like(t)).above < 0)).sum())
+        deep = ray.heights(np.zeros_like(t)).above < -START * np.abs(starts).max(axis=1)  # not beside a rim
+        leaks += int((np.isinf(t) & deep).sum())
     return acne, leaks
 
 
@@ -97,8 +99,8 @@ def none(points: Array, shapes: list[Shape]) -> Array:
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.element not in (Sphere, Torus, Box, Disc, Square)])
 def test_other_offsets_do_not_pass(kind: Kind) -> None:
     """The kinds that are left out are hit by no ray where it starts."""
-    assert sent(kind, as_of_a_shadow_ray, none)[0] > 100
-    assert sent(kind, as_of_a_shadow_ray, fixed, drawn=Pose((1e13, 1e13), (1.0, 1.0), (1.0, 1.0)))[0] > 100
+    assert sent(kind, as_of_a_shadow_ray, none)[0] > 20
+    assert sent(kind, as_of_a_shadow_ray, fixed, drawn=Pose((1e13, 1e13), (1.0, 1.0), (1.0, 1.0)))[0] > 20
 
 
 FLAT: dict[str, Callable[[Random, float], Shape]] = {
