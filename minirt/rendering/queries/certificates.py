@@ -132,6 +132,7 @@ def exact_turn(turns: Array) -> tuple[DoubleDouble, DoubleDouble]:
 
 
 STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
+NEARLY = 1.0 - 2.0**-20  # of the way: at an apex itself a side has no normal
 SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
 ROUNDED = 16  # roundings of the coordinates by which the point of a normal may lie off the point of the ray
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
@@ -142,7 +143,8 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tu
 
     Returns its distance; the unit normal of the nearest face there; and the distance of `normal` from it, or from that
     of another face within `rounding`.
-    Each step linearises all faces and limits about the last foot. Where that ends the foot is on the surface.
+    Each step linearises all faces and limits about the last foot. Where that ends the foot is on the surface; it may
+    not end beside an apex, where a side is curved as strongly as the point is far from it.
     """
     boundary = kind.boundary(shape, seeded(point))
     count, flat = len(boundary.faces), np.zeros_like(point.x.high)
@@ -150,8 +152,9 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tu
     way = Vec(flat, flat, flat)  # from the point to its foot
     for step in range(STEPS):
         if step:
-            boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (way.x, way.y, way.z)))))
-        heights, normals = linearised((*boundary.faces, *boundary.limits), way)
+            near = NEARLY * way
+            boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (near.x, near.y, near.z)))))
+        heights, normals = linearised((*boundary.faces, *boundary.limits), NEARLY * way)
         if not step:
             beyond = [np.fmax.reduce([flat, *heights[:i], *heights[i + 1 :]]) for i in range(count)]
             farther = [np.fmax(np.abs(height), end) for height, end in zip(heights, beyond, strict=False)]
