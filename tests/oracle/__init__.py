@@ -137,7 +137,7 @@ class Crossed:
             return heights(self.shape, there)
         return heights(self.shape, there, kind_of(self.shape).boundary(exact_shape(self.shape, True), place(True)))
 
-    def pieces(self, start: Array | None = None) -> tuple[Array, Array, Array]:
+    def pieces(self, start: Array | None = None, shares: Array = SHARES) -> tuple[Array, Array, Array]:
         """Cut the rays, from `start` on, where a face or a limit may change its sign.
 
         Returns the ends of the pieces, (k + 1, n), the greatest height above the surface that was seen in each,
@@ -150,7 +150,7 @@ class Crossed:
         end = np.maximum(self.approach, begin) + far
         cuts = np.sort(np.where((cuts > begin) & (cuts < end), cuts, end), axis=0)
         cuts = np.stack([begin, *cuts, end])
-        looks = cuts[:-1] + SHARES * (cuts[1:] - cuts[:-1])
+        looks = cuts[:-1] + shares * (cuts[1:] - cuts[:-1])
         above = np.nan_to_num(np.where(cuts[1:] > cuts[:-1], self.heights(looks).above, 0.0), nan=0.0)
         best = np.abs(above).argmax(axis=0)[None]
         return cuts, *(np.take_along_axis(each, best, axis=0)[0] for each in (above, looks))
@@ -159,7 +159,7 @@ class Crossed:
         """All t at which the rays cross the surface, (k, n) in ascending order, then NaN."""
         if is_sheet(self.shape):
             return np.where(self.heights(self.of_faces).beyond <= 0, self.of_faces, np.nan)
-        cuts, above, _ = self.pieces()
+        cuts, above, _ = self.pieces(shares=SHARES[:1])
         for i in range(1, len(above)):  # a piece of no length is as the one before
             above[i] = np.where(above[i] == 0, above[i - 1], above[i])
         changed = (above[1:] < 0) != (above[:-1] < 0)
