@@ -70,7 +70,7 @@ wheel: $(NAME)  ## build a wheel in dist, with the kernels that draw every scene
 
 # Tests that run few kernels, which are compiled when they ask for them, and no generic ones.
 LIGHT := $(addprefix tests/,$(addsuffix %,formats helpers lanes materials meshes newcomer oracle scene shapes viewer/editing) \
-         $(addprefix stability/test_,$(addsuffix .py,certificates close_rays degenerate edges regimes starts)))
+         $(addprefix stability/test_,$(addsuffix .py,certificates edges exact starts)))
 
 # Run all tests, or some: make test TESTS=tests/shapes; MINIRT_SEED=1 replays random ones.
 test: $(DEV) $(if $(TESTS),$(if $(filter-out $(LIGHT),$(TESTS)),$(KERNELS)),$(KERNELS))  ## run all tests, or TESTS=FOLDER

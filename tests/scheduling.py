@@ -13,16 +13,14 @@ import pytest
 
 from tests.paths import ROOT
 
-WINDOWS, SCENES, REGIMES = "windows", "scenes", "regimes"
+WINDOWS, SCENES, EXACT = "windows", "scenes", "tests/stability/test_exact.py"
 # The groups and files that take longest start first, so that no process starts one when the others are idle.
-LARGEST = (WINDOWS, REGIMES, SCENES, "tests/newcomer/test_newcomer.py")
+LARGEST = (WINDOWS, EXACT, SCENES, "tests/newcomer/test_newcomer.py")
 GROUPS = {
     "tests/test_goldens.py": SCENES,
     "tests/rendering/packing/test_generic_kernels.py": SCENES,
     "tests/rendering/queries/test_preview.py": SCENES,
     "tests/stability/test_pictures.py": SCENES,
-    "tests/stability/test_regimes.py": REGIMES,
-    "tests/stability/test_certificates.py": REGIMES,
 }
 
 # Folders and files that `make quick` leaves out. They take most of the time, above all without compiled kernels, since

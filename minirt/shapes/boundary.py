@@ -120,6 +120,21 @@ def length(v: Vec) -> DoubleDouble:
     return root
 
 
+def maximum(a: Any, b: Any) -> Any:
+    """Return the greater of two numbers, the one that bounds the intersection of two solids."""
+    return 0.5 * (a + b + abs(a - b))
+
+
+def minimum(a: Any, b: Any) -> Any:
+    """Return the lesser of two numbers, the one that bounds the union of two solids."""
+    return 0.5 * (a + b - abs(a - b))
+
+
+def clamp(x: Any, low: Any, high: Any) -> Any:
+    """Return the number between `low` and `high` that is nearest to x."""
+    return minimum(maximum(x, low), high)
+
+
 def unit(v: Vec) -> Vec:
     """Return the vector of length 1 in the direction of v, however short v is."""
     power = -np.frexp(np.maximum(np.maximum(abs(v.x.high), abs(v.y.high)), abs(v.z.high)))[1]

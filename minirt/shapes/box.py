@@ -20,7 +20,6 @@ from minirt.records import record
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.compensated import position_error
 from minirt.shapes.frames import in_scene, own_direction, own_point
-from minirt.shapes.plane import CLOSE
 from minirt.shapes.shape import Axial, Ball, Hit, Position, point_along
 
 
@@ -79,13 +78,16 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None 
     enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
     hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
     if limit is None:
-        close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
+        error = position_error(origin, origin - box.centre)
+        over = maximum(maximum(fabs(p.x) - box.half.x, fabs(p.y) - box.half.y), fabs(p.z) - box.half.z)
+        close = fabs(over) <= error
         if rarely(close):
-            error = where(close, position_error(origin, origin - box.centre), -1.0)
+            error = where(close, error, -1.0)
             enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
             enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
             enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
-            hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+            onward, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+            hit = hit & onward
     return hit, t
 
 

@@ -15,8 +15,8 @@ from minirt.lanes import Number, Vec, dot
 from minirt.records import record
 from minirt.shapes import square
 from minirt.shapes.boundary import Boundary, length
+from minirt.shapes.plane import meets_plane
 from minirt.shapes.shape import Ball, Bounds, Flat, Hit, Position, bounds_of_disc
-from minirt.shapes.square import meets_plane
 
 
 @record()
@@ -54,7 +54,7 @@ surface, mapping = square.surface, square.mapping
 
 def intersect(disc: PackedDisc, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the disc."""
-    hit, t, p = meets_plane(disc, origin, direction, limit)
+    hit, t, p = meets_plane(disc.centre, disc.normal, origin, direction, limit)
     return hit & (dot(p, p) <= disc.half * disc.half), t
 
 

@@ -114,7 +114,8 @@ def exact_interval(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, like
     c = minus(scalar_product(p, p), pair(1.0, 0.0, like))
     error = position_error(splat(origin, like), rounded(f))
     on = value(c) * value(c) <= 4.0 * dot(slope, slope) * error * error
-    return exact_ends(scalar_product(d, d), scalar_product(p, d), c, on, dot(turn, turn) * error * error)
+    below, above, _ = exact_ends(scalar_product(d, d), scalar_product(p, d), c, on, dot(turn, turn) * error * error)
+    return below, above
 
 
 def in_unit_sphere(ellipsoid: PackedEllipsoid, v: Pairs) -> Pairs:

@@ -14,14 +14,13 @@ from dataclasses import KW_ONLY
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Number, Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
 from minirt.shapes.compensated import position_error
 from minirt.shapes.shape import Ball, Flat, Hit, Position
 
-CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
@@ -59,14 +58,23 @@ class PackedPlane(NamedTuple):
 
 
 def intersect(plane: PackedPlane, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the plane; one that is parallel to it, or starts on it, to rounding, does not."""
-    f = origin - plane.point
-    height, slope = dot(plane.normal, f), dot(plane.normal, direction)
+    """Whether and where a ray meets the plane."""
+    hit, t, _ = meets_plane(plane.point, plane.normal, origin, direction, limit)
+    return hit, t
+
+
+def meets_plane(point: Vec, normal: Vec, origin: Vec, direction: Vec, limit: Number | None) -> tuple[Mask, Number, Vec]:
+    """Whether and where a ray meets the plane through a point: t, and the place that is met, relative to the point.
+
+    A ray that is parallel to the plane, or starts on it, to rounding, does not meet it.
+    """
+    f = origin - point
+    height, slope = dot(normal, f), dot(normal, direction)
     t = -height / slope
     hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
     if limit is None:
         hit = hit & (fabs(height) > position_error(origin, f))
-    return hit, t
+    return hit, t, f + t * direction
 
 
 def surface(plane: PackedPlane, point: Vec) -> tuple[Vec, Vec]:

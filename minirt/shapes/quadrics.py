@@ -45,7 +45,6 @@ from minirt.shapes.compensated import (
     scalar_product,
     times,
     value,
-    zero_within,
 )
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
@@ -187,24 +186,28 @@ def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs,
     error = where(((level <= 0.0) | (level * level <= within)) & (over <= error), error, 0.0)
     on = (error > 0.0) & (level * level <= within)
     turning = 1.0 - turn * turn + value(spread) * value(spread)
-    below, above = exact_ends(a, b, c, on, error * error * turning)
-    per_rise = 1.0 / turn
-    one = zero_within((bottom - height[0]) - height[1], error) * per_rise
-    other = zero_within((top - height[0]) - height[1], error) * per_rise
-    return Span(value(a), below, above, minimum(one, other), maximum(one, other), splat(1.0, like))
+    below, above, near = exact_ends(a, b, c, on, error * error * turning)
+    low, high, per_rise = (bottom - height[0]) - height[1], (top - height[0]) - height[1], 1.0 / turn
+    first, last = minimum(low * per_rise, high * per_rise), maximum(low * per_rise, high * per_rise)
+    # A line that starts above a side or an end, if only by rounding, and gets beyond its rim stays outside.
+    below = where(on & (near > last), near, below)
+    starts = minimum(fabs(low), fabs(high)) <= error
+    first = where(starts & (fabs(first) <= fabs(last)) & ~(first > above), 0.0, first)
+    last = where(starts & (fabs(last) < fabs(first)), 0.0, last)
+    return Span(value(a), below, above, first, last, splat(1.0, like))
 
 
-def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number]:
+def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number, Number]:
     """Solve as `negative_interval` does. Where a line starts `on` the surface the nearer end is exactly 0.
 
-    If b is 0 to rounding, the start lies midway between both ends, and both are 0: `error` is the square of that of b.
+    The third number is that end without this. If b is 0 to rounding, the start lies midway between both ends, and both
+    are 0 unless the line is steep: `error` is the square of that of b.
     """
     square, half = value(a), value(b)
-    both = on & (half * half <= error)
-    touching = both | (on & (4.0 * fabs(square * value(c)) > half * half))
+    both = on & (half * half <= error) & (square >= 0.0)
     b = where(both, 0.0, b[0]), where(both, 0.0, b[1])
-    c = where(touching, 0.0, c[0]), where(touching, 0.0, c[1])
+    c = where(both, 0.0, c[0]), where(both, 0.0, c[1])
     D = value(minus(times(b, b), times(a, c)))
     q = -(value(b) + copysign(sqrt(D), value(b)))
     constant = where(both, 1.0, value(c))  # a line along the surface stays above it
-    return in_order(q, q / square, where(on, 0.0, value(c)) / q, square, constant)
+    return *in_order(q, q / square, where(on, 0.0, value(c)) / q, square, constant), value(c) / q

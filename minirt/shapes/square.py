@@ -13,11 +13,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff, where
+from minirt.lanes import Number, Vec, dot, fabs
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, upright_frame
-from minirt.shapes.compensated import position_error
-from minirt.shapes.plane import CLOSE, PARALLEL
+from minirt.shapes.plane import meets_plane
 from minirt.shapes.shape import Ball, Flat, Hit, Position, point_along
 
 
@@ -56,23 +55,8 @@ class PackedSquare(NamedTuple):
 
 def intersect(square: PackedSquare, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
     """Whether and where a ray meets the square."""
-    hit, t, p = meets_plane(square, origin, direction, limit)
+    hit, t, p = meets_plane(square.centre, square.normal, origin, direction, limit)
     return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
-
-
-def meets_plane(flat: Any, origin: Vec, direction: Vec, limit: Number | None) -> tuple[Mask, Number, Vec]:
-    """Whether and where a ray meets the plane of a square or disc: t and the point, relative to the centre.
-
-    A ray that is parallel to it, or starts on it, within rounding, does not meet it there.
-    """
-    f = origin - flat.centre
-    height, slope = dot(flat.normal, f), dot(flat.normal, direction)
-    t = -height / slope
-    crosses = fabs(slope) > PARALLEL * unit_roundoff(slope)
-    if limit is not None:
-        return crosses & (t > 0.0), t, f + t * direction
-    least = where(fabs(height) <= position_error(origin, f), CLOSE * flat.half, 0.0)
-    return crosses & (t > least), t, f + t * direction
 
 
 def surface(flat: Any, point: Vec) -> tuple[Vec, Vec]:

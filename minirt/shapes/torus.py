@@ -163,7 +163,9 @@ def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Nu
     size = fabs(c)
     y = torus.ring * splat(1.415, c)  # no extremum is farther than sqrt(2) ring
     small = 2.0**-22 * torus.ring  # the error after a step is the cube of it
-    unconverged = active  # a converged lane stays as it is, so that no ray's answer depends on the rays beside it
+    # A converged lane stays as it is: the rays beside it do not change its answer. Its last bits may differ between
+    # kernels, and between the two ways of the BVH, one ray against several tori and several rays against one.
+    unconverged = active
     for _ in range(STEPS):
         square = y * y
         value, slope = (square + b) * y - size, 3.0 * square + b

@@ -42,7 +42,6 @@ from minirt.shapes.shape import Ball, Hit, Position, Shape
 
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
 ROUNDINGS = 1.5  # by which a ray that hits a triangle may pass beside it
-CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
 APART = 256  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
@@ -105,8 +104,8 @@ def intersect(triangle: Any, origin: Vec, direction: Vec, limit: Number | None =
 
     The distance is that to the plane of the triangle. The mean of the corners, weighted by the edge functions, would be
     off by roundings of the square of the longest edge over the height: for slivers, far too much. The hit of a grazing
-    ray is clamped to the triangle, even if the ray is parallel to the plane. A ray that starts on the triangle, within
-    rounding, does not hit it there.
+    ray is clamped to the triangle, even if the ray is parallel to the plane. A ray that starts on the plane, within
+    rounding, does not hit it.
     """
     x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
     by_x = (x >= y) & (x >= z)
@@ -130,19 +129,15 @@ def intersect(triangle: Any, origin: Vec, direction: Vec, limit: Number | None =
         t = -height / slope
         extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
         grazing = fabs(slope) * edge <= GRAZING * extent
-        unclear = grazing
-        if limit is None:
-            close = t * t < CLOSE * extent
-            unclear = grazing | close
-        if rarely(hit & unclear):
+        if rarely(hit & grazing):
             enter, leave = above(triangle, origin, direction)
             at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
             begin = maximum(enter, minimum(minimum(at_a, at_b), at_c))
             end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
             t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
             hit = hit & ~(grazing & (enter > leave)) & (extent != 0.0)  # not one that is seen edge on
-            if limit is None:
-                hit = hit & ~(close & (fabs(height) <= position_error(origin, f)))
+        if limit is None:
+            hit = hit & (fabs(height) > position_error(origin, f))
         hit = hit & (t > 0.0)
     return hit, t
 

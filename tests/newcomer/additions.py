@@ -108,7 +108,7 @@ ADDITIONS = {
     ),
     "copy line": Addition(
         changed=(
-            below(BINDINGS, CAMERA_KEY, '    once(FILE, "copy line", "copy the line of the element", "U"),'),
+            below(BINDINGS, CAMERA_KEY, '    once(FILE, "copy line", "copy the line of the element", "J"),'),
             below(COMMANDS, '    "copy camera": copy_camera,', '    "copy line": copy_line,'),
             (COMMANDS, "\n\nCOMMANDS: dict", f"\n\n{part('copy_line.py')}\n\nCOMMANDS: dict"),
             below(CHECKS, CAMERA_CHECK, CHECK),

@@ -19,7 +19,7 @@ from tests.pages import read
 from tests.paths import ROOT
 from tests.processes import run
 
-QUESTIONS = ("tests/shapes/test_protocol.py", "tests/shapes/test_mapping.py")
+QUESTIONS = ("tests/shapes/test_protocol.py", "tests/shapes/test_mapping.py", "tests/stability/test_exact.py")
 TABLES = (  # what depends on lists of all names
     "tests/test_pages.py::test_generated_parts_are_as_generated",
     "tests/test_pages.py::test_what_pages_name_exists",
@@ -108,7 +108,7 @@ def test_its_names_are_typed_and_in_the_tables_and_stay_english_in_french(copy: 
     words = ("capsule", "rough", "roughness of a matt surface", "torch", "copy the line of the element")
     assert [word for word in words if f'msgid "{word}"\nmsgstr ""\n' not in listed] == []
     assert "    capsules: tuple[Capsule, ...]\n" in read_in(copy, "minirt/scene/element_lists.pyi")
-    assert "| copy the line of the element | `U` |  |" in read_in(copy, "minirt/viewer/README.md")
+    assert "| copy the line of the element | `J` |  |" in read_in(copy, "minirt/viewer/README.md")
     assert "| `ca x,y,z ax,ay,az diameter height R,G,B` | capsule |" in read_in(copy, "scenes/README.md")
 
 

@@ -1,55 +1,191 @@
-"""The oracle: hits and normals of all shapes to 60 digits, computed differently from the program.
-
-A shape is given here by implicit functions: polynomials of the coordinates of a point, which are <= 0 inside (`Body`).
-Along a ray each is a polynomial in t, which is expanded by calling the function with the ray's coordinates; its roots
-are found between its turning points. No formula is solved for t by hand.
+"""The oracle: where rays cross the surface of a shape, by its `boundary` computed with many digits.
 
 The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals are scaled to exact
-unit length, as a scene intends. t is in lengths of `direction`, which may be any but 0.
+unit length, as a scene intends. Along a ray each face of a boundary is a function of t, built of polynomials, their
+square roots and absolute values. Multiplied by its conjugates it becomes a polynomial (`tests.oracle.numbers`), whose
+roots cut the ray into pieces. On each of these no face changes its sign: a piece is inside the shape or outside, as its
+middle is. No formula is solved for t by hand.
 
-For another shape add a function to `bodies.py`, or a file beside it that is named as the shape's own: the function,
-which it registers with `body`, takes the shape and a `swell` by which its surface is moved outwards, of a sheet its
-edges, and returns
-
-    Body((F,))                         a solid without edges
-    Body((F, G, H))                    a solid that several surfaces bound, as a cylinder by its side and caps
-    Body((F,), clips=(G, H))           a surface of which only a part is there, but which has an inside
-    Body((F,), clips=(G, H), solid=False)    a sheet, seen from both sides: G and H <= 0 are its extent
+So a new shape needs nothing here. `tests/oracle/test_closed_forms.py` compares the boundaries of sphere, plane and
+triangle with closed forms that share nothing with them.
 """
 
-from collections.abc import Sequence
-from importlib import import_module
-from importlib.util import find_spec
-from typing import Any
+from __future__ import annotations
 
-from gmpy2 import mpfr
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
-from minirt.shapes import KINDS, Shape
-from tests.oracle.body import Body, Vector, body, crossings, dot, exact, file_of, normals
-from tests.oracle.body import inside as inside_of
+import numpy as np
+from gmpy2 import const_pi, cos, mpfr, sin
 
-import_module(f"{__package__}.bodies")  # registers the bodies
-for _file in map(file_of, (kind.element for kind in KINDS)):
-    if find_spec(_file):
-        import_module(_file)
+from minirt.element import fields_of
+from minirt.fields import Angle, Direction, Length, Lengths, Point
+from minirt.lanes import Vec
+from minirt.rendering.queries.certificates import seeded
+from minirt.shapes import KINDS, Kind, Shape
+from minirt.shapes.boundary import Boundary, DoubleDouble, unit
+from tests.oracle.numbers import Along, Array, Number, in_digits
 
-__all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
-
-
-def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpfr | None:
-    """The least t > 0 at which origin + t direction lies on the surface, or None.
-
-    A right answer in fewer digits lies between those for a shape a little larger (`swell` > 0) and a little smaller.
-    """
-    hits = crossings(body(shape, mpfr(swell)), list(origin), list(direction))
-    return next((t for t in hits if t > 0), None)
+FARTHEST = 1e100  # t beyond which no shape is: squares of greater numbers overflow
+SHARES = np.array([0.5, 0.2, 0.8])[:, None, None]  # of a piece: places at which it is looked at
 
 
-def normal(shape: Shape, point: Sequence[Any]) -> Vector:
-    """The outward unit normal at a point of the surface, or that of the wall nearest to a point beside it."""
-    return normals(body(shape), list(point))[0][1]
+def kind_of(shape: Shape) -> Kind:
+    return next(kind for kind in KINDS if kind.element is type(shape))
 
 
-def inside(shape: Shape, point: Sequence[Any]) -> bool:
-    """Whether a point is inside a solid."""
-    return inside_of(body(shape), list(point))
+def is_sheet(shape: Shape) -> bool:
+    """Whether a shape has no inside; a plane, too, is seen from both sides."""
+    return not shape.solid or shape.infinite
+
+
+def number(x: Any, digits: bool) -> Number:
+    """A float64 or mpfr number, or an array, as the oracle computes with it."""
+    if digits:
+        return Number(in_digits(x))
+    high = np.asarray(x, np.float64)
+    return Number(DoubleDouble(high, np.asarray(x - mpfr(float(high)), np.float64) if isinstance(x, mpfr) else 0.0))
+
+
+def exact_shape(shape: Shape, digits: bool = False) -> SimpleNamespace:
+    """The fields of a shape as `boundary` takes them."""
+    found: dict[str, Any] = {}
+    for field in fields_of(type(shape)):
+        value = getattr(shape, field.name)
+        if isinstance(field, Angle):
+            angle = mpfr(value) * const_pi() / 180
+            found[field.name] = number(cos(angle), digits), number(sin(angle), digits)
+        elif isinstance(field, Length):
+            found[field.name] = number(value, digits)
+        elif isinstance(field, Point | Lengths | Direction):
+            parts = Vec(*(number(float(part), digits) for part in value))
+            found[field.name] = unit(parts) if isinstance(field, Direction) else parts
+    return SimpleNamespace(**found)
+
+
+def points(shape: Shape) -> list[Array]:
+    """The points that a shape is given by."""
+    return [np.array(getattr(shape, each.name), float) for each in fields_of(type(shape)) if isinstance(each, Point)]
+
+
+def size(shape: Shape) -> float:
+    """The sum of the lengths that a shape is given by and of the distances between its points."""
+    lengths = [np.sum(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
+    first, *others = points(shape)
+    return float(sum(lengths) + sum(np.linalg.norm(other - first) for other in others))
+
+
+class Heights(NamedTuple):
+    """Heights of points (...) above the faces and limits of a shape, to first order, and the slopes there."""
+
+    faces: Array  # (k, ...)
+    limits: Array  # (l, ...)
+    normals: Array  # (k + l, 3, ...) outward
+
+    @property
+    def above(self) -> Array:
+        """Height above the surface of a solid, negative inside."""
+        return np.asarray(np.fmax.reduce([*self.faces, *self.limits]))
+
+    @property
+    def beyond(self) -> Array:
+        """Distance beyond the edges of a sheet, negative within them."""
+        return np.asarray(np.fmax.reduce([np.full(self.faces.shape[1:], -np.inf), *self.limits]))
+
+
+def heights(shape: Shape, place: Vec, exact: Boundary | None = None) -> Heights:
+    """Heights of a place above the faces of a shape; of their values by `exact`, if that is given."""
+    like = place.x.high
+    with np.errstate(all="ignore"):
+        seeds = Vec(*map(Number, components(seeded(place))))
+        both = kind_of(shape).boundary(exact_shape(shape), seeds)
+        values, normals = [], []
+        for each, value in zip((*both.faces, *both.limits), sum(exact or both, ()), strict=True):
+            slope = np.array([part + 0.0 * like for part in components(each.slope)])
+            steep = np.linalg.norm(slope, axis=0)
+            values.append((value.high + 0.0 * like) / steep)
+            normals.append(slope / steep)
+    count = len(both.faces)
+    return Heights(np.array(values[:count]), np.reshape(values[count:], (-1, *like.shape)), np.array(normals))
+
+
+class Crossed:
+    """A shape and n rays, (n, 3) each: where they cross its surface."""
+
+    def __init__(self, shape: Shape, origins: Array, directions: Array, digits: bool = False) -> None:
+        self.shape, self.origins, self.directions, self.digits = shape, origins, directions, digits
+        with np.errstate(all="ignore"):
+            # t is counted from where the ray is nearest to the first point of the shape: there its numbers are small.
+            self.approach = np.sum((points(shape)[0] - origins) * directions, axis=-1)
+            way = [number(each, digits) for each in directions.T]
+            start = [number(o, digits) + d * self.approach for o, d in zip(origins.T, way, strict=True)]
+            ray = Vec(*(line(*each) for each in zip(start, way, strict=True)))
+            self.of_faces, self.of_limits = (
+                np.reshape([(t + self.approach).high for each in some for t in each.zeros()], (-1, len(origins)))
+                for some in kind_of(shape).boundary(exact_shape(shape, digits), ray)
+            )
+
+    def heights(self, t: Array) -> Heights:
+        """Heights of the points of the rays at t, (..., n)."""
+
+        def place(digits: bool) -> Vec:
+            o, d = ([number(part, digits) for part in each.T] for each in (self.origins, self.directions))
+            return Vec(*(x + y * t for x, y in zip(o, d, strict=True)))
+
+        there = Vec(*(each.value for each in components(place(False))))
+        if not self.digits:
+            return heights(self.shape, there)
+        return heights(self.shape, there, kind_of(self.shape).boundary(exact_shape(self.shape, True), place(True)))
+
+    def pieces(self, start: Array | None = None, shares: Array = SHARES) -> tuple[Array, Array, Array]:
+        """Cut the rays, from `start` on, where a face or a limit may change its sign.
+
+        Returns the ends of the pieces, (k + 1, n), the greatest height above the surface that was seen in each,
+        negative inside, (k, n), and where. Pieces of no length have the height 0.
+        """
+        cuts = np.concatenate([self.of_faces, self.of_limits])
+        cuts[np.abs(cuts) > FARTHEST] = np.nan
+        far = 4 * (np.fmax.reduce([*np.abs(cuts - self.approach), 0 * self.approach]) + size(self.shape))
+        begin = self.approach - far if start is None else start
+        end = np.maximum(self.approach, begin) + far
+        cuts = np.sort(np.where((cuts > begin) & (cuts < end), cuts, end), axis=0)
+        cuts = np.stack([begin, *cuts, end])
+        looks = cuts[:-1] + shares * (cuts[1:] - cuts[:-1])
+        above = np.nan_to_num(np.where(cuts[1:] > cuts[:-1], self.heights(looks).above, 0.0), nan=0.0)
+        best = np.abs(above).argmax(axis=0)[None]
+        return cuts, *(np.take_along_axis(each, best, axis=0)[0] for each in (above, looks))
+
+    def crossings(self) -> Array:
+        """All t at which the rays cross the surface, (k, n) in ascending order, then NaN."""
+        if is_sheet(self.shape):
+            return np.where(self.heights(self.of_faces).beyond <= 0, self.of_faces, np.nan)
+        cuts, above, _ = self.pieces(shares=SHARES[:1])
+        for i in range(1, len(above)):  # a piece of no length is as the one before
+            above[i] = np.where(above[i] == 0, above[i - 1], above[i])
+        changed = (above[1:] < 0) != (above[:-1] < 0)
+        return np.sort(np.where(changed, cuts[1:-1], np.nan), axis=0)
+
+    def nearest(self) -> Array:
+        """The least t > 0 at which each ray crosses the surface, infinity where none does."""
+        t = self.crossings()
+        return np.asarray(np.where(t > 0, t, np.inf).min(axis=0, initial=np.inf))
+
+
+def line(start: Number, way: Number) -> Along:
+    """The function start + t way."""
+    return Along({frozenset(): {frozenset(): [start, way]}})
+
+
+def components(v: Vec) -> tuple[Any, Any, Any]:
+    return v.x, v.y, v.z
+
+
+def nearest(shape: Shape, origin: Any, direction: Any) -> float:
+    """The least t > 0 at which origin + t direction crosses the surface, in 60 digits; infinity where none does."""
+    return float(Crossed(shape, np.array([origin], float), np.array([direction], float), True).nearest()[0])
+
+
+def normals(shape: Shape, places: Array) -> Array:
+    """The outward unit normals at places (n, 3) of the surface, or of the nearest face beside it."""
+    found = heights(shape, Vec(*map(DoubleDouble, places.T)))
+    return np.asarray(np.take_along_axis(found.normals, np.abs(found.faces).argmin(axis=0)[None, None], axis=0)[0].T)

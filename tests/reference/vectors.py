@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextvars import ContextVar
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,6 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Point
 from minirt.shapes import Shape
-from tests.oracle.body import Polynomial
 
 Array = NDArray[np.float64]
 
@@ -66,35 +64,6 @@ def own_x_and_z(axis: Array, roll: float) -> tuple[Array, Array]:
 
     z = turned(turn(np.array([0.0, 0.0, 1.0])), axis, roll)
     return np.cross(axis, z), z
-
-
-class Along(Polynomial):
-    """Polynomials of the oracle in float64, one for each ray."""
-
-    @staticmethod
-    def number(c: Any) -> Any:
-        return c if isinstance(c, np.ndarray) else np.float64(float(c))
-
-    def roots(self) -> list[Array]:  # type: ignore[override]
-        """The real roots, NaN or infinite where there is none."""
-        c = np.broadcast_arrays(*self.coefficients)
-        with np.errstate(all="ignore"):
-            if len(c) == 2:
-                return [-c[0] / c[1]]
-            if len(c) == 3:
-                b = c[1] / 2
-                q = -(b + np.copysign(np.sqrt(b * b - c[2] * c[0]), b))
-                return [q / c[2], c[0] / q]
-        # Eigenvalues of the companion matrix.
-        companion = np.zeros((*c[0].shape, len(c) - 1, len(c) - 1))
-        companion[..., 1:, :-1] = np.eye(len(c) - 2)
-        companion[..., -1] = -np.stack(c[:-1], axis=-1) / c[-1][..., None]
-        roots = np.moveaxis(np.linalg.eigvals(companion), -1, 0)
-        return [np.where(np.abs(root.imag) < 1e-6 * np.abs(roots).max(axis=0), root.real, np.nan) for root in roots]
-
-    def rounding(self, t: Array) -> Array:
-        """An error that the values at t may have."""
-        return np.asarray(1e-12 * Along(*map(np.abs, self.coefficients))(np.abs(t)))
 
 
 def first_point(shape: Shape) -> Array:

@@ -14,7 +14,6 @@ from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.packed_shapes import bounding_boxes
 from minirt.shapes import Kind, Shape
 from tests import oracle
-from tests.oracle.many import crossed
 from tests.shapes.execution_modes import compiled, surfaces
 from tests.shapes.regimes import RAYS, Array, Random, log_uniform, random_directions, unit
 
@@ -56,9 +55,9 @@ def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, 
     while len(points) < count:
         origins = place(shape) + log_uniform(random, 0.1, 10, count, 1) * random_directions(random, count)
         directions = unit(place(shape) + random.uniform(-0.6, 0.6, (count, 3)) - origins)
-        t = crossed(shape, origins, directions).nearest()[:, None]
+        t = oracle.Crossed(shape, origins, directions).nearest()[:, None]
         points = np.concatenate([points, (origins + t * directions)[np.isfinite(t[:, 0])]])[:count]
-    return points, np.array([[float(x) for x in oracle.normal(shape, point)] for point in points])
+    return points, oracle.normals(shape, points)
 
 
 def scaled(shape: Shape, factor: float) -> Shape:

@@ -1,10 +1,11 @@
 """Certificates of hits: how far a computed hit is from the exact surface, and how much the data's errors move it.
 
-**Backward error** of a hit at distance t along a ray from o in the direction d: the least e such that the point
-o + t d lies on a face of the shape after each face and edge was moved by at most e u M. Here u is 2^-53, and
-M = t + |o - c| + size is what t is computed from: t itself, the way from the ray's origin to the first point c that
-the shape is given by, and the sum of the shape's lengths and of the distances between its points. An algorithm is
-backward stable if the error is a small constant, wherever the ray comes from.
+**Backward error** of a hit at distance t along a ray from o in the direction d: the distance of the point o + t d from
+the surface, from its faces, edges and corners, in units of u M. Here u is 2^-53, and M = t + |o - c| + size is what t
+is computed from: t itself, the way from the ray's origin to the first point c that the shape is given by, and the sum
+of the shape's lengths and of the distances between its points. An algorithm is backward stable if the error is a small
+constant, wherever the ray comes from. Beyond a sharp rim, where two faces meet at an angle a, the distance may be
+1 / sin(a / 2) times that from each face.
 
 **Condition number** of t: its relative change per relative change of the data. If o - c, the lengths and the distance
 along d change by at most e of each, the point o + t d moves relative to the surface by at most e M, and t follows by
@@ -23,6 +24,7 @@ them, rounded. That nothing nearer was missed, a certificate does not say.
 
 from __future__ import annotations
 
+from itertools import combinations
 from types import SimpleNamespace
 from typing import Any, NamedTuple, get_type_hints
 
@@ -31,10 +33,9 @@ from numpy.typing import NDArray
 
 from minirt.element import fields_of
 from minirt.fields import Angle, Direction, Length, Lengths, Point, cos_and_sin
-from minirt.lanes import Vec, dot, sqrt
-from minirt.lanes import unit as unit_vector
+from minirt.lanes import Vec, cross, dot, sqrt, where
 from minirt.shapes import ALL_KINDS, Kind, Shape
-from minirt.shapes.boundary import Boundary, DoubleDouble, hypotenuse, unit
+from minirt.shapes.boundary import DoubleDouble, hypotenuse, unit
 from minirt.shapes.compensated import two_sum
 from minirt.shapes.shape import Position
 
@@ -131,52 +132,100 @@ def exact_turn(turns: Array) -> tuple[DoubleDouble, DoubleDouble]:
 
 
 STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
+NEARLY = 1.0 - 2.0**-20  # of the way: at an apex itself a side has no normal
 SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
 ROUNDED = 16  # roundings of the coordinates by which the point of a normal may lie off the point of the ray
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 
 
 def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tuple[Array, Vec, Array]:
-    """Find the nearest point of the nearest face.
+    """Find the nearest point of the surface: on a face, on the edge of two or at the corner of three.
 
-    Returns its distance, or that of the face's end where the point lies beyond it; the face's unit normal there; and
-    the distance of `normal` from it, or from that of another face within `rounding`.
-    Each step linearises the face about the last foot: the next one lies on that tangent plane, straight below the
-    point. Where that ends the foot is on the face, and the face's normal at the foot leads to the point.
+    Returns its distance; the unit normal of the nearest face there; and the distance of `normal` from it, or from that
+    of another face within `rounding`.
+    Each step linearises all faces and limits about the last foot. Where that ends the foot is on the surface; it may
+    not end beside an apex, where a side is curved as strongly as the point is far from it.
     """
     boundary = kind.boundary(shape, seeded(point))
-    amounts = [each.rounded() / sqrt(dot(each.slope, each.slope)) for each in (*boundary.faces, *boundary.limits)]
-    flat = np.zeros_like(point.x.high)
-    ends = [np.fmax.reduce([flat, *amounts[:i], *amounts[i + 1 :]]) for i in range(len(boundary.faces))]
-    farther = [np.fmax(np.abs(amount), end) for amount, end in zip(amounts, ends, strict=False)]
-    face = np.argmin(farther, axis=0)
-    beyond = np.choose(face, ends)
-    limit = np.fmax(rounding, np.fmin.reduce(farther))
+    count, flat = len(boundary.faces), np.zeros_like(point.x.high)
+    is_sheet = not kind.element.solid or kind.element.infinite
     way = Vec(flat, flat, flat)  # from the point to its foot
     for step in range(STEPS):
         if step:
-            boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (way.x, way.y, way.z)))))
-        height, slope = height_and_slope(boundary, face)
-        before, way = way, ((dot(slope, way) - height) / dot(slope, slope)) * slope
+            near = NEARLY * way
+            boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (near.x, near.y, near.z)))))
+        heights, normals = linearised((*boundary.faces, *boundary.limits), NEARLY * way)
+        if not step:
+            beyond = [np.fmax.reduce([flat, *heights[:i], *heights[i + 1 :]]) for i in range(count)]
+            farther = [np.fmax(np.abs(height), end) for height, end in zip(heights, beyond, strict=False)]
+            face = np.argmin(farther, axis=0)
+            inside = np.fmax.reduce(heights) < 0.0
+        before, way = way, way_to_surface(heights, normals, face, inside, is_sheet)
         change = way - before
         if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
             break
-    off = [normal - unit_vector(each.slope) for each in boundary.faces]
+    off = [normal - each for each in normals[:count]]
+    limit = np.fmax(rounding, np.fmin.reduce(farther))
     turned = [np.where(away <= limit, sqrt(dot(v, v)), np.inf) for away, v in zip(farther, off, strict=True)]
-    return np.fmax(sqrt(dot(way, way)), beyond), unit_vector(slope), np.minimum.reduce(turned)
+    return sqrt(dot(way, way)), chosen(face, normals), np.minimum.reduce(turned)
+
+
+def linearised(functions: tuple[DoubleDouble, ...], way: Vec) -> tuple[list[Array], list[Vec]]:
+    """Heights of a point above the tangent planes of faces at its foot, and their unit normals."""
+    steepness = [sqrt(dot(each.slope, each.slope)) for each in functions]
+    normals = [each.slope / steep for each, steep in zip(functions, steepness, strict=True)]
+    values = (each.rounded() / steep for each, steep in zip(functions, steepness, strict=True))
+    return [value - dot(normal, way) for value, normal in zip(values, normals, strict=True)], normals
+
+
+def chosen(face: Integers, normals: list[Vec]) -> Vec:
+    """The normal of the chosen face of each point."""
+    return Vec(*(np.choose(face, [getattr(each, axis) for each in normals]) for axis in "xyz"))
+
+
+def way_to_surface(heights: list[Array], normals: list[Vec], face: Integers, inside: Any, is_sheet: bool) -> Vec:
+    """The shortest way from a point to where planes bound a convex solid, or to a sheet on the first of them.
+
+    From inside it leads to the nearest `face`. From outside it is the longest of the shortest ways to one plane, to the
+    edge of two and to the corner of three of them, of those that lead straight against a sum of their normals with
+    factors that are not negative (Karush 1939; Kuhn and Tucker 1951).
+    """
+    best = -np.choose(face, heights) * chosen(face, normals)
+    reach = np.where(inside | is_sheet, dot(best, best), -1.0)
+    for size in (1, 2, 3):
+        for some in combinations(range(len(heights)), size):
+            if is_sheet and 0 not in some:
+                continue
+            way, factors = least_way([heights[i] for i in some], [normals[i] for i in some])
+            free = [factor for i, factor in zip(some, factors, strict=True) if i or not is_sheet]
+            longer = (is_sheet | ~inside) & (dot(way, way) > reach)
+            for factor in free:
+                longer &= factor >= 0.0
+            best, reach = where(longer, way, best), np.where(longer, dot(way, way), reach)
+    return best
+
+
+def least_way(heights: list[Array], normals: list[Vec]) -> tuple[Vec, list[Array]]:
+    """The shortest way to where one to three planes meet, and the factors of their normals in its opposite."""
+    h, n = heights, normals
+    if len(h) == 1:
+        return -h[0] * n[0], [h[0]]
+    across = cross(n[0], n[1])  # exact to roundings even where the planes are nearly parallel
+    if len(h) == 2:
+        square = dot(across, across)
+        way = (h[1] * cross(across, n[0]) - h[0] * cross(across, n[1])) / -square
+        factors = [-dot(cross(way, n[1]), across) / square, -dot(cross(n[0], way), across) / square]
+        return way, factors
+    volume = dot(across, n[2])
+    sides = cross(n[1], n[2]), cross(n[2], n[0]), across
+    way = (h[0] * sides[0] + h[1] * sides[1] + h[2] * sides[2]) / -volume
+    return way, [-dot(way, side) / volume for side in sides]
 
 
 def seeded(point: Vec) -> Vec:
     """The point, its coordinates as the variables that gradients are taken by."""
     parts = (point.x, point.y, point.z)
     return Vec(*(DoubleDouble(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
-
-
-def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
-    """The value and the gradient of the chosen faces."""
-    slopes = [each.slope for each in boundary.faces]
-    slope = Vec(*(np.choose(face, [getattr(each, axis) for each in slopes]) for axis in "xyz"))
-    return np.choose(face, [each.rounded() for each in boundary.faces]), slope
 
 
 U = 2.0**-53
