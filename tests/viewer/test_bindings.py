@@ -201,7 +201,8 @@ SETUPS: dict[str, tuple[str, ...]] = {
 
 def facts(state: State) -> tuple[object, ...]:
     """What an action of the editor may change."""
-    return state.scene.items, state.scene.shown, state.selected, state.value_index, state.frame, state.message
+    said = state.message.split("\n")[0]  # without what the picture does not show
+    return state.scene.items, state.scene.shown, state.selected, state.value_index, state.frame, said
 
 
 def edits_as(action: str) -> Check:

@@ -18,7 +18,7 @@ import pytest
 
 from minirt.cli import main
 from minirt.element import Element, fields_of
-from minirt.fields import Choice, Direction, Flag, MeshField, Paint, Picture
+from minirt.fields import Choice, Direction, Flag, MeshField, Paint, Picture, Point
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.scene import Scene, dump, load, parse
@@ -206,7 +206,8 @@ def test_every_number_of_every_kind_is_dragged_and_typed_with_the_pointer(kind: 
         else:
             assert value.current(after) == 1, value.name
         for field in fields_of(kind):
-            assert field.name == value.field.name or getattr(after, field.name) == getattr(before, field.name)
+            may_change = field.name == value.field.name or isinstance(field, Point)  # as what stands goes on standing
+            assert may_change or getattr(after, field.name) == getattr(before, field.name)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.code in WITH_ATTRIBUTES], ids=lambda kind: kind.code)
@@ -274,9 +275,10 @@ def test_every_attribute_is_switched_on_and_off(kind: type[Element], path: Path)
                 assert not user.state.undo_stack
                 user.click(f"{lacked[0]} on")
             before = len(user.state.undo_stack)
-            user.click(f"{field.title} on")
+            if getattr(user.element, field.name) is None:  # it has not come with the other
+                user.click(f"{field.title} on")
+                assert len(user.state.undo_stack) == before + 1
             assert getattr(user.saved(), field.name) is not None
-            assert len(user.state.undo_stack) == before + 1
             user.go_to(f"{field.title} on")
             user.press(Key.SPACE)
             assert getattr(user.saved(), field.name) is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import hypot
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from minirt.fields import Triple
@@ -12,6 +13,7 @@ from minirt.scene import Scene, dump
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.marks import arrow_tip, arrows
 from minirt.viewer.display.overlay import HudLevel
+from minirt.viewer.display.screen import darken_beyond
 from minirt.viewer.editing.colours import COLOURS, colour_word
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ATTRIBUTE, choices
@@ -118,6 +120,13 @@ def test_a_second_press_brings_all_into_view_without_a_turn() -> None:
     assert near.direction == all_of_it.direction == before.direction
     assert near.position[2] < all_of_it.position[2]
     assert all_of_it == played("press F").state.scene.camera  # of the camera itself
+
+
+def test_what_is_beyond_the_picture_of_the_whole_window_is_darker() -> None:
+    pixels = np.full((300, 160, 4), 200, np.uint8)
+    darken_beyond(pixels, 400, 16)  # of which 160 columns are left: they show 120 rows
+    assert {*pixels[:90, :, :3].flat, *pixels[211:, :5, :3].flat} == {150}
+    assert {*pixels[90:210].flat} == {200}
 
 
 def test_an_arrow_is_a_click_and_no_drag() -> None:
