@@ -33,7 +33,6 @@ from minirt.viewer.files import usable_files
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 STACKED = 1.5  # times the usual size on top of another shape: of a shape of the same kind
-BRINGS = {"glass": "fresnel"}  # attributes that come with others, which look like nothing without them
 LAMP_SHARE = 0.4  # of the distance to a surface: where a new lamp hangs in front of it
 SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
@@ -110,18 +109,10 @@ def with_element(before: State, kind: type[Element]) -> State:
 
 def with_attribute(before: State, field: Field) -> State:
     """The state whose selected element has a new attribute, which is active."""
-    added = [field, *(each for each in fields_of(type(before.element)) if each.name == BRINGS.get(field.name))]
-    length = nice_number(SIZE * before.size)
-    new = {each.name: default_value(each, before, length) for each in added if each is field or is_absent(each, before)}
-    changed = before.element.replace(**new)
+    changed = before.element.replace(**{field.name: default_value(field, before, nice_number(SIZE * before.size))})
     after = before.change(before.scene.edit(before.selected, changed), ATTRIBUTE, 0.0)
     index = [value.field.name for value in values(changed)].index(field.name)
     return replace(after, value_index=index).with_message(f"{field.doc}: {field_text(field, changed)}")
-
-
-def is_absent(field: Field, state: State) -> bool:
-    """Whether the selected element has no value of a field."""
-    return getattr(state.element, field.name) is None
 
 
 def remove_attribute(state: State, _amount: float, _now: float) -> State:

@@ -16,7 +16,6 @@ from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.screen import darken_beyond
 from minirt.viewer.editing.colours import COLOURS, colour_word
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.editing.structure import ATTRIBUTE, choices
 from minirt.viewer.editing.typed import set_typed
 from minirt.viewer.editing.values import values
 from tests.viewer.app.test_lists import AT_SPHERE, clicked, play, right_click, rows
@@ -173,14 +172,6 @@ def test_a_ball_on_a_ball_has_its_colour_and_three_quarters_of_its_breadth() -> 
     assert hypot(*upper.centre) == pytest.approx((upper.diameter + lower.diameter) / 2, abs=0.01)
     box = play("move 320,212", "press N", "press b", "press o").state.element
     assert box.colour != lower.colour
-
-
-def test_glass_comes_with_reflections_and_goes_without_them() -> None:
-    state = initial_state(scene()).select(3)
-    with_glass = next(each for title, each in choices(state, ATTRIBUTE) if title == "glass")
-    assert (with_glass.element.glass is not None, with_glass.element.fresnel) == (True, 1)
-    assert with_glass.active.field.name == "glass"
-    assert len(with_glass.undo_stack) == 1
 
 
 def test_the_title_has_a_star_while_something_is_unsaved(tmp_path: Path) -> None:

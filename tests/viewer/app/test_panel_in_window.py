@@ -73,7 +73,7 @@ def test_numbers_are_dragged_and_typed_undone_and_saved_and_the_panel_is_remembe
         seen(viewer, f"click {number[0]},{number[1]}")
         desktop.run("xdotool", "type", "--delay", "0", "2*3+1")
         viewer.key("Return", "ctrl+s")
-        until(lambda: path.read_text() == SPHERE_ON_PLANE.replace("sp 0,0,0 2 ", "sp 0,0,0 7 "), "the typed line")
+        until(lambda: path.read_text() == SPHERE_ON_PLANE.replace("sp 0,0,0 2 ", "sp 0,2.5,0 7 "), "the typed line")
 
         until_at_rest(viewer.process.pid, 100)
         viewer.key("Escape", "Escape")  # out of the panel, out of the program
