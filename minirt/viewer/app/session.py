@@ -7,6 +7,7 @@ newer than the picture: those of a new scene are drawn with its first picture, o
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import is_not
 from pathlib import Path
 
 from minirt.errors import MiniRTError, RenderError
@@ -78,7 +79,7 @@ class Session:
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self._title = title_of(path, scene)
-        self._entitled: tuple[object, ...] = ()  # what the title was last made from
+        self.entitled: tuple[object, ...] = ()  # what the title was last made from; empty: it is made anew
         self.window = mlx.mlx_new_window(display, *size, self._title, resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), samples)
         self.keymap = Keymap(keys, self.window.letter_at)
@@ -108,9 +109,9 @@ class Session:
 
     def show_title(self) -> None:
         """Show the title of the window, if it is another one."""
-        told = self.state.scene, self.saved, self.path
-        if told != self._entitled:
-            self._entitled = told
+        made_from = self.state.scene, self.saved, self.path
+        if len(self.entitled) != len(made_from) or any(map(is_not, made_from, self.entitled)):
+            self.entitled = made_from
             title = title_of(self.path, self.saved, contents_differ(self.state.scene, self.saved))
             if title != self._title:
                 self._title = title

@@ -14,8 +14,10 @@ from pathlib import Path
 import pytest
 
 from minirt.scene import load
+from minirt.viewer.app import events
 from minirt.viewer.app.desktop import run
 from minirt.viewer.app.events import EventDispatcher
+from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import BINDINGS, Binding
 from tests.viewer.fake import TEXT, FakeRenderer
 from tests.viewer.test_bindings import MOUSE
@@ -52,15 +54,17 @@ def log_actions(log: str, *scenes: str) -> int:
     """Show the scenes and log the actions of their keys to a file; return the first exit status that is not 0."""
 
     def logged(perform: Callable[..., None]) -> Callable[..., None]:
-        def perform_and_log(dispatcher: EventDispatcher, binding: Binding, *arguments: float, **others: bool) -> None:
-            perform(dispatcher, binding, *arguments, **others)
+        def perform_and_log(
+            performer: EventDispatcher | Session, binding: Binding, *arguments: float, **others: bool
+        ) -> None:
+            perform(performer, binding, *arguments, **others)
             with Path(log).open("a") as lines:
                 lines.write(f"{binding.action}\n")
 
         return perform_and_log
 
-    for name in ("perform", "hold"):
-        setattr(EventDispatcher, name, logged(getattr(EventDispatcher, name)))
+    for owner, name in ((EventDispatcher, "perform"), (events, "hold")):
+        setattr(owner, name, logged(getattr(owner, name)))
     options = {"size": SIZE, "keys": "auto", "renderer": FakeRenderer()}
     statuses = (run(load(scene).scene, path=scene, **options) for scene in scenes)
     return next((status for status in statuses if status), 0)
