@@ -40,6 +40,8 @@ def first_in_front(shape: Shape, origins: Array, directions: Array) -> Array:
 @singledispatch
 def crossings(shape: Shape, origins: Array, directions: Array) -> list[Array]:
     """All distances at which lines along unit directions cross the surface of a shape, NaN for none: the oracle's."""
+    if not directions.size:
+        return [np.empty(directions.shape[:-1])]
     rays = [np.broadcast_to(part, directions.shape).reshape(-1, 3) for part in (origins, directions)]
     return [t.reshape(directions.shape[:-1]) for t in Crossed(shape, *rays).crossings()]
 

@@ -177,7 +177,7 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Surfa
 @singledispatch
 def normals(shape: Shape, points: Array) -> Array:
     """The unit normals of a shape at points on its surface: of the face that is nearest, to first order."""
-    return oracle.normals(shape, points.reshape(-1, 3)).reshape(points.shape)
+    return oracle.normals(shape, points.reshape(-1, 3)).reshape(points.shape) if points.size else points
 
 
 @singledispatch

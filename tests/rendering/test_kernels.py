@@ -23,7 +23,7 @@ from minirt.rendering import Renderer, ahead_of_time, kernels
 from minirt.rendering import renderer as renderers
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.kernels import (
-    Choice,
+    KernelChoice,
     Kernels,
     generic_call,
     generic_identity,
@@ -78,7 +78,7 @@ def specialised_identity(scene: Scene, precision: str = "double") -> str:
     return Library().identity(functions.frame.call(*frame_of(scene, precision)))
 
 
-def choose(monkeypatch: pytest.MonkeyPatch, scene: Scene, *found: str, precision: str = "double") -> Choice:
+def choose(monkeypatch: pytest.MonkeyPatch, scene: Scene, *found: str, precision: str = "double") -> KernelChoice:
     """Return the choice of a kernel for a scene where only some can be found."""
     monkeypatch.setattr(kernels, "LIBRARY", FakeLibrary(*found))
     return Kernels(precision, 8).choose(frame_of(scene, precision))

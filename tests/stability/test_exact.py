@@ -44,7 +44,10 @@ def complaints(kind: Kind, *ways: Intersect, seed: int = RUN, shapes: int = SHAP
             points, normals = struck(shape, origins, directions)
             onward = sent_on(shape, points, normals, random)
         for each in ((origins, directions), (points, onward)):
-            o, d = (np.resize(part, (RAYS, 3)) for part in each)
+            is_finite = np.isfinite(np.concatenate(each, axis=1)).all(axis=1)  # a far point may have no normal
+            if not is_finite.any():
+                continue
+            o, d = (np.resize(part[is_finite], (RAYS, 3)) for part in each)
             for intersect in ways:
                 t = intersect([shape], o[None], d[None])[0]
                 found += [str(each) for each in wrong(shape, o, d, t)]
@@ -72,4 +75,5 @@ def test_answers_are_exact_and_no_surface_is_hit_again(kind: Kind) -> None:
     ("name", "kind"), mutants.PAIRS, ids=lambda each: each if isinstance(each, str) else each.element.title
 )
 def test_a_wrong_formula_is_found(name: str, kind: Kind) -> None:
-    assert any(complaints(kind, mutants.EVERY[name][0], seed=RUN + i, shapes=4) for i in range(12)), RUN
+    with np.errstate(all="ignore"):  # its answers may be anything
+        assert any(complaints(kind, mutants.EVERY[name][0], seed=RUN + i, shapes=4) for i in range(12)), RUN
