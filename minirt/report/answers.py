@@ -70,7 +70,9 @@ def automatic(found: Findings) -> str:
     faster, slower = (
         ", ".join(f"{row.asked:g}" for row, so in zip(rows, each, strict=True) if so) for each in (high < 1, low > 1)
     )
-    answer = "Yes" if faster else "No" if slower else "It makes no difference that can be measured"
+    answer = "It makes no difference that can be measured"
+    if faster or slower:
+        answer = "Yes" if faster else "No"
     if faster and slower:
         answer = f"Yes for an error of {faster}, no for {slower}"
     extent = " to ".join(dict.fromkeys(f"{each:.2g}" for each in (ratio.min(), ratio.max())))

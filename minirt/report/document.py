@@ -99,4 +99,4 @@ def worst_crops(rows: list[Row], lights: dict[str, Light], reference: Light) -> 
 def summary(found: Findings) -> str:
     """Return the answers and what was not measured, a line each."""
     told = (f"{question} {answer}".replace("`", "") for question, answer in answers(found))
-    return "\n".join([*[found.interrupted] * bool(found.interrupted), *told])
+    return "\n".join(filter(None, (found.interrupted, *told)))

@@ -103,7 +103,7 @@ class Findings:
 
     @property
     def clock(self) -> str:
-        """What follows a time in a sentence."""
+        """Words that follow a time in a sentence, and say how it was measured."""
         of_threads = f"of processor time of each of {counted(self.subject.threads, 'thread')}"
         return f"{of_threads}, as other programs disturbed the wall times" if self.by_processor else "a picture"
 

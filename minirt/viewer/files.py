@@ -31,7 +31,8 @@ def title_of(path: Path, scene: Scene, is_unsaved: bool = False) -> str:
     new = "" if file_io.found(path) else f" ({translated('new')})"
     names = ", ".join(dict.fromkeys(line.split()[0] for line in scene.missing))
     count = f"{len(scene.missing)} shapes are missing" if len(scene.missing) > 1 else "1 shape is missing"
-    return f"miniRT - {path.name}{new}{' *' * is_unsaved}" + (f": {translated(count)}: {names}" if names else "")
+    star = " *" if is_unsaved else ""
+    return f"miniRT - {path.name}{new}{star}" + (f": {translated(count)}: {names}" if names else "")
 
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:

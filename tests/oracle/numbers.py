@@ -229,7 +229,7 @@ BISECTIONS = 58  # leave a root to the last bits of float64
 
 
 def between_turns(c: Polynomial) -> list[Number]:
-    """Of a cubic or more: one root between two turning points with different signs."""
+    """Return one root of a cubic or more between two turning points with different signs."""
     slope = [k * each for k, each in enumerate(c) if k]
     turns = np.sort(np.stack(np.broadcast_arrays(*(turn.high for turn in roots(slope)))), axis=0)  # NaN come last
     highs = [np.asarray(each.high) for each in c]

@@ -1,4 +1,4 @@
-"""What changed against another report is what lies beyond the intervals."""
+"""A comparison with another report tells as changed what lies beyond the intervals."""
 
 from __future__ import annotations
 

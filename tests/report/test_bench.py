@@ -69,7 +69,7 @@ def test_runs_have_both_times_and_fill_the_time(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_run_that_waited_is_disturbed() -> None:
-    """Where the system tells no waiting time, what is missing from the wall time of all threads counts."""
+    """The time missing from the wall time of all threads counts where the system tells no waiting time."""
     for run, threads, disturbed in (
         (Run(wall=1.0, cpu=1.0), 1, False),
         (Run(wall=1.1, cpu=1.0), 1, False),

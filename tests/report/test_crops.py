@@ -34,7 +34,7 @@ def test_small_pictures_are_whole() -> None:
 
 
 def test_errors_in_crops_are_those_of_the_picture() -> None:
-    """Of twenty pictures whose errors lie at edges. Crops that are spread evenly, as a wrong variant, are far off."""
+    """Twenty pictures have their errors at edges. Crops that are spread evenly, as a wrong variant, are far off."""
     doubts = dict[str, list[float]](chosen=[], evenly=[])
     for seed in range(20):
         random = np.random.default_rng(seed)

@@ -94,7 +94,7 @@ def hull(shape: Shape, random: Random, n: int) -> Array:
 
 
 def meeting(shape: Shape, near: Array, faces: Array) -> Array:
-    """Where the chosen faces and limits meet, (n, 3): Newton's method with least steps from points near there.
+    """Find where the chosen faces and limits meet, (n, 3): Newton's method with least steps from points near there.
 
     `faces` (k, n) are their numbers.
     """

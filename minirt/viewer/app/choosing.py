@@ -14,12 +14,11 @@ from typing import NamedTuple
 from minirt.fields import Triple
 from minirt.mlx import Button, Key
 from minirt.scene.names import element_name
-from minirt.viewer.app.explaining import WHEEL
 from minirt.viewer.app.menu import MENU, menu_of
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
-from minirt.viewer.display.lists import MARGIN, ListBox, layout_of
+from minirt.viewer.display.lists import MARGIN, WHEEL, ListBox, layout_of
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.colours import COLOUR, colours
 from minirt.viewer.editing.state import State

@@ -104,7 +104,7 @@ def save_scene(session: Session) -> None:
     session.state.scene.save(session.path)
     session.file.accept(file_io.stamps(session.path))
     session.saved, session.lenient = session.state.scene, False
-    session.screen.banner, session.entitled = "", ()
+    session.screen.banner, session.title_made_from = "", ()
     session.found_changes = None
     kept = f"; what another program had written is in {copy}" if copy else ""
     session.say(f"saved: {session.path}{kept}")

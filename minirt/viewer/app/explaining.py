@@ -5,10 +5,9 @@ from __future__ import annotations
 from minirt.mlx import Button
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.explained import explained
-from minirt.viewer.display.lists import layout_of
+from minirt.viewer.display.lists import WHEEL, layout_of
 from minirt.viewer.display.views import next_view
 
-WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}  # rows to go
 LOOKS = {"": "colours", "normals": "normals", "depth": "depth", "ids": "a colour for each shape"}  # names of views
 
 

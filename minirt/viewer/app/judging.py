@@ -1,4 +1,4 @@
-"""PictureJudge pictures: say what a picture does not show, and what to do, once it is there."""
+"""Judge pictures: say what a picture does not show, and what to do, once it is there."""
 
 from __future__ import annotations
 

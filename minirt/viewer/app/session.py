@@ -79,7 +79,7 @@ class Session:
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self._title = title_of(path, scene)
-        self.entitled: tuple[object, ...] = ()  # what the title was last made from; empty: it is made anew
+        self.title_made_from: tuple[object, ...] = ()  # scenes and path; empty: the title is made anew
         self.window = mlx.mlx_new_window(display, *size, self._title, resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), samples)
         self.keymap = Keymap(keys, self.window.letter_at)
@@ -110,8 +110,8 @@ class Session:
     def show_title(self) -> None:
         """Show the title of the window, if it is another one."""
         made_from = self.state.scene, self.saved, self.path
-        if len(self.entitled) != len(made_from) or any(map(is_not, made_from, self.entitled)):
-            self.entitled = made_from
+        if len(self.title_made_from) != len(made_from) or any(map(is_not, made_from, self.title_made_from)):
+            self.title_made_from = made_from
             title = title_of(self.path, self.saved, contents_differ(self.state.scene, self.saved))
             if title != self._title:
                 self._title = title

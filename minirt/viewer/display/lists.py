@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from minirt.mlx import Button
 from minirt.mlx.canvas import blend
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.display.painter import Pixels
@@ -16,6 +17,7 @@ TITLE_COLOUR, ROW_COLOUR = 0xFFD75F, 0xC0C0C0  # also of the chosen row, and of 
 BACKGROUND = 0xC0000000  # with its opacity
 MARGIN, PADDING = 10, 4  # pixels
 TOP, BOTTOM = 2, 2  # lines above and below a list, which belong to the information and to messages
+WHEEL: dict[int, int] = {Button.WHEEL_UP: -1, Button.WHEEL_DOWN: 1}  # rows that a turn goes on in a list
 MARK = "> "  # before the chosen row
 
 draw_on_dark = partial(draw_text, background=BACKGROUND, padding=PADDING)

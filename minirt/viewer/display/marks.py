@@ -26,6 +26,7 @@ from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, pos
 from minirt.viewer.editing.state import Frame, State, can_edit
 from minirt.viewer.language import translated
 
+PLAIN = 255, 255, 255  # the square of an element without a colour
 GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
 ORANGE = 0xFFE8862E  # of selected elements beside the primary one, which is golden
 AXIS_COLOURS = {Frame.X: 0xFFFF5050, Frame.Y: 0xFF60E060, Frame.Z: 0xFF6090FF}
@@ -168,7 +169,7 @@ def visible_icons(scene: Scene, marked: Iterable[int], view: Projection, scale: 
         at: Pixel | None = view.pixel(place) if place else (corner, size)
         corner -= 0 if place else round(1.5 * size)
         if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:
-            red, green, blue = map(int, own_colour(owner))
+            red, green, blue = map(int, own_colour(owner) or PLAIN)
             colour = 0xFF << 24 | red << 16 | green << 8 | blue
             placed.append(Icon(index, round(at[0]), round(at[1]), owner.code, colour))
     return placed

@@ -12,15 +12,14 @@ from minirt.viewer.editing.state import State
 from minirt.viewer.language import translated
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
-NONE = -1, -1, -1  # the colour of what has none
 LAST = (Point, Colour, Direction)  # sorts of fields that are said after all others, in this order
 
 
 def title_in_words(element: Element) -> str:
     """Return what an element is called, with its first colour if it has one: "red sphere"."""
     title = translated(element.title)
-    colour = own_colour(element, NONE)
-    if colour is NONE:
+    colour = own_colour(element)
+    if colour is None:
         return title
     return translated("{colour} {element}").format(colour=translated(colour_word(colour)), element=title)
 

@@ -13,7 +13,6 @@ from minirt.viewer.editing.values import Value, values
 
 GREY = 0.15  # saturation, or brightness, below which a colour is a grey
 HUES = 5  # brightnesses that are as far from each other as the two ends of the circle of hues
-WHITE = 255, 255, 255
 COLOUR = "colour"  # kind of the changes that give colours by words, see `State.change`
 COLOURS: dict[str, Triple] = {
     "black": (0, 0, 0),
@@ -60,10 +59,10 @@ def colour_value(element: Element, active: Value | None = None) -> Value | None:
     return every[0]._replace(channel=None) if every else None
 
 
-def own_colour(element: Element, otherwise: Triple = WHITE) -> Triple:
-    """Return the first colour that an element has for itself, not by an attribute, in levels from 0 to 255."""
+def own_colour(element: Element) -> Triple | None:
+    """Return the first colour of an element that no attribute has, in levels from 0 to 255; None without one."""
     own = (getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour))
-    return next((each for each in own if isinstance(each, tuple)), otherwise)
+    return next((each for each in own if isinstance(each, tuple)), None)
 
 
 def colours(state: State) -> Iterator[tuple[str, State]]:

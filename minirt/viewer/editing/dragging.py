@@ -132,8 +132,8 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
         column, row = view.pixel(centre) or (0.0, 0.0)
         first, last = (degrees(atan2(down - row, at - column)) for at, down in ends)
         facing = copysign(motion.handedness(start.camera), dot(axis, subtract(view.eye, centre)))
-        step = SNAP_ANGLE if start.snaps else FINE if start.fine else 1.0
-        angle = snapped((first - last) * facing, step)
+        smallest = FINE if start.fine else 1.0
+        angle = snapped((first - last) * facing, SNAP_ANGLE if start.snaps else smallest)
         turned = motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
         said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
         return turned.with_message(GAP.join(said))

@@ -150,7 +150,7 @@ def look_at(state: State, _amount: float, now: float) -> State:
 
     element = state.element
     bounds = None if isinstance(element, Camera) else extent(element)
-    after = state if bounds is None else state.edit_camera(nearer(state, *bounds), "", now)
+    after = state if bounds is None else state.edit_camera(framing_camera(state, *bounds), "", now)
     if after is not state:
         return after.with_message("again: the whole scene")
     if bounds or isinstance(element, Camera):
@@ -159,7 +159,7 @@ def look_at(state: State, _amount: float, now: float) -> State:
     return state.with_message(f"select an element with a position to look at: {element.title} has none")
 
 
-def nearer(state: State, centre: Triple, radius: float) -> Camera:
+def framing_camera(state: State, centre: Triple, radius: float) -> Camera:
     """The camera, moved without a turn so that a ball is centred and fills the picture."""
     camera = state.scene.camera
     half = atan(tan(radians(clamp(camera.fov, 1.0, 120.0)) / 2) * ASPECT)

@@ -75,7 +75,7 @@ def typed(value: Value, element: Element, text: str) -> Any:
     body = text.removeprefix("=").strip()
     change = CHANGES.get(body[:2])
     body = body[2:].strip() if change else body
-    texts = three_words(body) or body.split(",")
+    texts = (three_words(body) if isinstance(old, tuple) else []) or body.split(",")
     if len(texts) == Three.width and isinstance(old, tuple):
         presents = old
     elif len(presents) == 1 and (len(texts) == 2 or any(each in body[1:] for each in SIGNS)):
@@ -96,7 +96,8 @@ def typed(value: Value, element: Element, text: str) -> Any:
 def three_words(text: str) -> list[str]:
     """The words of a text of three numbers, with commas or blanks between them; none of any other, such as 1 + 2."""
     words = text.replace(",", " ").split()
-    return words if len(words) == Three.width and all(any(map(str.isdigit, each)) for each in words) else []
+    are_numbers = all(any(map(str.isdigit, each)) and each[0] not in "*/" for each in words)
+    return words if len(words) == Three.width and are_numbers else []
 
 
 def sum_of(text: str, change: Callable[[float, float], float] | None, present: float) -> float:

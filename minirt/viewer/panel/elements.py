@@ -97,7 +97,7 @@ class Elements:
         imgui.same_line()
         side = imgui.get_frame_height() * 0.7
         imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
-        red, green, blue = (level / 255 for level in own_colour(element, PLAIN))
+        red, green, blue = (level / 255 for level in own_colour(element) or PLAIN)
         if imgui.color_button("###colour", (red, green, blue, 1.0), imgui.ColorEditFlags.NO_TOOLTIP, (side, side)):
             self.pick(index)
         imgui.pop_item_flag()

@@ -46,13 +46,14 @@ class Rows(Numbers):
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
         imgui.push_id(f"{self.index} {value.name}")  # what is typed is that of no other element
         imgui.align_text_to_frame_padding()
-        title = longer = translated(leaf.title)
-        if self.typing == (self.index, value):
-            longer = f"{title}: {ALL_THREE}"
+        title = translated(leaf.title)
+        longer = f"{title}: {ALL_THREE}"
+        if self.typing == (self.index, value) and imgui.calc_text_size(longer)[0] < LABEL * width:
+            title = longer
         index, name, reason = self.error
         is_refused = index == self.index and name.startswith(value.name)
         imgui.push_style_color(imgui.Col.TEXT, rgba(GOLD if is_refused else TEXT))
-        imgui.text(f"{'! ' * is_refused}{longer if imgui.calc_text_size(longer)[0] < LABEL * width else title}")
+        imgui.text(f"! {title}" if is_refused else title)
         imgui.pop_style_color()
         if is_refused:
             self.gui.hint(reason)

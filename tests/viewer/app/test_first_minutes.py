@@ -88,8 +88,11 @@ def test_three_numbers_are_typed_at_once_with_blanks_or_commas(text: str) -> Non
     assert typed(initial_state(scene()).select(3), "centre: y", text).element.centre == (1, 2, 3)
 
 
-def test_a_sum_with_blanks_is_one_number() -> None:
-    assert typed(initial_state(scene()).select(3), "centre: y", "1 + 2").element.centre == (0, 3, 0)
+@pytest.mark.parametrize(("text", "number"), [("1 + 2", 3), ("2 *3 +1", 7)])
+def test_a_sum_with_blanks_is_one_number(text: str, number: float) -> None:
+    sphere = initial_state(scene()).select(3)
+    assert typed(sphere, "centre: y", text).element.centre == (0, number, 0)
+    assert typed(sphere, "diameter", text).element.diameter == number
 
 
 @pytest.mark.parametrize("text", ["-3 -4 0", "-0.6 -0.8 0", "-300,-400,0"])
