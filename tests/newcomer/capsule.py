@@ -76,7 +76,7 @@ def outwards(capsule: PackedCapsule, p: Vec) -> Vec:
 
 
 def crossing(capsule: PackedCapsule, p: Vec, d: Vec, sign: float) -> tuple[Number, Any]:
-    """Return where a ray enters (sign -1) or leaves (1), and whether it does; distances count from the closest approach."""
+    """Return where a ray enters (sign -1) or leaves (1), counted from the closest approach, and whether it does."""
     squared = capsule.radius * capsule.radius
     a = d.x * d.x + d.y * d.y
     steep = a < 1e-30

@@ -1,4 +1,4 @@
-"""Verdicts on answers for rays: right are those that are exact for a ray and a shape within 64 roundings of the given ones.
+"""Verdicts on answers: right are those that are exact for a ray and a shape within 64 roundings of the given ones.
 
 A rounding is 2^-53 of the sum of t, of the distance from the ray's origin to the shape, and of the shape's size. The
 oracle cuts a ray into pieces inside and outside of a solid, and a piece counts if somewhere in it the ray is farther
