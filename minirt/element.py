@@ -8,7 +8,7 @@ own.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import field, fields, replace
 from itertools import repeat
 from typing import Any, ClassVar, Self, TypeVar
@@ -52,6 +52,12 @@ class Record(Immutable):
     """Values of declared fields. ElementError if one is out of range."""
 
     title: ClassVar[str]  # its name in messages and documentation
+    other_names: ClassVar[Mapping[str, Iterable[str]]] = {
+        "size": ("sizes", "diameter", "side", "scale"),
+        "radius": ("diameter",),
+        "position": ("centre", "apex", "vertex", "point"),
+        "direction": ("axis", "normal"),
+    }
 
     def __post_init__(self) -> None:
         for each in fields_of(type(self)):

@@ -19,7 +19,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, check_quality, encoding, format_of
 from minirt.helpers import file_io
-from minirt.helpers.progress import State, in_notebooks
+from minirt.helpers.progress import WorkState, in_notebooks
 from minirt.rendering.image import Image
 
 # Formats of films by their suffixes; .png stands for numbered pictures.
@@ -70,8 +70,8 @@ def save_movie(
     total = len(pictures) if isinstance(pictures, Sized) else None
     number = 0  # of pictures that are in the film
 
-    def state() -> State:
-        return State(f"picture {number + 1}" + (f" of {total}" if total else ""), number / total if total else None)
+    def state() -> WorkState:
+        return WorkState(f"picture {number + 1}" + (f" of {total}" if total else ""), number / total if total else None)
 
     with in_notebooks(state):
         check_quality(format_of(path), quality)

@@ -8,22 +8,14 @@ the time, 6 us. Signatures and documentation are made from the declared fields w
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, FrozenInstanceError, dataclass, field, fields, is_dataclass
 from functools import cache
 from inspect import Parameter, Signature, cleandoc
 from operator import attrgetter
-from typing import Any, TypeVar, cast, dataclass_transform
+from typing import Any, ClassVar, TypeVar, cast, dataclass_transform
 
 from minirt.errors import did_you_mean, hint
-
-OTHER_NAMES = {  # of fields in other programs, and what they are called here
-    "size": ("sizes", "diameter", "side", "scale"),
-    "radius": ("diameter",),
-    "position": ("centre", "apex", "vertex", "point"),
-    "direction": ("axis", "normal"),
-}
-
 
 Ask = TypeVar("Ask", bound=Callable[..., Any])
 Kind = TypeVar("Kind", bound="type[Immutable]")
@@ -99,6 +91,7 @@ class Immutable:
     """Base class of records: the methods of a frozen dataclass. Defaults are values, and not shown by `repr`."""
 
     __signature__ = FieldSignature()
+    other_names: ClassVar[Mapping[str, Iterable[str]]] = {}  # of fields in other programs, by the names here
 
     def __init__(self, *values: Any, **named: Any) -> None:
         positional, defaults = parameters(type(self))
@@ -110,7 +103,7 @@ class Immutable:
             or any(value is MISSING for value in complete.values())
         ):
             for name in set(named).difference(defaults):
-                meant = next((each for each in OTHER_NAMES.get(name, ()) if each in defaults), "")
+                meant = next((each for each in self.other_names.get(name, ()) if each in defaults), "")
                 found = hint(meant) or did_you_mean(name, defaults)
                 raise TypeError(f"{type(self).__name__} has no field {name!r}{found}")
             type(self).__signature__.bind(*values, **named)  # TypeError, which says what is wrong

@@ -14,7 +14,7 @@ from typing import Any
 from minirt.cli.arguments import FAILED, OK, SAMPLES, WINDOW_SAMPLES, say, tell
 from minirt.errors import MlxError, RenderError, SceneError, counted
 from minirt.helpers import file_io, system
-from minirt.helpers.progress import State, progress
+from minirt.helpers.progress import WorkState, progress
 from minirt.helpers.signals import ended_by_signals, leave_at_once
 from minirt.scene import Scene, size_of
 
@@ -72,7 +72,7 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
 
     from minirt.report.bench import measure
 
-    with progress(lambda: State("measuring")):
+    with progress(lambda: WorkState("measuring")):
         measured = measure(options.scene[0], scene, options.size, options.threads, options.precision or "double")
     say(json.dumps(measured) if options.json else ", ".join(f"{name} {value}" for name, value in measured.items()))
     return OK
@@ -115,7 +115,7 @@ def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
         raise RenderError(f"{options.output}: Radiance holds no numbers below 0, try .exr")
     check_output(options.output, width, height)
     system.check_picture(height, width, MEMORY)
-    with progress(lambda: State("tracing")):
+    with progress(lambda: WorkState("tracing")):
         seen = geometry(scene, width, height, options.threads, has_uv=options.buffers == "uv")
         picture = seen.picture(options.buffers)
     write(picture.encode(name, bits=FLOAT if FLOAT in FORMATS[name].bits else None), options.output)
@@ -130,7 +130,7 @@ def compare(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.compare import compare as compare_with
     from minirt.rendering.image import Image
 
-    with progress(lambda: State(f"comparing {options.compare}")):
+    with progress(lambda: WorkState(f"comparing {options.compare}")):
         found = compare_with(scene, options.compare)
     tell_answer = tell if options.output == "-" else say  # standard output is the picture's
     tell_answer(json.dumps(found.json()) if options.json else str(found))
@@ -204,7 +204,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
         "lenient": options.lenient,
         "samples": options.samples or SAMPLES,
     }
-    with progress(lambda: State(f"playing {options.replay}")):
+    with progress(lambda: WorkState(f"playing {options.replay}")):
         if is_film(options):
             film = Film(options.output, FPS, options.quality)
             record(scene, lines, film.add, **settings)

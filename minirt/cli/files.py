@@ -13,7 +13,7 @@ from minirt.cli.arguments import OPENING, Arguments, say, tell
 from minirt.errors import FileError, RenderError, SceneError, counted
 from minirt.formats.table import FORMATS, check_bits, check_quality, check_size, format_of
 from minirt.helpers import file_io
-from minirt.helpers.progress import State, progress
+from minirt.helpers.progress import WorkState, progress
 
 if TYPE_CHECKING:
     from minirt.scene import Reading, Scene
@@ -35,7 +35,7 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
     path = options.scene[0]
     words = (options.cone, options.camera_as, options.up and f"{options.up}-up")
     options.lenient = " ".join(filter(None, words)) or options.lenient
-    with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
+    with progress(lambda: WorkState(f"reading {STANDARD_INPUT if path == '-' else path}")):
         if options.example:
             reading = Reading(example(options.example), ())
         elif is_nameless(path):  # its pictures and meshes are looked for in the current folder

@@ -19,7 +19,7 @@ from minirt.cluster.pictures import picture_of, results, stream
 from minirt.errors import RenderError
 from minirt.formats.table import memory_of
 from minirt.helpers import file_io, system
-from minirt.helpers.progress import State, progress
+from minirt.helpers.progress import WorkState, progress
 from minirt.rendering.image import Image
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Region, cut_for
@@ -127,15 +127,15 @@ class Share:
         self.found = done if self.found is None else self.found
         self.done, self.total = done, total
 
-    def state(self) -> State:
+    def state(self) -> WorkState:
         """Return the share, of the time where that is all that is known, with its name."""
         if self.settings.samples == "auto" and self.total <= 1:
             time = self.settings.time
-            return State("sampling", (perf_counter() - self.start) / time if time else None)
+            return WorkState("sampling", (perf_counter() - self.start) / time if time else None)
         found, what = self.found or 0, f"{self.done} of {self.total} {self.what}"
         bands = 1 if self.is_film else self.total  # of each picture, with about as many rows each
         rows = self.settings.renderer.rows_done(self.rows // bands) if self.rows else 0.0
-        return State(what, (self.done - found + rows) / max(1, self.total - found))
+        return WorkState(what, (self.done - found + rows) / max(1, self.total - found))
 
 
 def render_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:

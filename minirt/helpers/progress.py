@@ -26,7 +26,7 @@ BAR = 24  # characters
 SHOWN: ContextVar[bool] = ContextVar("shown", default=False)  # whether a bar for this work is in the notebook
 
 
-class State(NamedTuple):
+class WorkState(NamedTuple):
     """Share of some work that is done."""
 
     what: str
@@ -34,7 +34,7 @@ class State(NamedTuple):
 
 
 @contextmanager
-def drawn(read: Callable[[], State], draw: Callable[[str], object]) -> Iterator[None]:
+def drawn(read: Callable[[], WorkState], draw: Callable[[str], object]) -> Iterator[None]:
     """Draw the state that `read` returns while the block runs, from another thread, by `draw(text)`.
 
     Nothing is drawn in the first second, or where the system allows no more threads; `draw("")` erases what was drawn.
@@ -57,7 +57,7 @@ def drawn(read: Callable[[], State], draw: Callable[[str], object]) -> Iterator[
             thread.join()
 
 
-def draw_until(ended: Event, read: Callable[[], State], draw: Callable[[str], object]) -> None:
+def draw_until(ended: Event, read: Callable[[], WorkState], draw: Callable[[str], object]) -> None:
     """Draw the bar until the work has ended, then erase it."""
     last, seconds, pause, is_drawn = perf_counter(), 0.0, PATIENCE, False
     while not ended.wait(pause):
@@ -69,7 +69,7 @@ def draw_until(ended: Event, read: Callable[[], State], draw: Callable[[str], ob
         draw("")
 
 
-def line(state: State, seconds: float) -> str:
+def line(state: WorkState, seconds: float) -> str:
     """Return the bar: how much is done, and the time that is left if the rest is as fast, or that has passed."""
     if not state.share:
         return f"{in_words(seconds)}  {state.what}"
@@ -94,7 +94,7 @@ def in_notebook() -> bool:
 
 
 @contextmanager
-def in_notebooks(read: Callable[[], State]) -> Iterator[None]:
+def in_notebooks(read: Callable[[], WorkState]) -> Iterator[None]:
     """Show the state that `read` returns below the cell while the block runs, and not that of the parts of this work
     beside it; elsewhere do nothing."""
     if SHOWN.get() or not in_notebook():
@@ -122,7 +122,7 @@ def notebook_line() -> Callable[[str], None]:
 
 
 @contextmanager
-def progress(read: Callable[[], State], out: TextIO | None = None) -> Iterator[None]:
+def progress(read: Callable[[], WorkState], out: TextIO | None = None) -> Iterator[None]:
     """Show the state that `read` returns while the block runs, on standard error if that is a terminal."""
     stream = out or sys.stderr
     if not stream.isatty():

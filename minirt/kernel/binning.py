@@ -23,7 +23,7 @@ DIGITS, RADIX = 3, 8  # of the upper bits but the sign, and bits of a digit
 INDEX_BITS = 32  # below these, in the entries that are sorted
 
 
-class Projection(NamedTuple):
+class BinningArrays(NamedTuple):
     """The shapes to project, as in `minirt.rendering.packing.shape_arrays`, and what a point sees of them.
 
     The rectangles hold for rays from all points within `radius` of the origin, in the directions of their cells; for
@@ -54,7 +54,7 @@ class Projection(NamedTuple):
     extents: Any  # float32 (n, 4) or (0, 4): the last column receives bounds of coordinates from the point
 
 
-def project_shapes(next_chunk: Any, seen: Projection) -> None:
+def project_shapes(next_chunk: Any, seen: BinningArrays) -> None:
     """Project chunks of shapes, and planes, taking the next ones from the counter `next_chunk` until none is left.
 
     Any number of threads may do so at the same time.
@@ -66,7 +66,7 @@ def project_shapes(next_chunk: Any, seen: Projection) -> None:
         project_chunk(seen, number)
 
 
-def project_chunk(seen: Projection, number: int) -> None:
+def project_chunk(seen: BinningArrays, number: int) -> None:
     """Project the shapes of a chunk or, behind the last one, all planes."""
     origin, start = seen.origin, number * seen.chunk * seen.grid.frames.shape[0]
     slack, end = MARGIN * max(abs(origin[0]), abs(origin[1]), abs(origin[2])) + seen.radius, start
@@ -80,13 +80,13 @@ def project_chunk(seen: Projection, number: int) -> None:
     seen.used[number] = end - start
 
 
-def write_extent(seen: Projection, index: int) -> None:
+def write_extent(seen: BinningArrays, index: int) -> None:
     """Write the extent of the shape with this index in the scene: boxes and extents lie in the order of the scene."""
     if has_rows(seen.extents):
         seen.extents[seen.first_primitive[index], 3] = extent_from(seen.origin, seen.boxes, index)
 
 
-def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
+def project_shape(seen: BinningArrays, slack: float, shape: int, at: int) -> int:
     """Project a shape with bounding spheres to rectangles, from number `at` on; return the number behind its last.
 
     It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
@@ -108,7 +108,7 @@ def project_shape(seen: Projection, slack: float, shape: int, at: int) -> int:
     return at
 
 
-def write_rectangle(seen: Projection, at: int, shape: int, row: int, column: int, columns: int, rows: int) -> int:
+def write_rectangle(seen: BinningArrays, at: int, shape: int, row: int, column: int, columns: int, rows: int) -> int:
     """Write rectangle number `at`, and return the next number. The cells of each kind are followed by one more."""
     seen.rectangles[at, 0] = shape
     seen.rectangles[at, 1] = seen.listed[shape, 0] * (seen.grid.cells + 1) + row * seen.grid.across + column
@@ -126,14 +126,14 @@ def extent_from(origin: Any, boxes: Any, shape: int) -> float:
     return farthest + size / 2
 
 
-def quantise_distance(seen: Projection, shape: int) -> None:
+def quantise_distance(seen: BinningArrays, shape: int) -> None:
     """Round the distance of a cone down to its upper bits, by at least one step: a hit that is so little farther may
     count as coincident."""
     depth = (seen.cone_bits[shape, 4] >> DROPPED_BITS) - 1
     seen.cone_bits[shape, 4] = depth << DROPPED_BITS if depth > LEAST_DEPTH else 0
 
 
-def project_planes(seen: Projection, slack: float, at: int) -> int:
+def project_planes(seen: BinningArrays, slack: float, at: int) -> int:
     """Project all planes to rectangles of one row of cells, from number `at` on; return the number behind the last."""
     for number in range(seen.planes.shape[0]):
         plane, shape = seen.planes[number], seen.plane_places[number]
@@ -155,7 +155,7 @@ def project_planes(seen: Projection, slack: float, at: int) -> int:
 # The lists, by counting.
 
 
-def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits: Any) -> None:
+def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digits: Any) -> None:
     """Write the shapes of all rectangles into the lists of their cells, the nearest first, and the number of `found`
     members.
 
@@ -191,7 +191,7 @@ def fill_bins(seen: Projection, starts: Any, members: Any, entries: Any, digits:
     seen.found[0] = total
 
 
-def rectangle_at(seen: Projection, at: int) -> tuple[int, int, int, int]:
+def rectangle_at(seen: BinningArrays, at: int) -> tuple[int, int, int, int]:
     """Return shape, first cell, columns and rows of a rectangle."""
     rectangle = seen.rectangles[at]
     return int(rectangle[0]), int(rectangle[1]), int(rectangle[2]), int(rectangle[3])
@@ -218,7 +218,7 @@ def sort_by_depth(entries: Any, count: int, digits: Any) -> None:
 # Lists of which one shape changes.
 
 
-def move_shape(shape: int, seen: Projection, starts: Any, members: Any) -> None:
+def move_shape(shape: int, seen: BinningArrays, starts: Any, members: Any) -> None:
     """Bin a shape anew that is no plane: the lists become those of `fill_bins`, and `found` their members.
 
     Where `members` has no room for so many the lists are spoilt.
@@ -235,7 +235,7 @@ def move_shape(shape: int, seen: Projection, starts: Any, members: Any) -> None:
         put_in(seen, shape, more, starts, members)
 
 
-def rectangles_of(seen: Projection, shape: int) -> tuple[int, int]:
+def rectangles_of(seen: BinningArrays, shape: int) -> tuple[int, int]:
     """Return the range of the rectangles of a shape."""
     number = shape // seen.chunk
     first = number * seen.chunk * seen.grid.frames.shape[0]
@@ -248,7 +248,7 @@ def rectangles_of(seen: Projection, shape: int) -> tuple[int, int]:
     return first, end
 
 
-def take_out(seen: Projection, shape: int, starts: Any, members: Any) -> None:
+def take_out(seen: BinningArrays, shape: int, starts: Any, members: Any) -> None:
     """Take a shape out of the lists of the cells of its rectangles, in ascending order."""
     first, end = rectangles_of(seen, shape)
     last, gone, before, behind = starts.shape[0] - 1, 0, 0, 0
@@ -264,7 +264,7 @@ def take_out(seen: Projection, shape: int, starts: Any, members: Any) -> None:
     shift(starts, members, before, last, behind, int(starts[last]), -gone)
 
 
-def put_in(seen: Projection, shape: int, more: int, starts: Any, members: Any) -> None:
+def put_in(seen: BinningArrays, shape: int, more: int, starts: Any, members: Any) -> None:
     """Put a shape into the lists of the cells of its rectangles, in descending order: by distance, then by number."""
     first, end = rectangles_of(seen, shape)
     last = starts.shape[0] - 1
@@ -281,7 +281,7 @@ def put_in(seen: Projection, shape: int, more: int, starts: Any, members: Any) -
             members[place + more] = shape
 
 
-def is_behind(seen: Projection, shape: int, other: int) -> bool:
+def is_behind(seen: BinningArrays, shape: int, other: int) -> bool:
     """Whether a shape follows another one in lists."""
     depth, nearer = seen.cone_bits[shape, 4], seen.cone_bits[other, 4]
     return bool(depth > nearer or (depth == nearer and shape > other))

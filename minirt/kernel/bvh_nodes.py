@@ -36,7 +36,7 @@ PACKET_LEVEL = 2 * WIDTH
 MEMORY = PACKET + (LEVELS + WIDTH) * PACKET_LEVEL
 
 
-class Group(NamedTuple):
+class LeafGroup(NamedTuple):
     """The shapes of one kind. A leaf of the tree is a block of up to `WIDTH` shapes, in a structure of arrays."""
 
     rows: Any  # a row for each shape
@@ -58,7 +58,7 @@ class Tree(NamedTuple):
     nodes: Any  # flat, `NODE` numbers for each node
     extents: Any  # (n,) largest coordinate of each shape
     slots: Any  # (n, 2) index of each shape's group, and of its row in that group
-    groups: Any  # a tuple of Group
+    groups: Any  # a tuple of LeafGroup
 
 
 def store_rays(memory: Any, origin: Vec, direction: Vec) -> None:

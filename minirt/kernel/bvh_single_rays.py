@@ -22,7 +22,7 @@ from minirt.kernel.bvh_nodes import (
     STACK_LEVEL,
     TOP,
     WIDTH,
-    Group,
+    LeafGroup,
     Tree,
     intersect_boxes,
     leaf_number,
@@ -106,7 +106,7 @@ def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     return int(in_reach & is_node), int(in_reach & (not is_node)), int(top < STACK)
 
 
-def visit_leaves_of_kind(group: Group, rays: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
+def visit_leaves_of_kind(group: LeafGroup, rays: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
     """Visit the leaves of one kind of shape that the `rays` are at, one bit for each; the state is not changed."""
     visit, tree, memory = arguments
     remaining = rays if has_rows(group.blocks) else 0

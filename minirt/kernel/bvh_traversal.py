@@ -21,7 +21,7 @@ from minirt.kernel.bvh_nodes import (
     PACKET_LEVEL,
     REFERENCES,
     WIDTH,
-    Group,
+    LeafGroup,
     Tree,
     leaf_number,
     least_lane,
@@ -127,7 +127,7 @@ def push_children(nodes: Any, node: int, memory: Any, at: int) -> None:
     save(where(near < inf, tag(near, load(nodes, node + REFERENCES)), inf), memory, at)
 
 
-def visit_unbounded(group: Group, state: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
+def visit_unbounded(group: LeafGroup, state: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
     """Intersect a packet with the unbounded shapes of one kind; the state is not changed."""
     if group.unbounded is not None:
         step, tree, memory = arguments
@@ -138,7 +138,7 @@ def visit_unbounded(group: Group, state: int, arguments: tuple[Callable[..., Non
     return state
 
 
-def visit_leaf(group: Group, leaf: int, arguments: tuple[Callable[..., None], Any]) -> int:
+def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Any]) -> int:
     """Intersect a packet with the shapes of a leaf, if they are of this kind; the state is not changed."""
     step, memory = arguments
     if has_rows(group.blocks) and leaf % GROUPS == group.number:
@@ -177,7 +177,7 @@ def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     save_vec(Vec(state[0], state[1], state[2]), memory, HIT)
 
 
-def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Continue `closest_hit` of one ray over the shapes of a block, and store the result in `HIT`."""
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
@@ -210,7 +210,7 @@ def occlude_by_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     save(where(rays & occluded, -inf, distance), memory, HIT)
 
 
-def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+def occlude_by_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
     origin, direction, distance = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray), memory[HIT + ray]
     occluded = any(occludes(read_block(group.blocks, block), origin, direction, distance))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.binning import Projection, fill_bins, project_shapes
+from minirt.kernel.binning import BinningArrays, fill_bins, project_shapes
 from minirt.kernel.scene_arrays import to_single
 from minirt.lanes import rounded_product
 
@@ -21,7 +21,7 @@ class Followers(NamedTuple):
 
 
 def pack_frame(
-    followers: Followers, next_chunk: Any, seen: Projection, starts: Any, members: Any, entries: Any, digits: Any
+    followers: Followers, next_chunk: Any, seen: BinningArrays, starts: Any, members: Any, entries: Any, digits: Any
 ) -> None:
     """Bin the shapes that a point sees, see `minirt.kernel.binning`, and let all else follow."""
     project_shapes(next_chunk, seen)

@@ -8,8 +8,8 @@ minirt.mlx program.py` runs a program that says `from mlx import Mlx`.
 
 from minirt.errors import MlxError
 from minirt.mlx.api import Mlx
-from minirt.mlx.arguments import Image
+from minirt.mlx.arguments import MlxImage
 from minirt.mlx.events import Button, Cursor, Event, Key, Modifier
 from minirt.mlx.window import Window
 
-__all__ = ["Button", "Cursor", "Event", "Image", "Key", "Mlx", "MlxError", "Modifier", "Window"]
+__all__ = ["Button", "Cursor", "Event", "Key", "Mlx", "MlxError", "MlxImage", "Modifier", "Window"]

@@ -7,7 +7,7 @@
     m.mlx_key_hook(win, lambda key, _: m.mlx_loop_exit(mlx), None)
     m.mlx_loop(mlx)
 
-Handles, which are numbers in the wrapper, are objects here, and numbers, too: `Display`, `Window`, `Image`.
+Handles, which are numbers in the wrapper, are objects here, and numbers, too: `Display`, `Window`, `MlxImage`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from signal import SIGINT, SIGTERM
 
 from minirt.errors import MlxError
 from minirt.helpers.signals import signal_handlers
-from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, integer, set_hook
+from minirt.mlx.arguments import Hook, Host, Integer, MaybeNone, MlxImage, integer, set_hook
 from minirt.mlx.calls import Calls
 from minirt.mlx.display import NO_WINDOW, Display
 from minirt.mlx.events import Cursor, Event, Modifier
@@ -185,7 +185,7 @@ class Mlx(Calls):
         win_ptr.set_title()
         return 0
 
-    def mlx_set_window_icon(self, win_ptr: Window, images: Sequence[Image]) -> int:
+    def mlx_set_window_icon(self, win_ptr: Window, images: Sequence[MlxImage]) -> int:
         """Set the icon of a window: the same picture in several sizes."""
         win_ptr.icons = tuple(images)
         win_ptr.set_icons()

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Integer: TypeAlias = int | Any  # also an integer of ctypes or numpy
-MaybeNone: TypeAlias = Any  # `Image | MaybeNone`: None after a failure, unless `Options.strict` is set
+MaybeNone: TypeAlias = Any  # `MlxImage | MaybeNone`: None after a failure, unless `Options.strict` is set
 
 
 @dataclass
@@ -54,7 +54,7 @@ class NumberedObject(int):
 
 
 @dataclass(eq=False, repr=False)
-class Image(NumberedObject):
+class MlxImage(NumberedObject):
     """A picture to draw into: (h, w, 4) uint8, in memory blue, green, red, alpha."""
 
     pixels: NDArray[np.uint8]

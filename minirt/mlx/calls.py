@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.errors import MlxError, printable
-from minirt.mlx.arguments import Hook, Host, Image, Integer, MaybeNone, Options, integer, set_hook
+from minirt.mlx.arguments import Hook, Host, Integer, MaybeNone, MlxImage, Options, integer, set_hook
 from minirt.mlx.display import Display
 from minirt.mlx.events import Event
 from minirt.mlx.window import Window
 
 FileName = str | PathLike[str]
 Switch = bool | None
-ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure
+ImageAndSize = tuple[MlxImage | MaybeNone, int, int]  # (None, 0, 0) after a failure
 
 GREATEST = 32767  # pixels of an image's side
 
@@ -98,7 +98,7 @@ class Calls:
             window.show()
         return 0
 
-    def mlx_sync(self, mlx_ptr: Display, cmd: Integer, img_or_win_ptr: Image | Window) -> int:
+    def mlx_sync(self, mlx_ptr: Display, cmd: Integer, img_or_win_ptr: MlxImage | Window) -> int:
         """Show a window now, or later if it is hidden. `cmd` is one of SYNC_…; images are always writable."""
         if isinstance(img_or_win_ptr, Window) and img_or_win_ptr.is_open and img_or_win_ptr.visible:
             img_or_win_ptr.show()
@@ -106,19 +106,19 @@ class Calls:
 
     # --- images ---
 
-    def mlx_new_image(self, mlx_ptr: Host, width: Integer, height: Integer) -> Image | MaybeNone:
+    def mlx_new_image(self, mlx_ptr: Host, width: Integer, height: Integer) -> MlxImage | MaybeNone:
         """Return an image that is all transparent, or None for a size below 1 or above 32767 pixels."""
         columns, rows = integer(width), integer(height)
         if not (0 < columns <= GREATEST and 0 < rows <= GREATEST):
             return self._mlx_failed(MlxError(f"an image cannot be of {columns}x{rows} pixels"))
-        return Image(np.zeros((rows, columns, 4), np.uint8))
+        return MlxImage(np.zeros((rows, columns, 4), np.uint8))
 
-    def mlx_get_data_addr(self, img_ptr: Image) -> tuple[memoryview, int, int, int]:
+    def mlx_get_data_addr(self, img_ptr: MlxImage) -> tuple[memoryview, int, int, int]:
         """Return (bytes, bits per pixel, bytes per row, 0). The bytes of a pixel are blue, green, red, alpha."""
         return img_ptr.pixels.reshape(-1).data, 32, 4 * img_ptr.width, 0
 
     def mlx_put_image_to_window(
-        self, mlx_ptr: Host, win_ptr: Window, img_ptr: Image | None, x: Integer, y: Integer
+        self, mlx_ptr: Host, win_ptr: Window, img_ptr: MlxImage | None, x: Integer, y: Integer
     ) -> int | MaybeNone:
         """Blend the image, as it is now, into the window with its top left corner at x, y; alpha 255 is opaque. The
         image that could not be read, None, is told."""
@@ -127,7 +127,7 @@ class Calls:
         win_ptr.canvas.put(img_ptr.pixels, integer(x), integer(y))
         return 0
 
-    def mlx_destroy_image(self, mlx_ptr: Host, img_ptr: Image) -> int:
+    def mlx_destroy_image(self, mlx_ptr: Host, img_ptr: MlxImage) -> int:
         """Do nothing: Python frees an image without references."""
         return 0
 
@@ -147,7 +147,7 @@ class Calls:
     def _mlx_image_of(self, name: FileName, read: Callable[[], NDArray[np.uint8]]) -> ImageAndSize:
         """Return the image that `read` makes, in BGRA, with its size, or (None, 0, 0)."""
         try:
-            image = Image(read())
+            image = MlxImage(read())
         except Exception as error:  # decoders have errors of many kinds
             return self._mlx_failed(MlxError(f"{name} cannot be read as a picture: {error}")), 0, 0
         return image, image.width, image.height

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from minirt.mlx.arguments import Hooks, Host, Image, NumberedObject, Options
+from minirt.mlx.arguments import Hooks, Host, MlxImage, NumberedObject, Options
 from minirt.mlx.canvas import Canvas
 from minirt.mlx.events import MODIFIER_KEYS, Button, Cursor, Event, Modifier
 
@@ -101,7 +101,7 @@ class Window(NumberedObject, ABC):
     is_open: bool = True
     pointer: tuple[int, int] = (0, 0)
     cursor: Cursor = Cursor.ARROW
-    icons: tuple[Image, ...] = ()
+    icons: tuple[MlxImage, ...] = ()
     scale: float = 1.0  # of its screen: 2 where dots are half as large as usual
 
     # Between the window and its display:

@@ -13,7 +13,7 @@ from itertools import chain
 from pathlib import Path
 
 from minirt.errors import MiniRTError
-from minirt.helpers.progress import State, progress
+from minirt.helpers.progress import WorkState, progress
 from minirt.kernel.machine_code.cache import SHIPPED, CodeCache
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.fingerprint import V3, V4, fingerprint_of, is_linux_on_x86_64, processor
@@ -48,7 +48,7 @@ def build(folder: Path, target: str, most: int | None = None) -> int:
             compiled.append(identity)
 
     with (
-        progress(lambda: State(f"compiling kernels: {len(compiled)} of {number} done")),
+        progress(lambda: WorkState(f"compiling kernels: {len(compiled)} of {number} done")),
         ThreadPoolExecutor(usable_cores()) as pool,
     ):
         list(pool.map(compile, filter(None, missing)))

@@ -17,7 +17,7 @@ from minirt.element import Element, fields_of
 from minirt.errors import RenderError, check_whole
 from minirt.fields import MeshFile
 from minirt.helpers import file_io, system
-from minirt.helpers.progress import State, in_notebooks
+from minirt.helpers.progress import WorkState, in_notebooks
 from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.records import Immutable, record
 from minirt.rendering.image import Image, LinearImage, rgb_of
@@ -173,11 +173,11 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
         goal = settings.error or default, inf if settings.time is None else settings.time
         if settings.time is not None:
             chosen.prepare(scene)
-        with in_notebooks(lambda: State("sampling")):
+        with in_notebooks(lambda: WorkState("sampling")):
             reached = chosen.reach(scene, pixels, *goal, light, crop)
         is_done = reached is not None
     else:
-        with in_notebooks(lambda: State("picture", chosen.rows_done(len(pixels)))):
+        with in_notebooks(lambda: WorkState("picture", chosen.rows_done(len(pixels)))):
             is_done = chosen.render(scene, pixels, settings.samples, light, crop=crop)
     if not is_done:
         raise RenderError(CANCELLED)

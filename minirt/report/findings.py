@@ -19,7 +19,7 @@ from minirt.rendering.queries.stiffness import Stiff
 from minirt.report.ablation import Part
 from minirt.report.bench import Run
 from minirt.report.metrics import fit
-from minirt.report.pictures import Reference, Row, mostly_disturbed
+from minirt.report.pictures import ReferencePicture, Row, mostly_disturbed
 from minirt.report.precision import KindCertificates
 from minirt.report.settings import KNOBS
 from minirt.scene import Scene, dump
@@ -189,7 +189,7 @@ def distinct(rows: Iterable[Row]) -> list[Row]:
     return list(found.values())
 
 
-def subject(scene: Scene, name: str, right: Reference, threads: int, seed: int) -> Subject:
+def subject(scene: Scene, name: str, right: ReferencePicture, threads: int, seed: int) -> Subject:
     """Describe a scene, its pictures and this machine."""
     digest = hashlib.sha256(dump(scene).encode()).hexdigest()
     versions = {"minirt": minirt.__version__, "python": platform.python_version()}

@@ -13,7 +13,7 @@ import numpy as np
 
 from minirt.errors import RenderError, counted
 from minirt.helpers import file_io
-from minirt.helpers.progress import State, in_words, progress
+from minirt.helpers.progress import WorkState, in_words, progress
 from minirt.helpers.signals import held_signals
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
@@ -26,7 +26,7 @@ from minirt.report.diagram import require_packages
 from minirt.report.document import PAGE, summary, write_files
 from minirt.report.findings import Findings, subject
 from minirt.report.metrics import Picture, changed
-from minirt.report.pictures import FEW, LEFT_OUT, Reference, SettingRenderer, Step, crops_for, reference
+from minirt.report.pictures import FEW, LEFT_OUT, ReferencePicture, SettingRenderer, Step, crops_for, reference
 from minirt.report.precision import hit_certificates
 from minirt.report.settings import COUNTS, settings
 from minirt.report.variants import with_more, without_lists, without_unseen
@@ -63,7 +63,7 @@ class Measurement:
         self.wanted = list(settings(scene, plan.most, plan.least_error))
         self.variants = list(without_lists(scene))
         self.stage = SettingRenderer(scene, *size, self.threads, plan.longest)
-        self.reference: Reference | None = None
+        self.reference: ReferencePicture | None = None
         self.found: Findings | None = None  # once there is a reference
         self.pictures: dict[str, Picture] = {}  # of the settings, by their names
         self.what, self.start, self.seconds = "compiling", perf_counter(), inf  # the step that runs; expected in all
@@ -72,9 +72,9 @@ class Measurement:
         """Note that a step begins."""
         self.what = what
 
-    def state(self) -> State:
+    def state(self) -> WorkState:
         """Return how much of the expected time has passed."""
-        return State(self.what, min((perf_counter() - self.start) / self.seconds, 0.99))
+        return WorkState(self.what, min((perf_counter() - self.start) / self.seconds, 0.99))
 
     def announcement(self) -> str:
         """Compile a kernel that can draw the scene if there is none, and tell what begins and how long it takes."""
@@ -174,7 +174,7 @@ def report(
         with TemporaryDirectory(prefix="minirt-report-") as files:
             if ablation:
                 measurement.variants += [*without_unseen(scene, *size), *with_more(scene, Path(files))]
-            with progress(lambda: State("compiling")):
+            with progress(lambda: WorkState("compiling")):
                 announcement = measurement.announcement()
             tell(announcement)
             with progress(measurement.state):

@@ -37,7 +37,7 @@ ONE_RUN = "one run"
 Step = Callable[[str], object]  # is called with the name of a step before it begins
 
 
-class Reference(NamedTuple):
+class ReferencePicture(NamedTuple):
     """A picture in float64, and its estimated error."""
 
     picture: Picture  # of the crops in which errors are measured
@@ -56,7 +56,7 @@ def crops_for(scene: Scene, width: int, height: int, most: int) -> Crops:
     return representative(((few.clip(0, 1) - more.clip(0, 1)) ** 2).sum(axis=-1), most)
 
 
-def reference(scene: Scene, crops: Crops, samples: int, seed: int, step: Step = str) -> Reference:
+def reference(scene: Scene, crops: Crops, samples: int, seed: int, step: Step = str) -> ReferencePicture:
     """Render the reference picture as the mean of two halves; `step` is called before each.
 
     Each half has the usual lattice of samples, shifted by a random phase. The errors of the halves are independent, so
@@ -83,7 +83,7 @@ def reference(scene: Scene, crops: Crops, samples: int, seed: int, step: Step = 
             total = total + crops.of(linear) * len(some)
         halves.append(np.clip(total / len(places), 0.0, 1.0))
     mean = (halves[0] + halves[1]) / 2
-    return Reference(mean, rmse(*halves) / 2, crops)
+    return ReferencePicture(mean, rmse(*halves) / 2, crops)
 
 
 class Row(NamedTuple):
@@ -124,7 +124,7 @@ class Row(NamedTuple):
         """Name of the setting, such as `uniform 16`."""
         return f"{self.knob} {self.label}"
 
-    def with_errors(self, picture: Picture, right: Reference) -> Row:
+    def with_errors(self, picture: Picture, right: ReferencePicture) -> Row:
         """Return the row with the errors of its picture."""
         error, rounded = rmse(picture, right.picture), metrics.to_8_bits(picture) / 255
         low, high = metrics.of_rmse(picture, right.picture, right.error)
@@ -215,7 +215,7 @@ class SettingRenderer:
     def draw(self, setting: Setting, linear: Picture | None = None) -> Drawn:
         return setting.knob.draw(self.renderer(setting.knob), self.scene, self.pixels, setting.value, linear)
 
-    def measured(self, setting: Setting, right: Reference) -> tuple[Row, Picture | None]:
+    def measured(self, setting: Setting, right: ReferencePicture) -> tuple[Row, Picture | None]:
         """Return the row and the picture of a setting, still without times; None in place of a picture if it failed or
         would take too long."""
         row, work = Row(setting.knob.name, f"{setting.value:g}", setting.options), setting.knob.work(setting.value)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from minirt.mlx import Image
+    from minirt.mlx import MlxImage
     from tests.mlx.contract import Harness
     from tests.mlx.user import User
 
@@ -30,7 +30,7 @@ def at(*places: tuple[int, int]) -> Callable[[NDArray[np.uint8]], list[RGB]]:
     return lambda picture: [picture[y, x].tolist() for x, y in places]
 
 
-def quarters(harness: Harness, width: int, height: int) -> Image:
+def quarters(harness: Harness, width: int, height: int) -> MlxImage:
     """Make an image with red and green quarters above, blue and white quarters below."""
     image = harness.m.mlx_new_image(harness.mlx, width, height)
     top, left = slice(0, height // 2), slice(0, width // 2)

@@ -13,7 +13,7 @@ from minirt.cli.arguments import argument_parser
 from minirt.errors import RenderError
 from minirt.rendering.packing import lights
 from minirt.report.crops import Crops
-from minirt.report.pictures import FEW, LEFT_OUT, ONE_RUN, Reference, Row, SettingRenderer, reference
+from minirt.report.pictures import FEW, LEFT_OUT, ONE_RUN, ReferencePicture, Row, SettingRenderer, reference
 from minirt.report.settings import AUTO, KNOBS, Drawn, Knob, Setting, settings
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
@@ -31,7 +31,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 @cache
-def right() -> Reference:
+def right() -> ReferencePicture:
     return reference(ALL, WHOLE, SAMPLES, seed=3)
 
 
@@ -46,7 +46,9 @@ def error(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.linalg.norm(a - b) / np.sqrt(a.size))
 
 
-def rows_for(*wanted: Setting, longest: float = inf, scene: Scene = ALL, near: Reference | None = None) -> list[Row]:
+def rows_for(
+    *wanted: Setting, longest: float = inf, scene: Scene = ALL, near: ReferencePicture | None = None
+) -> list[Row]:
     """Rows with wall times."""
     stage = SettingRenderer(scene, WIDTH, HEIGHT, 1, longest)
     rows = [stage.measured(setting, near or right())[0] for setting in wanted]

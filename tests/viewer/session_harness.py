@@ -11,7 +11,7 @@ from minirt.mlx.recording import add_recording
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.display.painter import Job, Painter, paint
+from minirt.viewer.display.painter import Painter, PaintJob, paint
 from tests.viewer.fake import TEXT, FakeRenderer, scene
 
 SIZE = (64, 48)
@@ -22,14 +22,14 @@ class ManualPainter(Painter):
 
     def __init__(self, renderer, notify) -> None:
         super().__init__(renderer, notify)
-        self.requests: list[Job] = []
-        self.open: list[Job] = []  # the last request, until it is finished
+        self.requests: list[PaintJob] = []
+        self.open: list[PaintJob] = []  # the last request, until it is finished
 
     @property
     def busy(self) -> bool:
         return bool(self.open or self.outcomes)
 
-    def request(self, job: Job) -> None:
+    def request(self, job: PaintJob) -> None:
         self.requests.append(job)
         self.open = [job]
 

@@ -26,7 +26,7 @@ from minirt.scene.parser import lacked_by
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Job, Painter
+from minirt.viewer.display.painter import Painter, PaintJob
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.structure import ATTRIBUTE, ELEMENT, choices
@@ -57,7 +57,7 @@ KINDS = list(ELEMENTS.values())
 class Idle(Painter):
     """A painter of no pictures."""
 
-    def request(self, job: Job) -> None:
+    def request(self, job: PaintJob) -> None:
         pass
 
 

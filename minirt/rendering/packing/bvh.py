@@ -10,7 +10,7 @@ import numpy as np
 
 from minirt.kernel import beams
 from minirt.kernel.bvh_build import GROUP, INDEX, BinaryTree
-from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, Group, Tree
+from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, LeafGroup, Tree
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
 from minirt.meshes import Triangles
@@ -55,7 +55,7 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN, ru
         labels = np.stack([members, extents[members]], axis=-1)
         leaf_boxes = aligned_copy(boxes_of(boxes[:, :6], places[of_group], spare[of_group], margin))
         unbounded = infinite[shape_arrays.slots[infinite, 0] == group] if kinds_are_infinite[group] else None
-        groups.append(Group(rows, group_blocks, labels, leaf_boxes, unbounded, group))
+        groups.append(LeafGroup(rows, group_blocks, labels, leaf_boxes, unbounded, group))
     names = nodes[:, 6]
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)

@@ -120,6 +120,7 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
     return whole._replace(**lacking)
 
 
-def empty_blocks(kind: Kind, rows: np.ndarray) -> bvh_nodes.Group:
+def empty_blocks(kind: Kind, rows: np.ndarray) -> bvh_nodes.LeafGroup:
     unbounded = np.zeros(0, np.int64) if kind.element.infinite else None
-    return bvh_nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), np.zeros(0), unbounded, ABSENT)
+    blocks = np.zeros(0, block_type(kind))
+    return bvh_nodes.LeafGroup(rows, blocks, np.zeros((0, WIDTH, 2)), np.zeros(0), unbounded, ABSENT)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from minirt.helpers import system
-from minirt.kernel.binning import CHUNK, RADIX, Projection
+from minirt.kernel.binning import CHUNK, RADIX, BinningArrays
 from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.moving_camera import Followers
@@ -45,7 +45,7 @@ PARALLEL = 4096  # shapes from which on several threads project them
 NO_EXTENTS, NO_CONES = np.zeros((0, 4), np.float32), np.zeros((0, 5))
 NO_TABLES = np.zeros((0, 5), np.int64), np.zeros(0, np.int64), np.zeros(5)
 STILL = Followers(np.zeros(14), np.zeros((2, 0)), np.zeros(0), *NO_TABLES)  # arrays of which none follows
-# Fields of `Projection`, and of `ShapeArrays`.
+# Fields of `BinningArrays`, and of `ShapeArrays`.
 BOUNDS = "balls", "first_ball", "boxes", "listed", "first_primitive", "planes", "plane_places"
 Run: TypeAlias = Callable[[Callable[[], Any]], object]  # runs a job on all threads
 
@@ -141,7 +141,7 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 class Bins:
     """The shapes in the cells of a grid of directions from a point: when it moves they are binned anew, in the same
     arrays. There is to be room for some copies of its lists, all of at most `largest` bytes. Radius, reach, lean and
-    extents are those of `minirt.kernel.binning.Projection`."""
+    extents are those of `minirt.kernel.binning.BinningArrays`."""
 
     copies, largest = 1, system.UNLIMITED
     last: tuple[Any, ...] = ()  # the pose and the planes that the lists are for
@@ -167,7 +167,7 @@ class Bins:
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
         self.pose = np.append(np.zeros(3), grid.frames)
-        self.seen = Projection(
+        self.seen = BinningArrays(
             origin=self.pose[:3],
             grid=grid._replace(frames=self.pose[3:].reshape(-1, 3, 3)),
             radius=radius,

@@ -38,7 +38,7 @@ TITLES = {  # of these lists, and what is said where they are empty
 HINT = "type, arrows, click or Enter    Esc: none"
 
 
-class Row(NamedTuple):
+class ListRow(NamedTuple):
     """A row of a list, which leads to a state that the picture shows, or to an action."""
 
     title: str
@@ -54,8 +54,8 @@ class Choosing:
         self._perform = perform
         self._title = ""
         self._letters = ""
-        self._every: list[Row] = []
-        self._chosen: Row | None = None
+        self._every: list[ListRow] = []
+        self._chosen: ListRow | None = None
         self._group = ""  # of the last change, in a list of states
         self._before: State | None = None  # while the list is open
         self._place: tuple[int, int] | None = None  # pixel where it was asked for; None: its usual place
@@ -75,7 +75,7 @@ class Choosing:
             self.session.show(state.with_message(complaint.format(state.element.title)))
             return
         self._before, self._group, self._letters, self._title = state, group, "", title
-        self._every = [Row(translated(title), choice) for title, choice in choices]
+        self._every = [ListRow(translated(title), choice) for title, choice in choices]
         kind = None if self._place or group != structure.ELEMENT else state.added_kind  # a pointer expects the first
         again = (row for row, (_, each) in zip(self._every, choices, strict=True) if type(each.element) is kind)
         self.choose(next(again, self._every[0]))
@@ -85,7 +85,7 @@ class Choosing:
         state = self.session.state
         self._before, self._group, self._letters, self._place = state, "", "", place
         self._title = element_name(state.scene, state.selected, translated)
-        self._every = [Row(translated(MENU[action]), action=action) for action in menu_of(state, point)]
+        self._every = [ListRow(translated(MENU[action]), action=action) for action in menu_of(state, point)]
         self.choose(self._every[0])
 
     def end(self) -> None:
@@ -148,7 +148,7 @@ class Choosing:
             self.choose(row)
         return True
 
-    def row_at(self, x: int, y: int) -> Row | None:
+    def row_at(self, x: int, y: int) -> ListRow | None:
         """Return the row at a pixel of the window; None beside the list."""
         screen = self.session.screen
         if screen.list_box is None:
@@ -200,7 +200,7 @@ class Choosing:
             self._letters = before
             self.show(f"nothing is called {letters}")
 
-    def choose(self, row: Row) -> None:
+    def choose(self, row: ListRow) -> None:
         """Choose a row: its state replaces the last one in the scene."""
         self._chosen = row
         if row.state:
@@ -210,7 +210,7 @@ class Choosing:
         else:
             self.show()
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[ListRow]:
         """The rows that contain the letters: first those that begin with them, then those of which a word does."""
         letters = self._letters
         found = [(searchable(row.title), row) for row in self._every if letters in searchable(row.title)]
@@ -218,7 +218,7 @@ class Choosing:
             found.sort(key=lambda each: (not each[0].startswith(letters), f" {letters}" not in each[0]))
         return [row for _, row in found]
 
-    def index_in(self, rows: list[Row]) -> int:
+    def index_in(self, rows: list[ListRow]) -> int:
         """Index of the chosen row, or 0."""
         return next((index for index, row in enumerate(rows) if row is self._chosen), 0)
 

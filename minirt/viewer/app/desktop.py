@@ -15,7 +15,7 @@ from minirt.errors import printable
 from minirt.helpers import package
 from minirt.helpers.signals import ended_by_signals, held_signals, leave
 from minirt.helpers.system import gc_paused
-from minirt.mlx import Image, Mlx
+from minirt.mlx import Mlx, MlxImage
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.renderer import renderer as shared_renderer
 from minirt.scene import Scene, size_of
@@ -117,14 +117,14 @@ def open_session(
         raise
 
 
-def application_icons() -> list[Image]:
+def application_icons() -> list[MlxImage]:
     """Return the icon in three sizes: a ball that reflects a checkered floor, as this program has traced it.
 
     They lie in one PNG file of one chunk of rows without filters, which needs no decoder, whose import takes 60 ms.
     """
     rows = zlib.decompress(package.read(__name__, "icons.png")[41:-16])
     sheet = np.frombuffer(rows, np.uint8).reshape(64, -1)[:, 1:].reshape(64, -1, 4)[..., [2, 1, 0, 3]]
-    return [Image(sheet[:size, left : left + size].copy()) for size, left in ((16, 96), (32, 64), (64, 0))]
+    return [MlxImage(sheet[:size, left : left + size].copy()) for size, left in ((16, 96), (32, 64), (64, 0))]
 
 
 def run_event_loop(session: Session) -> tuple[int, bool]:

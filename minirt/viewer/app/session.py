@@ -18,7 +18,7 @@ from minirt.rendering.queries.pick import Picked
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.bindings import Keymap
-from minirt.viewer.display.painter import Outcome, Painter, Pixels
+from minirt.viewer.display.painter import Painted, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart
@@ -86,7 +86,7 @@ class Session:
         self.screen = Screen(mlx, self.window, self.keymap)
         self._without_hidden = scene, frozenset[int](), scene  # scene, hidden elements, scene without them
         self._described: Scene | None = None  # the scene that the words in the window describe
-        self._drawn: Outcome | None = None  # the picture in the window
+        self._drawn: Painted | None = None  # the picture in the window
         self._current_at = self.now  # when the window last got a frame, or last had the words of the current scene
         self.watch_file(path)
 

@@ -28,7 +28,7 @@ WIDTH, CHOSEN_WIDTH, HALO_WIDTH, DOT = 2.0, 4.0, 1.0, 6.0  # pixels, times the s
 OPACITY, HALO_OPACITY = 0.85, 0.5  # of rays beside the chosen one, and around all
 
 
-class Part(NamedTuple):
+class ExplainedRay(NamedTuple):
     """A ray, or one to a light, as it is drawn, and its row of the list."""
 
     title: str
@@ -44,7 +44,7 @@ class Explained(NamedTuple):
 
     explanation: Explanation
     scene: Scene
-    parts: tuple[Part, ...]
+    parts: tuple[ExplainedRay, ...]
     chosen: int = 0
 
     @property
@@ -68,20 +68,20 @@ def explained(explanation: Explanation, scene: Scene) -> Explained:
     return Explained(explanation, scene, tuple(parts_of(explanation.ray, far)))
 
 
-def parts_of(ray: RayNode, far: float, level: int = 0) -> Iterator[Part]:
+def parts_of(ray: RayNode, far: float, level: int = 0) -> Iterator[ExplainedRay]:
     """Yield a ray, those from its surface to lights, and those that it becomes."""
     at, indent = ray.surface, GAP * level
     end = at.point if at else linear_combination(1.0, ray.origin, far, ray.direction)
     share = "" if ray.weight == 1.0 else f" {ray.weight:.1%}"
     title = f"{indent}{ray.kind} ray{share}: {at.name if at else 'background'}"
-    yield Part(title, f"+ {shares(ray.light)}", details_of(ray), ray.origin, end, COLOURS[ray.kind])
+    yield ExplainedRay(title, f"+ {shares(ray.light)}", details_of(ray), ray.origin, end, COLOURS[ray.kind])
     for light in at.lights if at else ():
         yield light_part(light, far, indent + GAP)
     for each in ray.rays:
         yield from parts_of(each, far, level + 1)
 
 
-def light_part(light: LightPart, far: float, indent: str) -> Part:
+def light_part(light: LightPart, far: float, indent: str) -> ExplainedRay:
     """Return the ray to a light: up to what casts the shadow, and of no length if the light comes from behind."""
     is_dark, reach = not any(light.passes), 0.0
     if light.cosine > 0.0:
@@ -91,7 +91,7 @@ def light_part(light: LightPart, far: float, indent: str) -> Part:
         details += f"{GAP}highlight {shares(light.highlight)}"
     end = linear_combination(1.0, light.origin, reach, light.direction)
     title = f"{indent}light {light.light + 1}: {way_of(light)}"
-    return Part(title, shares(light.diffuse), details, light.origin, end, SHADOWED if is_dark else FREE)
+    return ExplainedRay(title, shares(light.diffuse), details, light.origin, end, SHADOWED if is_dark else FREE)
 
 
 def details_of(ray: RayNode) -> str:

@@ -23,13 +23,13 @@ from minirt.viewer.editing.dragging import MOVE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.dragging import SIZE as RESIZE
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, position_of, projection_of, subtract
-from minirt.viewer.editing.state import Frame, State, can_edit
+from minirt.viewer.editing.state import MoveAxes, State, can_edit
 from minirt.viewer.language import translated
 
 PLAIN = 255, 255, 255  # the square of an element without a colour
 GOLD, BLACK, WHITE = 0xFFFFD75F, 0xFF000000, 0xFFFFFFFF
 ORANGE = 0xFFE8862E  # of selected elements beside the primary one, which is golden
-AXIS_COLOURS = {Frame.X: 0xFFFF5050, Frame.Y: 0xFF60E060, Frame.Z: 0xFF6090FF}
+AXIS_COLOURS = {MoveAxes.X: 0xFFFF5050, MoveAxes.Y: 0xFF60E060, MoveAxes.Z: 0xFF6090FF}
 AXIS_LENGTH = 0.6  # of the distance to the eye: what is drawn of an axis on both sides of an element
 MOVING_RAYS, STILL_RAYS = 20_000, 60_000  # rays for an outline, while something moves and when nothing does
 SIZE = 20  # pixels of a side, times the screen's scale

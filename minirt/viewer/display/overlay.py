@@ -9,9 +9,9 @@ from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
 from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
-from minirt.viewer.display.painter import Outcome, Pixels
+from minirt.viewer.display.painter import Painted, Pixels
 from minirt.viewer.display.words import bracketed, short_numbers, title_in_words, values_in_words
-from minirt.viewer.editing.state import Frame, State
+from minirt.viewer.editing.state import MoveAxes, State
 from minirt.viewer.language import GAP, translated
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
@@ -39,7 +39,7 @@ def text_size(width: int, height: int, scale: float) -> int:
     return max(MIN_TEXT_SIZE, min(round(TEXT_SIZE * scale), 2 * width // COLUMNS, height // ROWS))
 
 
-def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLevel, rate: float, size: int) -> int:
+def draw_hud(pixels: Pixels, state: State, shown: Painted | None, level: HudLevel, rate: float, size: int) -> int:
     """Draw the selected element in words, the active keys, and how the picture was rendered.
 
     With all information there is the element's line in the file, too. `rate`: primary rays per second, 0 if unknown.
@@ -100,7 +100,7 @@ def element_line(state: State) -> str:
     return short_numbers(" ".join(words))
 
 
-def status(shown: Outcome, rate: float = 0.0) -> str:
+def status(shown: Painted, rate: float = 0.0) -> str:
     """Return resolution, render time, samples done and wanted, error and ray rate of a picture."""
     job = shown.job
     coarse = " preview" if shown.preview else f" at 1/{job.divisor}" if job.divisor > 1 else ""
@@ -139,8 +139,8 @@ def hints(state: State, every: bool) -> str:
     groups = [f"+ - {state.active.name}", "V: next value"]
     if state.others:
         groups.insert(0, f"{len(state.chosen)} elements selected")
-    if every or state.frame is not Frame.VIEW:
-        groups.append(f"X: move {'in the ' if state.frame is Frame.VIEW else 'along the '}{state.frame.value}")
+    if every or state.frame is not MoveAxes.VIEW:
+        groups.append(f"X: move {'in the ' if state.frame is MoveAxes.VIEW else 'along the '}{state.frame.value}")
     return GAP.join([*groups, "H: help"])
 
 

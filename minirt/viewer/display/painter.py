@@ -31,7 +31,7 @@ PASS_GROWTH = 4  # ratio of samples from one refinement pass to the next
 
 
 @dataclass(frozen=True)
-class Job:
+class PaintJob:
     """A request for a picture."""
 
     scene: Scene
@@ -61,10 +61,10 @@ class Job:
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class Painted:
     """The result of a job: a picture, or an error, or neither if it was cancelled."""
 
-    job: Job
+    job: PaintJob
     pixels: Pixels | None = None
     error: Exception | None = None
     seconds: float = 0.0  # of rendering; 0 in simulated time
@@ -78,7 +78,7 @@ class Outcome:
         """Whether no better picture of the same scene follows."""
         return self.job.divisor == 1 and self.job.samples >= self.job.goal and not self.single
 
-    def next(self) -> Job:
+    def next(self) -> PaintJob:
         """Return the job that follows this picture: full resolution in double precision, or more samples."""
         job = self.job
         if job.divisor > 1 or self.single:
@@ -97,13 +97,13 @@ class Painter:
         """`notify` is called when there are outcomes to take."""
         self.renderer = renderer
         self.notify = notify
-        self.outcomes: list[Outcome] = []
+        self.outcomes: list[Painted] = []
 
-    def request(self, job: Job) -> None:
+    def request(self, job: PaintJob) -> None:
         self.outcomes.append(paint(self.renderer, job))
         self.notify()
 
-    def take(self) -> list[Outcome]:
+    def take(self) -> list[Painted]:
         """Return the outcomes since the last call, oldest first."""
         taken, self.outcomes = self.outcomes, []
         return taken
@@ -114,23 +114,23 @@ class Painter:
 
 
 def paint(
-    renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: Callable[[], bool] = lambda: True
-) -> Outcome:
+    renderer: Renderer, job: PaintJob, base: Pixels | None = None, is_wanted: Callable[[], bool] = lambda: True
+) -> Painted:
     """Render a job: all pixels, or only the edges in a copy of `base`."""
     try:
         if job.view:
-            return Outcome(job, view_pixels(job.scene, job.view, *job.shape[1::-1], is_wanted))
+            return Painted(job, view_pixels(job.scene, job.view, *job.shape[1::-1], is_wanted))
         pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
         done = renderer.render(job.scene, pixels, job.samples, is_wanted=is_wanted, edges_only=base is not None)
     except Exception as error:  # of any kind: the session raises it in the main thread
-        return Outcome(job, error=error)
+        return Painted(job, error=error)
     about = () if job.urgent or not done else tuple(renderer.about)
     estimate = None
     if done and base is not None:
         tone = job.scene.camera.tone
         estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted, tone)
         done = estimate is not None
-    return Outcome(job, pixels, error_estimate=estimate, about=about) if done else Outcome(job)
+    return Painted(job, pixels, error_estimate=estimate, about=about) if done else Painted(job)
 
 
 class BackgroundPainter(Painter):
@@ -144,14 +144,14 @@ class BackgroundPainter(Painter):
         renderer.specialise_early()
         self._precision = MovingPrecision(renderer)
         self._changed = threading.Condition()
-        self._waiting: Job | None = None
-        self._running: Job | None = None
-        self._previewed: Job | None = None  # to be rendered again when the kernel is ready
+        self._waiting: PaintJob | None = None
+        self._running: PaintJob | None = None
+        self._previewed: PaintJob | None = None  # to be rendered again when the kernel is ready
         self._closed = False
         self._preparing = False
         self._threads = [threading.Thread(target=self._work, name="minirt-painter", daemon=True)]
 
-    def request(self, job: Job) -> None:
+    def request(self, job: PaintJob) -> None:
         with self._changed:
             self._waiting, self._previewed = job, None
             self._changed.notify_all()
@@ -160,7 +160,7 @@ class BackgroundPainter(Painter):
         if self._threads[0].ident is None:
             self._threads[0].start()
 
-    def take(self) -> list[Outcome]:
+    def take(self) -> list[Painted]:
         with self._changed:
             return super().take()
 
@@ -201,14 +201,14 @@ class BackgroundPainter(Painter):
             if is_idle and job.samples == 1:
                 self._precision.judge(job.scene, *job.shape[1::-1])
 
-    def _render(self, job: Job) -> Outcome | None:
+    def _render(self, job: PaintJob) -> Painted | None:
         """Render a job, or its preview while its kernel is missing; None if it has neither."""
         try:
             if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
                 pixels = self.renderer.preview(job.scene, job.width, job.height)
-                return None if pixels is None else Outcome(job, pixels, preview=True)
+                return None if pixels is None else Painted(job, pixels, preview=True)
         except Exception as error:  # the file of a texture may be gone meanwhile
-            return Outcome(job, error=error)
+            return Painted(job, error=error)
         single, start = not job.view and self._precision.is_single(urgent=job.urgent), time.perf_counter()
         renderer = self._precision.single if single else self.renderer
         outcome = paint(renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
@@ -217,7 +217,7 @@ class BackgroundPainter(Painter):
             self._precision.record(seconds / outcome.pixels.size, single=single)
         return replace(outcome, seconds=seconds, single=single)
 
-    def _is_soon_prepared(self, job: Job) -> bool:
+    def _is_soon_prepared(self, job: PaintJob) -> bool:
         """Start to prepare the kernel, unless that has begun; return whether it is ready within PREVIEW_DELAY."""
         with self._changed:
             if not self._preparing:
@@ -230,7 +230,7 @@ class BackgroundPainter(Painter):
             self._previewed = None if self._waiting else job
         return False
 
-    def _prepare(self, job: Job) -> None:
+    def _prepare(self, job: PaintJob) -> None:
         """Prepare the kernel, then request the picture that was only previewed: the body of the second thread."""
         error = None
         try:
@@ -240,14 +240,14 @@ class BackgroundPainter(Painter):
         with self._changed:
             self._preparing = False
             if error:
-                self.outcomes.append(Outcome(job, error=error))
+                self.outcomes.append(Painted(job, error=error))
             elif not self._waiting:
                 self._waiting = self._previewed
             self._previewed = None
             self._changed.notify_all()
         self.notify()
 
-    def _is_superseded(self, job: Job) -> bool:
+    def _is_superseded(self, job: PaintJob) -> bool:
         """Whether a newer request makes this picture useless."""
         waiting = self._waiting
         return waiting is not None and not (job.urgent and job.shows(job.scene, waiting.size))

@@ -8,7 +8,7 @@ from statistics import median_low
 from typing import Any
 
 from minirt.scene import Scene
-from minirt.viewer.display.painter import Job, Outcome, Painter, Pixels
+from minirt.viewer.display.painter import Painted, Painter, PaintJob, Pixels
 
 FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
 DIVISORS = (1, 2, 3, 4, 6, 8, 12)  # of width and height
@@ -23,16 +23,16 @@ class Refinement:
     def __init__(self, painter: Painter, samples: int) -> None:
         self.painter = painter
         self.resolution = AdaptiveResolution()
-        self.latest: Outcome | None = None  # the latest picture
+        self.latest: Painted | None = None  # the latest picture
         self.samples = samples
         self.view = ""  # what pictures show in place of colours
-        self._requested: Job | None = None
+        self._requested: PaintJob | None = None
 
     def restart(self, samples: int) -> None:
         """Let the next request be that of a first picture, whose final one has so many rays per pixel."""
         self.samples, self._requested = samples, None
 
-    def shown(self, drawn: Outcome | None, size: tuple[int, int]) -> Outcome | None:
+    def shown(self, drawn: Painted | None, size: tuple[int, int]) -> Painted | None:
         """The latest picture; or the one that is drawn, of this size, while the same is rendered at another one."""
         latest = self.latest
         is_kept = drawn and latest and latest.job.size != size and drawn.job.shows(latest.job.scene, size)
@@ -42,7 +42,7 @@ class Refinement:
         """The pixels of the final picture, if that is complete and of this size."""
         return self.latest.pixels if self.complete and self.latest and self.latest.job.size == size else None
 
-    def resume(self, drawn: Outcome | None, size: tuple[int, int]) -> None:
+    def resume(self, drawn: Painted | None, size: tuple[int, int]) -> None:
         """Go on after the picture that was kept while another size was rendered."""
         kept = self.shown(drawn, size)
         if kept and kept is not self.latest:
@@ -62,10 +62,10 @@ class Refinement:
         last = self._requested
         how: dict[str, Any] = {"view": self.view} if self.view else {"goal": self.samples}
         if last is None:
-            self._request(Job(scene, *size, **how))
+            self._request(PaintJob(scene, *size, **how))
         elif not last.shows(scene, size):
             divisor = self.resolution.divisor(*size)
-            self._request(Job(scene, *size, divisor, urgent=True, **how))
+            self._request(PaintJob(scene, *size, divisor, urgent=True, **how))
         elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.is_final:
             self._request(answer.next())
 
@@ -87,12 +87,12 @@ class Refinement:
         return errors
 
     @property
-    def _answer(self) -> Outcome | None:
+    def _answer(self) -> Painted | None:
         """The latest picture, if it answers the last request and is no preview."""
         latest = self.latest
         return latest if latest and latest.job is self._requested and not latest.preview else None
 
-    def _request(self, job: Job) -> None:
+    def _request(self, job: PaintJob) -> None:
         self._requested = job
         self.painter.request(job)
 
@@ -114,7 +114,7 @@ class AdaptiveResolution:
         self._candidates = 0  # pictures in a row after which a finer one seemed possible
         self._trial_interval = TRIAL_INTERVAL
 
-    def record(self, outcome: Outcome) -> None:
+    def record(self, outcome: Painted) -> None:
         """Record the time of a picture that was finished, or was cancelled and would have taken longer."""
         job, cost = outcome.job, 4 * outcome.seconds / prod(outcome.job.shape)  # of a pixel, which has four bytes
         if job.samples > 1:

@@ -14,7 +14,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from minirt.mlx import Image, Mlx, Window
+from minirt.mlx import Mlx, MlxImage, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
 from minirt.viewer.bindings import Keymap, key_groups
@@ -24,7 +24,7 @@ from minirt.viewer.display.ground import ground_lines
 from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, wrap
-from minirt.viewer.display.painter import Outcome, Pixels
+from minirt.viewer.display.painter import Painted, Pixels
 from minirt.viewer.display.tool_row import Tool, draw_tools, tool_at
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import translated
@@ -121,7 +121,7 @@ class Screen:
         room = height // 3 // measure(" ", self.text_size)[1] - len(above)
         return "\n".join(tips[: max(0, room)])
 
-    def draw(self, state: State, picture: Outcome | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
+    def draw(self, state: State, picture: Painted | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
         The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
@@ -137,7 +137,7 @@ class Screen:
         if contents == self._drawn:
             return False
         self._drawn = contents
-        self.image = Image(self.beside_panel(self.picture_alone(picture)))
+        self.image = MlxImage(self.beside_panel(self.picture_alone(picture)))
         bottom, clear = 0, self.frame[:, : self.size[0]]
         background = state.scene.background
         if not picture and background and not isinstance(background.paint, str):  # while kernels are compiled
@@ -168,7 +168,7 @@ class Screen:
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 
-    def draw_over(self, pixels: Pixels, state: State, picture: Outcome, handles: bool) -> None:
+    def draw_over(self, pixels: Pixels, state: State, picture: Painted, handles: bool) -> None:
         """Draw what fits a picture: the ground of a scene without shapes, marks, and the rays of a pixel."""
         scene, scale, moving = picture.job.scene, self.scale, picture.job.urgent
         if not scene.runs:
@@ -179,7 +179,7 @@ class Screen:
         if self.explained:
             draw_explained(pixels, self.explained, scene, scale)
 
-    def picture_alone(self, picture: Outcome | None) -> Pixels:
+    def picture_alone(self, picture: Painted | None) -> Pixels:
         """Return a copy of the picture without overlay, stretched to `size`; black if there is no picture yet."""
         width, height = self.size
         if picture is None or picture.pixels is None:

@@ -19,7 +19,7 @@ from minirt.viewer.editing import state as states
 from minirt.viewer.editing.motion import FORWARD, RIGHT, UPWARD, WORLD_AXES
 from minirt.viewer.editing.placing import drop, keep_standing
 from minirt.viewer.editing.projection import field_names
-from minirt.viewer.editing.state import Frame, State
+from minirt.viewer.editing.state import MoveAxes, State
 from minirt.viewer.editing.values import values
 
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
@@ -81,7 +81,7 @@ def move(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
     element = state.element
     if not field_names(type(element), Point) and not state.others:
         return state.with_message(f"{element.title} has no position to move")
-    frame = Frame.VIEW if element is state.scene.camera else state.frame
+    frame = MoveAxes.VIEW if element is state.scene.camera else state.frame
     direction = WORLD_AXES.get(frame) or motion.level_frame(state.scene.camera)[axis]
     return motion.move(state, element, direction, sign * amount * state.stride, "move", now)
 
@@ -124,7 +124,7 @@ def next_value(step: int, state: State, _amount: float, _now: float) -> State:
 
 
 def next_frame(state: State, _amount: float, _now: float) -> State:
-    frames = list(Frame)
+    frames = list(MoveAxes)
     return replace(state, frame=frames[(frames.index(state.frame) + 1) % len(frames)], last_change=None)
 
 

@@ -13,14 +13,18 @@ from minirt.scene import Scene
 from minirt.scene.elements import TONES, Camera, linear_combination
 from minirt.viewer.editing.projection import dot, extent, position_of, scene_centre, subtract
 from minirt.viewer.editing.rigid import can_turn, clamp_point, mean_point, rotate, rotate_about, shifted, translate
-from minirt.viewer.editing.state import Frame, State
+from minirt.viewer.editing.state import MoveAxes, State
 from minirt.viewer.editing.values import round_length
 
 Moved = TypeVar("Moved", bound=Element)
 
 RIGHT, UPWARD, FORWARD = range(3)  # axes of `camera_frame`
 STEEPEST = pi / 2 - 1e-8  # radians: nobody sees the difference to straight up, which would have no heading
-WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
+WORLD_AXES: dict[MoveAxes, Triple] = {
+    MoveAxes.X: (1.0, 0.0, 0.0),
+    MoveAxes.Y: (0.0, 1.0, 0.0),
+    MoveAxes.Z: (0.0, 0.0, 1.0),
+}
 LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
 LENS = 1 / 40  # diameter of a new lens by the distance in focus
 MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border

@@ -21,7 +21,7 @@ MAX_UNDO = 1000  # length of the undo stack
 MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
 
 
-class Frame(Enum):
+class MoveAxes(Enum):
     """Reference frame whose axes elements move along and turn about; the value is shown to the user."""
 
     VIEW = "view"
@@ -47,7 +47,7 @@ class State:
     file_cameras: tuple[Camera, ...]  # the cameras as they are in the file
     size: float  # of the scene, in scene units; movements are proportional to it
     value_index: int = 0  # of the active value in `values` of the selected element
-    frame: Frame = Frame.VIEW
+    frame: MoveAxes = MoveAxes.VIEW
     message: str = ""
     added_kind: type[Element] | None = None  # of the last added element
     others: frozenset[int] = frozenset()  # indices of the other selected elements, which move with the primary one

@@ -22,7 +22,7 @@ from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
 from minirt.report.metrics import Picture, rmse
-from minirt.report.pictures import Reference, SettingRenderer, crops_for, reference
+from minirt.report.pictures import ReferencePicture, SettingRenderer, crops_for, reference
 from minirt.report.settings import ADAPTIVE, AUTO, UNIFORM, Setting
 from minirt.scene import Ambient, Lamp, Light, Scene
 from minirt.shapes import Cone, Cylinder, Disc, Plane, Shape, Sphere, Triangle
@@ -130,7 +130,7 @@ class Antialiased:
         self.command, self.size, self.threads, self.folder = command, (width, height), threads, folder
         (folder / "scene.pov").write_text("\n".join([*translated(scene, width, height), ""]), encoding="ascii")
 
-    def check(self, right: Reference) -> None:
+    def check(self, right: ReferencePicture) -> None:
         """RenderError if the picture is not that of the scene."""
         error = rmse(right.crops.of(self.drawn(GRID.format(CHECKED))[1]), right.picture)
         if error > SAME:

@@ -22,7 +22,7 @@ from minirt.kernel.bvh_nodes import (
     STACK,
     STACK_LEVEL,
     WIDTH,
-    Group,
+    LeafGroup,
     Tree,
     reference_of,
 )
@@ -73,7 +73,7 @@ def brute_force(shapes: list[Shape]) -> Tree:
     for i, (kind, rows) in enumerate(zip(kinds, arrays.rows, strict=True)):
         labels = np.zeros((0, WIDTH, 2))
         unbounded = np.flatnonzero(arrays.slots[:, 0] == i)
-        groups.append(Group(rows, aligned(0, block_type(kind)), labels, np.zeros(0), unbounded, i))
+        groups.append(LeafGroup(rows, aligned(0, block_type(kind)), labels, np.zeros(0), unbounded, i))
     root = np.repeat([np.inf, -np.inf, 0.0], [3 * WIDTH, 3 * WIDTH, WIDTH])
     return Tree(root, arrays.colours_and_extents[:, 3].copy(), arrays.slots, tuple(groups))
 

@@ -18,7 +18,7 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.display.marks import GOLD, bgra
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import Painted, PaintJob
 from minirt.viewer.display.refinement import FRAME_TIME
 from minirt.viewer.display.screen import Screen
 from minirt.viewer.editing.state import State, initial_state
@@ -65,7 +65,7 @@ def test_an_unchanged_frame_is_not_drawn_again():
     harness = SessionHarness()
     harness.finish(0.001)
     frame = harness.session.screen.frame
-    harness.painter.outcomes.append(Outcome(Job(scene(), *SIZE)))  # cancelled: it was not the last request
+    harness.painter.outcomes.append(Painted(PaintJob(scene(), *SIZE)))  # cancelled: it was not the last request
     harness.painter.notify()
     harness.memory.play()
     assert harness.session.screen.frame is frame
@@ -243,7 +243,7 @@ def perform(harness: SessionHarness, play: Play) -> None:
     harness.memory.play()
 
 
-def outline_mask(shown: Outcome, shape: Shape) -> np.ndarray:
+def outline_mask(shown: Painted, shape: Shape) -> np.ndarray:
     """Return a mask of the outline of a shape in a picture, between the words."""
     mask = np.zeros((HEIGHT, WIDTH), bool)
     for places in outline_pixels(shape, shown.job.scene.camera, WIDTH, HEIGHT, 60_000):

@@ -34,7 +34,7 @@ from minirt.viewer.display.marks import (
 )
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.editing.projection import projection_of
-from minirt.viewer.editing.state import Frame
+from minirt.viewer.editing.state import MoveAxes
 from tests.meshes.examples import named
 from tests.random_scenes import random_scene
 from tests.viewer.fake import TEXT, colour_of, played, scene
@@ -128,14 +128,14 @@ def test_an_outline_has_black_beside_it_and_none_beyond_a_corner_of_the_picture(
     assert (pixels[[corner, corner + inward], corner] == GOLDEN).all()
 
 
-@pytest.mark.parametrize(("presses", "frame"), [(1, Frame.X), (2, Frame.Y), (3, Frame.Z)])
-def test_the_movement_axis_passes_through_the_element(presses: int, frame: Frame) -> None:
+@pytest.mark.parametrize(("presses", "frame"), [(1, MoveAxes.X), (2, MoveAxes.Y), (3, MoveAxes.Z)])
+def test_the_movement_axis_passes_through_the_element(presses: int, frame: MoveAxes) -> None:
     text = "A 0 0,0,0\nC 5,4,10 -0.5,-0.4,-1 60\nsp 0,0,0 0.1 9,9,9\n"
     session = played("resize 160x120", "press Tab", *["press X"] * presses, text=text)
     coloured = (session.screen.frame == np.array(bgra(AXIS_COLOURS[frame]), np.uint8)).all(axis=2)
     seen = projection_of(session.state.scene.camera, 160, 120)
-    ends = [(reach * (frame is Frame.X), reach * (frame is Frame.Y), reach * (frame is Frame.Z)) for reach in (-1, 1)]
-    for point in ends:
+    for reach in (-1, 1):
+        point = (reach * (frame is MoveAxes.X), reach * (frame is MoveAxes.Y), reach * (frame is MoveAxes.Z))
         x, y = seen.pixel(point)
         assert coloured[round(y) - 2 : round(y) + 3, round(x) - 2 : round(x) + 3].any()
     camera = played("resize 160x120", *["press X"] * presses, text=text).screen.frame

@@ -28,7 +28,7 @@ from minirt.viewer.display.overlay import (
     text_size,
     wrap,
 )
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import Painted, PaintJob
 from minirt.viewer.display.screen import Column, draw_help, help_pages, width_of
 from minirt.viewer.display.words import colour_word
 from minirt.viewer.editing.editor import apply
@@ -106,7 +106,7 @@ def test_all_words_are_one_line_of_a_usual_window(monkeypatch, language, name):
     state = initial_state(minirt.load(ROOT / f"scenes/{name}.rt"))
     for index in range(len(state.scene.elements)):
         pixels = blank(1280, 720)
-        draw_hud(pixels, state.select(index), Outcome(Job(state.scene, 1280, 720)), HudLevel.LINE, 0.0, 16)
+        draw_hud(pixels, state.select(index), Painted(PaintJob(state.scene, 1280, 720)), HudLevel.LINE, 0.0, 16)
         changed = (pixels != 255).any(axis=(1, 2))
         assert changed[:20].any()
         assert not changed[40:].any()
@@ -124,15 +124,15 @@ def test_brackets_are_around_one_component_or_the_whole_value():
 
 
 def test_the_status_line():
-    job = Job(scene(), 640, 480)
-    assert status(Outcome(job, seconds=0.0123)) == "640x480    12.3 ms    1 sample"
-    assert status(Outcome(Job(job.scene, 640, 480, 4, goal=16))) == "640x480 at 1/4    1 of 16 samples"
-    assert status(Outcome(replace(job, samples=4, goal=16), seconds=0.0123)) == "640x480    12.3 ms    4 of 16 samples"
+    job = PaintJob(scene(), 640, 480)
+    assert status(Painted(job, seconds=0.0123)) == "640x480    12.3 ms    1 sample"
+    assert status(Painted(PaintJob(job.scene, 640, 480, 4, goal=16))) == "640x480 at 1/4    1 of 16 samples"
+    assert status(Painted(replace(job, samples=4, goal=16), seconds=0.0123)) == "640x480    12.3 ms    4 of 16 samples"
 
 
 def test_the_hud_leaves_the_middle_free():
     pixels = blank()
-    shown = Outcome(Job(scene(), 640, 480), about=("two threads", "without three planes"))
+    shown = Painted(PaintJob(scene(), 640, 480), about=("two threads", "without three planes"))
     bottom = draw_hud(pixels, initial_state(scene()), shown, HudLevel.ALL, 2e8, 16)
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:60].any()
@@ -151,8 +151,8 @@ def test_the_full_information_covers_at_most_a_third_of_the_picture(width, heigh
     for _ in range(2):
         state = apply(state, "select next")
     size = text_size(width, height, overlay_scale(width, height, 1.0, 1.0))
-    shown = Outcome(
-        Job(state.scene, width, height), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99))
+    shown = Painted(
+        PaintJob(state.scene, width, height), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99))
     )
     bottom = draw_hud(pixels, state, shown, HudLevel.ALL, 2e8, size)
     covered = (pixels != 255).any(axis=2).sum()

@@ -10,11 +10,11 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.display import painter as painter_module
-from minirt.viewer.display.painter import BackgroundPainter, Job, Outcome, paint
+from minirt.viewer.display.painter import BackgroundPainter, Painted, PaintJob, paint
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 
-JOB = Job(scene(), 64, 48)
+JOB = PaintJob(scene(), 64, 48)
 REFINED = replace(JOB, samples=16, goal=16, base=np.full((48, 64, 4), colour_of(JOB.scene), np.uint8))
 
 
@@ -26,9 +26,9 @@ class PainterHarness:
         self.notifications = threading.Semaphore(0)
         self.painter = BackgroundPainter(self.renderer, self.notifications.release)
 
-    def outcomes(self, count: int) -> list[Outcome]:
+    def outcomes(self, count: int) -> list[Painted]:
         """Wait for so many outcomes and return them."""
-        taken: list[Outcome] = []
+        taken: list[Painted] = []
 
         def enough() -> bool:
             taken.extend(self.painter.take())
@@ -37,7 +37,7 @@ class PainterHarness:
         until(enough, f"{count} outcomes")
         return taken
 
-    def start(self, job: Job) -> None:
+    def start(self, job: PaintJob) -> None:
         """Request a picture that is not finished until the gate is opened."""
         self.renderer.gate.clear()
         self.renderer.started.clear()
@@ -85,7 +85,7 @@ def test_a_picture_that_is_not_urgent_is_cancelled(harness, job):
 
 def test_only_the_latest_untaken_picture_is_kept(harness):
     for width in range(60, 70):
-        harness.painter.request(Job(scene(), width, 48))
+        harness.painter.request(PaintJob(scene(), width, 48))
         until(lambda now=width: harness.renderer.rendered[-1:] == [(now, 48)], "the picture")
         assert harness.notifications.acquire(timeout=HANG_LIMIT)
     (outcome,) = harness.painter.take()
@@ -229,7 +229,7 @@ def test_a_request_before_the_renderer_can_be_cancelled_still_cancels(harness):
 def test_samples_grow_fourfold_per_pass_up_to_the_goal(goal, passes):
     job, samples = replace(JOB, goal=goal, urgent=True), []
     pixels = np.zeros(JOB.shape, np.uint8)
-    while not (outcome := Outcome(job, pixels)).is_final:
+    while not (outcome := Painted(job, pixels)).is_final:
         job = outcome.next()
         samples.append(job.samples)
         assert job.base is pixels
@@ -239,6 +239,6 @@ def test_samples_grow_fourfold_per_pass_up_to_the_goal(goal, passes):
 
 def test_after_a_coarse_picture_follows_full_resolution():
     coarse = replace(JOB, divisor=3, goal=16, urgent=True)
-    outcome = Outcome(coarse, np.zeros(coarse.shape, np.uint8))
+    outcome = Painted(coarse, np.zeros(coarse.shape, np.uint8))
     assert not outcome.is_final
     assert outcome.next() == replace(JOB, goal=16)

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene, parse
-from minirt.viewer.display.painter import BackgroundPainter, Outcome
+from minirt.viewer.display.painter import BackgroundPainter, Painted
 from minirt.viewer.display.precision import MovingPrecision
 from minirt.viewer.display.refinement import Refinement
 from tests.paths import ROOT
@@ -21,7 +21,7 @@ BALL = "A 0.2 255,255,255\nC 0,0,10 0,0,-1 90\nsp 0,0,0 2 255,0,0"  # of one kin
 MOST_LEVELS = ROOT / "scenes" / "eval-shadows-many.rt"  # where rounding decides levels of many pixels
 
 
-def pictures(text: str, samples: int, precision: str = "double") -> list[Outcome]:
+def pictures(text: str, samples: int, precision: str = "double") -> list[Painted]:
     """Move the camera of a scene from picture to picture, then stop; return all pictures."""
     scene, done, found = parse(text).scene, Semaphore(0), []
     Renderer(1, "single").specialise(scene)

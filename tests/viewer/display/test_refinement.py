@@ -10,7 +10,7 @@ import pytest
 from minirt.mlx import Key
 from minirt.mlx.memory import Memory, MemoryWindow
 from minirt.viewer.app.judging import PictureJudge
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import Painted, PaintJob
 from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
 from tests.viewer.fake import MARK, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
@@ -21,7 +21,7 @@ URGENT, CANCELLED = {"urgent": True}, {"pixels": False}  # options of `outcome`
 
 def test_the_first_picture_has_full_resolution_and_is_rendered_once():
     harness = SessionHarness()
-    assert harness.painter.requests == [Job(harness.session.state.scene, *SIZE)]
+    assert harness.painter.requests == [PaintJob(harness.session.state.scene, *SIZE)]
     harness.finish(10.0)
     harness.memory.wait(2)
     harness.memory.do(harness.memory.window.on_expose)
@@ -40,11 +40,11 @@ def test_slow_pictures_are_coarse_only_while_a_key_is_held():
     assert set(harness.painter.divisors[1:]) == {2}
     assert all(job.urgent for job in harness.painter.requests[1:])
     harness.play("up d")
-    assert harness.painter.requests[-1] == Job(harness.session.state.scene, *SIZE)
+    assert harness.painter.requests[-1] == PaintJob(harness.session.state.scene, *SIZE)
     harness.finish(FRAME_TIME * 3)
     harness.play("wait 1")
     assert not harness.painter.busy
-    assert harness.session.refinement.latest.job == Job(harness.session.state.scene, *SIZE)
+    assert harness.session.refinement.latest.job == PaintJob(harness.session.state.scene, *SIZE)
 
 
 def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -108,7 +108,7 @@ def test_a_slow_screen_leaves_less_time_for_rendering():
 def test_a_picture_cancelled_without_a_newer_request_is_requested_again():
     harness = SessionHarness()
     harness.painter.open.clear()
-    harness.painter.outcomes.append(Outcome(harness.painter.requests[0]))
+    harness.painter.outcomes.append(Painted(harness.painter.requests[0]))
     harness.painter.notify()
     harness.memory.play()
     assert len(harness.painter.requests) == 2
@@ -123,7 +123,7 @@ def test_a_still_picture_that_is_late_does_not_slow_down_the_next_movement():
     harness.play("down d")
     coarse = harness.painter.divisors[-1]
     assert coarse > 1
-    harness.painter.outcomes.append(Outcome(still, np.zeros(still.shape, np.uint8), seconds=FRAME_TIME * 30))
+    harness.painter.outcomes.append(Painted(still, np.zeros(still.shape, np.uint8), seconds=FRAME_TIME * 30))
     harness.painter.notify()
     harness.memory.play()
     harness.finish(FRAME_TIME * 30 / coarse**2)
@@ -135,9 +135,9 @@ def test_a_still_picture_that_is_late_does_not_slow_down_the_next_movement():
 # Adaptive resolution: the divisor follows the measured times, without flicker.
 
 
-def outcome(seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False) -> Outcome:
-    job = Job(SCENE, 800, 600, divisor, urgent, samples)
-    return Outcome(job, colour_of(SCENE) if pixels else None, seconds=seconds)
+def outcome(seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False) -> Painted:
+    job = PaintJob(SCENE, 800, 600, divisor, urgent, samples)
+    return Painted(job, colour_of(SCENE) if pixels else None, seconds=seconds)
 
 
 def render_moving(resolution: AdaptiveResolution, seconds: float, always: float = 0.0) -> int:
