@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.formats.table import FORMATS, check_quality, encoding, format_of
+from minirt.formats.table import FORMATS, check_quality, format_of, told_encoding_errors
 from minirt.helpers import file_io
 from minirt.helpers.progress import WorkState, in_notebooks
 from minirt.rendering.image import Image
@@ -117,12 +117,12 @@ class Film:
         if len(self.sizes) > 1:
             different = " and ".join(f"{width}x{height}" for width, height in sorted(self.sizes))
             raise RenderError(f"the pictures of a film have one size, got {different}")
-        with encoding("film", self.name):
+        with told_encoding_errors("film", self.name):
             self.film.add(picture.array)
 
     def save(self) -> Path:
         """Write a film that has pictures, and return its path; RenderError when that fails."""
-        with encoding("film", self.name):
+        with told_encoding_errors("film", self.name):
             data = self.film.data()
         with file_io.told_errors(self.path):
             file_io.write(self.path, data)

@@ -42,7 +42,7 @@ def check(scene: Scene, options: argparse.Namespace) -> int:
 
 
 def check_as_json(options: argparse.Namespace) -> int:
-    """Print the errors and notices of a scene file as a list in JSON, for editors."""
+    """Print the errors of a scene file or, if it has none, its notices as a list in JSON, for editors."""
     import json
 
     from minirt.cli.files import read_scene
@@ -105,7 +105,8 @@ def explain(scene: Scene, options: argparse.Namespace) -> int:
 
 
 def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
-    """Write what each pixel shows to the output: as numbers where its format holds them, else as colours."""
+    """Write the normals, depths, ids, uv or points of what each pixel shows: as numbers where the format of the output
+    holds them, else as colours."""
     from minirt.cli.files import check_output, format_name, write
     from minirt.formats.table import FLOAT, FORMATS
     from minirt.rendering.buffers import MEMORY, geometry

@@ -36,7 +36,7 @@ def render_output(scene: Scene, options: argparse.Namespace) -> int:
     size = options.size or size_of(scene)
     given: dict[str, Any] = {name: value for name in GIVEN if (value := getattr(options, name)) is not None}
     settings = RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
-    region = cut_for(settings.region, *size).region
+    region = cut_for(settings.region, *size).region  # RenderError for one that is not inside of the picture
     render = render_film if options.turntable else render_picture
     streamed = is_streamed(options, region)
     with system.gc_paused(), workers(options) as executor:
@@ -44,14 +44,14 @@ def render_output(scene: Scene, options: argparse.Namespace) -> int:
         job = Job(scene, size, settings)
         if streamed:
             with progress(share.state):
-                reached = stream(options.output, job, options.bits or 8, executor, share.note)
+                outcome = stream(options.output, job, options.bits or 8, executor, share.note)
         else:
-            reached = render(job, options, executor, share)
-    if reached:
-        tell(reached)
-        if reached.notice:
-            tell(f"notice: {reached.notice}")
-    return FAILED if options.strict and reached and not reached.is_reached else OK
+            outcome = render(job, options, executor, share)
+    if outcome:
+        tell(outcome)
+        if outcome.notice:
+            tell(f"notice: {outcome.notice}")
+    return FAILED if options.strict and outcome and not outcome.is_reached else OK
 
 
 @contextmanager
@@ -168,22 +168,21 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None,
 
     wanted = options.frames or range(1, options.turntable + 1)
     views = islice(turntable(job.scene, options.turntable), wanted.start - 1, wanted.stop - 1)
-    bands = [job._replace(scene=view, number=number) for number, view in zip(wanted, views, strict=True)]
+    jobs = [job._replace(scene=view, number=number) for number, view in zip(wanted, views, strict=True)]
     film = Film(options.output, quality=options.quality) if is_film(options) else None
     outcomes = []
+    # Numbered pictures are files already: of them the journal holds outcomes, and not the pictures as parts of a film.
     with kept_work(job, options, share, has_parts=film is not None) as journal:
-        if journal and not film:
+        if journal and not film:  # a picture whose file is gone is rendered again
             places = journal.places.items()
-            journal.places = {
-                number: each for number, each in places if file_io.is_file(numbered(options.output, number))
-            }
-        for band, image in results(bands, executor, journal, share.note, in_order=True):
+            journal.places = {n: place for n, place in places if file_io.is_file(numbered(options.output, n))}
+        for each, image in results(jobs, executor, journal, share.note, in_order=True):
             outcomes.append(image.reached)
             if film:
                 film.add(image)
-            elif isinstance(image, Image):
-                output = str(numbered(options.output, band.number))
-                write(image.encode(**encoding(band.scene, output, options)), output)
+            elif isinstance(image, Image):  # and not what the journal holds of one
+                output = str(numbered(options.output, each.number))
+                write(image.encode(**encoding(each.scene, output, options)), output)
         if film:
             film.save()
     return max(filter(None, outcomes), key=lambda each: each.error, default=None)

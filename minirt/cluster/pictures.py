@@ -75,9 +75,9 @@ def render_to(
     an interruption goes on with those that are missing.
 
     With `samples` "auto" each band is rendered until its estimated error is at most `error`; then that of the whole
-    picture is, too, since its square is the mean of theirs; `time` is that of each band. The result is the whole
-    picture's. `on_progress` gets the number of bands that are done, and of all. RenderError when rendering or writing
-    fails.
+    picture is, too, since its square is the mean of theirs; `time` is in seconds for each band. The result is the
+    whole picture's; without "auto" it is None. `on_progress` gets the number of bands that are done, and of all.
+    RenderError when rendering or writing fails; TypeError where `scene` is no scene, such as the name of a file.
     """
     check_scene(scene, "render_to")
     name = format_of(path)

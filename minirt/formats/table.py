@@ -129,7 +129,7 @@ def check_quality(name: str, quality: int | None) -> None:
 
 
 @contextmanager
-def encoding(what: str, name: str) -> Iterator[None]:
+def told_encoding_errors(what: str, name: str) -> Iterator[None]:
     """Raise the errors of Pillow and PyAV as RenderError: a format cannot hold `what`, a picture or a film."""
     errors: tuple[type[Exception], ...] = (OSError, ValueError, KeyError, OverflowError)
     if name in FILMS_BY_PYAV:

@@ -232,7 +232,8 @@ def status(path: str | os.PathLike[str], largest: int) -> os.stat_result:
 
 
 def read(path: str | os.PathLike[str], largest: int) -> bytes:
-    """Return the bytes of a regular file; FileError when it has more than `largest` or cannot be read.
+    """Return the bytes of a regular file; FileError when it has more than `largest`, cannot be read, or is a pointer of
+    Git LFS.
 
     Anything but a regular file is refused before it is opened: a FIFO cannot hang the program.
     """

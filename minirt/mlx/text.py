@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from minirt.mlx.canvas import OPAQUE, blend
 
 SIZE = 16  # pixels
+ACCENT_INK = 230  # of 255: strokes have hard edges, and look as dark as letters a little below full coverage
 # Strokes of accents, as parts of the text's size: right of the letter's middle, and above the baseline.
 STROKES = {
     "\u0300": (((-0.13, 0.74), (0.07, 0.61)),),  # grave
@@ -80,18 +81,19 @@ def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint32]:
     if pitch and len(line) > 1:
         return np.hstack([_coverage(character, size, pitch) for character in line])
     line, accents = _without_accents(line)
-    width, height, natural = _width(line, size, pitch), _line_height(size), _font(size).getlength(line)
-    if width == 0:
+    natural, height = _font(size).getlength(line), _line_height(size)
+    width = pitch or int(np.ceil(natural))  # of one character, or of a line without a pitch
+    if width == 0 or not line:
         return np.zeros((height, 0), np.uint32)
     image = Image.new("L", (max(width, int(np.ceil(natural))), height))
-    place = (image.width - natural) / 2 if pitch else 0
+    place = (image.width - natural) / 2 if pitch else 0  # a single character is centred in its pitch
     draw = ImageDraw.Draw(image)
     draw.text((place, 0), line, fill=255, font=_font(size))
     for index, accent in accents:
         middle = place + (_font(size).getlength(line[:index]) + _font(size).getlength(line[: index + 1])) / 2
         for stroke in STROKES[accent]:
             points = [(middle + x * size, _font(size).getmetrics()[0] - y * size) for x, y in stroke]
-            draw.line(points, fill=230, width=max(1, round(size / 12)))
+            draw.line(points, fill=ACCENT_INK, width=max(1, round(size / 12)))
     if image.width > width:  # narrow a wide character to the pitch
         image = image.resize((width, height), Image.Resampling.BILINEAR)
     coverage = np.asarray(image).astype(np.uint32) << np.uint32(24)

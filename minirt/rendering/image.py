@@ -17,7 +17,7 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.formats import png
-from minirt.formats.table import FLOAT, check_bits, check_quality, encoding, format_of
+from minirt.formats.table import FLOAT, check_bits, check_quality, format_of, told_encoding_errors
 from minirt.helpers import file_io
 from minirt.kernel.functions import copy_levels
 from minirt.kernel.machine_code.library import bound
@@ -97,14 +97,15 @@ class Image:
         """Return the bytes of a file in a format of `minirt.formats.table`; RenderError when it cannot hold the
         picture.
 
-        `bits` a channel are 8 or 16 for PNG and TIFF, or 32 for the light in a TIFF file; `quality`, from 1 to 100, is
-        for lossy formats. A PNG file carries `texts`, by their keywords.
+        `bits` a channel are 8 or 16 for PNG and TIFF, or 32 for the light in a TIFF file; None is the format's own: 8,
+        or 32 for EXR, HDR and PFM. `quality`, from 1 to 100, is for lossy formats. A PNG file, and no other, carries
+        `texts`, by their keywords.
         """
         from minirt.formats import floats, tiff
 
         bits = check_bits(name, bits)
         check_quality(name, quality)
-        with encoding("picture", name):
+        with told_encoding_errors("picture", name):
             if name == "PNG":
                 return png.encode(self.channels(bits), texts)
             if name == "TIFF" and bits != 8:

@@ -101,14 +101,19 @@ class InvisibleElements:
         return kind(**{field.name: self.value(field) for field in fields_of(kind) if field.required})
 
     def value(self, field: Any) -> Any:
+        """Return a value of a field for an element that nobody sees.
+
+        Sizes are small, points are corners of a small tetrahedron in turn, directions point backwards; others have the
+        initial value of the field, or the middle of its range.
+        """
         match field:
-            case Compound():
+            case Compound():  # `bare`: what its name alone stands for
                 value = field.check(field.parse(field.bare)) if field.bare else self.record(field.record)
             case MeshField():
                 value = field.check(field.parse(self.mesh))
             case Picture():
                 value = self.picture
-            case Lengths() if field.unit:
+            case Lengths() if field.unit:  # in scene units; without a unit, it is a share
                 value = (self.size,) * 3
             case Length() if field.unit:
                 value = self.size * (field.initial or 1.0)

@@ -115,14 +115,19 @@ def loads(text: str | bytes, lenient: bool | str = False) -> Scene:
 
 
 def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
-    """Read all lines of a file, run by run: elements, comments and blank lines."""
+    """Return all lines of a file, run by run: elements, comments and blank lines.
+
+    Errors go into the log; SceneError for a file that has no element at all.
+    """
     runs: list[Sequence[Item]] = []
-    seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
+    # Identifier: a line that has it, or seems to mean it; the first one, of kinds that may stand once.
+    seen: dict[str, int] = {}
     if log.lenient:
         from minirt.scene import dialects
 
         colours = dialects.colours_of_materials(sources)
     for start in range(0, len(sources), PAGE_LENGTH):
+        # The fast reader leaves lines that it cannot read as None. Only for a long file does it load compiled code.
         block: Any = fast.read(sources[start : start + PAGE_LENGTH], len(sources))
         seen.update((kind.code, start + 1) for kind in kinds_of(block) if issubclass(kind, Element))
         if isinstance(block, Crowd):

@@ -170,6 +170,13 @@ def test_text_has_the_pitch_of_the_wrapper() -> None:
     assert not drawn[70:].any()
 
 
+def test_a_ligature_has_one_pitch() -> None:
+    pixels = np.zeros((30, 100, 4), np.uint8)
+    assert draw_text(pixels, 0, 5, "aœb", 0xFFFFFF, pitch=10)[0] == 30
+    cells = pixels[..., :3].any(axis=(0, 2))[:50].reshape(5, 10)
+    assert cells.any(axis=1).tolist() == [True] * 3 + [False] * 2
+
+
 def test_text_is_blended_with_the_pixels_below() -> None:
     black = np.zeros((40, 100, 4), np.uint8)
     grey = np.full((40, 100, 4), 100, np.uint8)

@@ -383,7 +383,7 @@ def test_the_scene_the_history_and_pictures_have_pages(tmp_path: Path) -> None:
     user.click("samples")
     user.click("samples 64")
     assert user.session.refinement.samples == 64
-    user.click("Picture")
+    user.click("Picture, film")
     user.click("save")
     assert load(tmp_path / "scene.rt").scene.spheres[0].diameter == 5
 
@@ -421,7 +421,7 @@ def finished(user: User) -> str:
 def test_a_film_is_that_of_the_command_line_and_can_be_stopped(suffix: str, tmp_path: Path) -> None:
     (tmp_path / "scene.rt").write_text(TEXT)
     user = User(load(tmp_path / "scene.rt").scene, (640, 480))
-    user.click("Picture")
+    user.click("Picture, film")
     user.click("format")
     user.click(f"format {suffix}")
     x, y = user.place("pictures")

@@ -140,8 +140,12 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 
 class Bins:
     """The shapes in the cells of a grid of directions from a point: when it moves they are binned anew, in the same
-    arrays. There is to be room for some copies of its lists, all of at most `largest` bytes. Radius, reach, lean and
-    extents are those of `minirt.kernel.binning.BinningArrays`."""
+    arrays.
+
+    All shapes within `reach` are seen from any point within `radius` of it, both in scene units; `lean` is how far the
+    directions, not normalised, may be off those of a cell. `extents`, (n, 4) float32, receive bounds of the shapes'
+    coordinates, or have no rows. There is to be room for `copies` of the lists, all of at most `largest` bytes.
+    """
 
     copies, largest = 1, system.UNLIMITED
     last: tuple[Any, ...] = ()  # the pose and the planes that the lists are for
@@ -179,9 +183,9 @@ class Bins:
             rectangles=np.empty((room, 4), np.int32),
             used=np.zeros(chunks + 1, np.int64),
             cones=cones,
-            cone_bits=cones.view(np.int64),
-            sides=np.zeros(planes, np.int64),
-            found=np.zeros(2, np.int64),
+            cone_bits=cones.view(np.int64),  # the same memory, as integers
+            sides=np.zeros(planes, np.int64),  # of each plane, on which the point lies
+            found=np.zeros(2, np.int64),  # members of all lists, and planes whose side changed
             extents=extents,
         )
         self.counter, self.entries = np.zeros(1, np.int64), np.empty((2, room), np.int64)

@@ -172,7 +172,7 @@ def rectangles(camera: Camera, size: tuple[int, int], boxes: np.ndarray) -> np.n
 def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = False) -> Camera | None:
     """Return the first camera that shows most of the bounded shapes, if there are any; None where none shows one.
 
-    `straight`: prefer the direction of the scene's camera.
+    `straight`: rather one with the direction of the scene's camera, if that shows any.
     """
     arrays = arrays_of(scene)
     if not arrays or not len(arrays.shapes):
@@ -184,6 +184,8 @@ def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = Fals
     cameras = candidates(scene.camera, (x, y, z), dist(low, high) / 2 or 1.0, size[1] / size[0], straight)
     cameras = cameras[: max(1, TESTS // (len(MANY) * len(arrays.slots)))]
     shown = [wanted[visible_shapes(arrays, camera, size)].sum() for camera in cameras]
+    if straight and shown[0]:
+        return cameras[0]
     return cameras[np.argmax(shown)] if max(shown, default=0) else None
 
 

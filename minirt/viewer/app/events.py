@@ -84,6 +84,11 @@ class EventDispatcher:
                 pass
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if not self.choosing.row_at(x, y) and screen.tool_at(x, y):
                 self.use_tool(x, y)
+            case Event.BUTTON_PRESS, (Button.RIGHT | Button.MIDDLE, x, y) if screen.tool_at(x, y):
+                pass  # what lies behind the tool is not meant
+            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if field := screen.field_at(session.state, x, y):
+                session.show(session.state.with_active(field))
+                self.typing.begin("=")
             case Event.MOTION_NOTIFY, (x, y):
                 if self.choosing.takes_motion(x, y):
                     return
@@ -119,6 +124,7 @@ class EventDispatcher:
                 self.on_character(character)
             return
         session.keymap.follow(session.window.letter_at)
+        session.screen.tool = None
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
         if help_takes(session, code, pressed) or self.typing.takes(code) or self.choosing.takes(code, pressed):
@@ -168,7 +174,7 @@ class EventDispatcher:
         self.session.update()
 
     def on_tick(self) -> None:
-        """A sixtieth of a second passed while a key is held or words wait for their picture."""
+        """A sixtieth of a second passed while a key is held, the panel is busy, or words wait for their picture."""
         advance(self.session)
         if self.panel and self.panel.is_busy:
             self.panel.frame()
@@ -236,7 +242,7 @@ class EventDispatcher:
     def toggle_panel(self, has_keys: bool = True) -> None:
         """Open the panel, which then `has_keys`, or close it; slimgui is imported when it opens first."""
         session = self.session
-        session.screen.has_tab = False
+        session.screen.has_tab, session.screen.help = False, 0
         try:
             if not session.window.has_overlay:
                 raise ImportError
@@ -253,12 +259,13 @@ class EventDispatcher:
     def as_hook(self, handler: Callable[..., object]) -> Callable[..., object]:
         """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.
 
-        After it, the event loop ticks while a key is held or words wait, and sleeps until the next event otherwise.
+        After it, the event loop ticks while a key is held, the panel is busy or words wait for their picture; otherwise
+        it sleeps until the next event.
         An error is shown, and only one of the window system ends the window: nothing that a file holds does.
         """
 
         def hook(*arguments: object) -> None:
-            session, panel = self.session, self.panel
+            session, panel = self.session, self.panel  # not a panel that the handler makes: that one shows itself
             try:
                 handler(*arguments[:-1])
             except MlxError:

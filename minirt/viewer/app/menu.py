@@ -22,6 +22,7 @@ MENU = {  # its rows: actions, and what they are called there
     "look through": "look through",
     "focus": "focus here",
     "explain pixel": "explain this pixel",
+    "toggle panel": "panel: values, picture, film",
     "undo": "undo",
     "redo": "redo",
 }

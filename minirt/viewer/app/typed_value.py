@@ -10,7 +10,7 @@ from minirt.scene.names import LONGEST, element_name, own_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox
 from minirt.viewer.editing.structure import rename
-from minirt.viewer.editing.typed import CHARACTERS, set_typed
+from minirt.viewer.editing.typed import CHARACTERS, set_typed, value_for
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 NAME = "# "  # begins a name that is typed, as it does in the file
@@ -64,14 +64,14 @@ class Typing:
             if is_name:
                 session.show(rename(session.state, text.removeprefix(NAME)))
             else:
-                session.show(set_typed(session.state, session.state.active, text, session.now))
+                session.show(set_typed(session.state, value_for(session.state, text), text, session.now))
         return True
 
     def show(self, text: str) -> None:
         """Show what is typed; nothing if it is empty."""
         session = self.session
         self.text = text
-        active = session.state.active
+        active = value_for(session.state, text)
         also = "1 2 3: all three" if isinstance(active.get(session.state.element), tuple) else "+= -= *= /=: relative"
         hint = f"{active.name}: {text}_    Enter: set it    Esc: leave it    {also}"
         if text.startswith(NAME):

@@ -6,6 +6,7 @@ import textwrap
 from enum import IntEnum
 
 from minirt.element import fields_of
+from minirt.fields import Field
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
 from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
@@ -49,8 +50,7 @@ def draw_hud(pixels: Pixels, state: State, shown: Painted | None, level: HudLeve
     keys = hints(state, every=level == HudLevel.ALL)
     if level == HudLevel.LINE:
         rendered = f"{GAP}{status(shown)}" if shown else ""
-        words = f"{fitting_words(state, width - measure(GAP + translated(keys), size)[0], size)}{GAP}"
-        line = fit_width(words + translated(keys + rendered), width, size)
+        line = fit_width(f"{fitting_words(state, width, size)}{GAP}{translated(keys + rendered)}", width, size)
         draw_lines(pixels, MARGIN, line, TEXT_COLOUR, size)
         return 0
     position = f"element {state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
@@ -68,15 +68,28 @@ def draw_hud(pixels: Pixels, state: State, shown: Painted | None, level: HudLeve
 
 
 def fitting_words(state: State, width: int, size: int) -> str:
-    """Return the title of the selected element, its active value, and as many others as fit on a line."""
+    """Return the title of the selected element, its active value, and as many others as fit on a line with the keys."""
     first, *others = values_in_words(state)
     words = f"{title_in_words(state.element)}, {first}"
+    room = width - measure(GAP + translated(hints(state, every=False)), size)[0] - 2 * MARGIN
     for value in others:
         longer = f"{words}, {value}"
-        if measure(longer, size)[0] > width - 2 * MARGIN:
+        if measure(longer, size)[0] > room:
             break
         words = longer
     return words
+
+
+def field_at(state: State, x: int, y: int, width: int, size: int) -> Field | None:
+    """Return the field whose value is at a pixel of the line on top of a window of a width; None beside the values."""
+    line, words = fitting_words(state, width, size), title_in_words(state.element)
+    for value, field in values_in_words(state).items():
+        start = MARGIN + measure(f"{words}, ", size)[0]
+        words = f"{words}, {value}"
+        end, bottom = MARGIN + measure(words, size)[0], MARGIN + measure(words, size)[1] + PADDING
+        if start <= x < end and y < bottom and line.startswith(words):
+            return field
+    return None
 
 
 def last_lines(text: str, count: int) -> str:

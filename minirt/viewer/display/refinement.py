@@ -115,7 +115,7 @@ class AdaptiveResolution:
         self._trial_interval = TRIAL_INTERVAL
 
     def record(self, outcome: Painted) -> None:
-        """Record the time of a picture that was finished, or was cancelled and would have taken longer."""
+        """Record the time of a picture that was finished, or was cancelled after more than the median time."""
         job, cost = outcome.job, 4 * outcome.seconds / prod(outcome.job.shape)  # of a pixel, which has four bytes
         if job.samples > 1:
             return
@@ -129,7 +129,7 @@ class AdaptiveResolution:
             self._costs.clear()
             self._measured = job.divisor
         self._costs.append(cost)
-        if not job.urgent:
+        if not job.urgent:  # nothing moves: the next movement begins with the resolution of this picture
             self._chosen, self._candidates, self._trial_interval = job.divisor, 0, TRIAL_INTERVAL
 
     @property

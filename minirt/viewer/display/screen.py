@@ -14,6 +14,7 @@ from itertools import zip_longest
 
 import numpy as np
 
+from minirt.fields import Field
 from minirt.mlx import Mlx, MlxImage, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
@@ -32,7 +33,7 @@ from minirt.viewer.language import translated
 TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow window
 # Shown until the first edit; the keys are the same on all keyboards.
 TIPS = """drag an object to move it, or nothing to look around    wheel: zoom    right drag: turn around
-right click: add, copy, delete and more
+right click: add, copy, delete and more    click on a value in the line on top: type it
 H: all keys    F1: panel    Ctrl+Z: undo    Ctrl+S: save    Esc: quit"""
 BEYOND = "not on the picture of the whole window"
 GRID_COLOUR = (84, 75, 68, 255)  # BGRA
@@ -103,6 +104,11 @@ class Screen:
         """Return the tool of the tool row at a pixel, None beside it."""
         is_shown = self.handles and self.level and not self.help
         return tool_at(x, y, *self.size, self.scale) if is_shown else None
+
+    def field_at(self, state: State, x: int, y: int) -> Field | None:
+        """Return the field whose value the line on top shows at a pixel, None beside the values."""
+        is_shown = self.level == HudLevel.LINE and not self.help and not self.list_box
+        return overlay.field_at(state, x, y, self.size[0], self.text_size) if is_shown else None
 
     @property
     def tools_width(self) -> int:

@@ -24,8 +24,11 @@ def title_in_words(element: Element) -> str:
     return translated("{colour} {element}").format(colour=translated(colour_word(colour)), element=title)
 
 
-def values_in_words(state: State) -> list[str]:
-    """Return the values of the selected element with their titles, the active one first, those at their default not."""
+def values_in_words(state: State) -> dict[str, Field]:
+    """Return the values of the selected element with their titles, the active one first, those at their default not.
+
+    They are the keys: each stands for a field.
+    """
     element, active = state.element, state.active
     fields = [
         field
@@ -33,7 +36,7 @@ def values_in_words(state: State) -> list[str]:
         if field == active.field or not field.keyed or getattr(element, field.name) != field.default
     ]
     fields.sort(key=lambda field: (field != active.field, order(field)))
-    return [value_in_words(state, field) for field in fields]
+    return {value_in_words(state, field): field for field in fields}
 
 
 def order(field: Field) -> int:

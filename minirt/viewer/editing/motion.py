@@ -59,18 +59,19 @@ def move(state: State, element: Element, axis: Triple, distance: float, kind: st
 
 
 def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kind: str, now: float) -> State:
-    """Turn the selected elements from what they were when the primary one was `element`, about axes of the view or the
-    one of the frame. Several turn about the place of the primary one.
+    """Turn the selected elements from what they were when the primary one was `element`; several turn about its place.
 
-    turns: the number of an axis in `camera_frame`, and the angle in degrees by which the front goes right about UPWARD,
-    up about RIGHT, or clockwise about FORWARD.
+    `turns` are about axes of the view: the number of an axis in `camera_frame`, and the angle in degrees by which the
+    side that faces the camera goes right about UPWARD, up about RIGHT, or clockwise about FORWARD. Where `state.frame`
+    names an axis of the world, all turns are about that one, right-handed. Turns of the same `kind` that follow each
+    other soon are undone together; `now` is the time in seconds.
     """
     if not can_turn(element) and not state.others:
         return state.with_message(f"{element.title} looks the same from all sides: nothing to turn")
     camera, world = state.scene.camera, WORLD_AXES.get(state.frame)
     rotations: list[tuple[Triple, float]] = []
     for axis, angle in turns:
-        # Seen from the camera, only up is opposite to the right-handed rotation.
+        # Right-handed rotations turn that side right about UPWARD and clockwise about FORWARD, but down about RIGHT.
         seen = handedness(camera) * (-angle if axis == RIGHT else angle)
         rotations.append((world, angle) if world else (turn_axis(camera, axis), seen))
     return rotate_all(state, element, rotations, kind, now)

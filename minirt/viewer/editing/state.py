@@ -9,7 +9,7 @@ from operator import indexOf
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of
-from minirt.fields import Whole
+from minirt.fields import Field, Whole
 from minirt.scene import Camera, Scene
 from minirt.viewer.editing.projection import STEP_SHARE, Aim, scene_size
 from minirt.viewer.editing.values import Value, nice_number, round_changes, values
@@ -79,6 +79,11 @@ class State:
         """The value of the selected element that keys increase and decrease."""
         all_values = values(self.element)
         return all_values[self.value_index % len(all_values)]
+
+    def with_active(self, field: Field) -> State:
+        """The state in which the first value of a field of the element is the active one."""
+        index = next((at for at, each in enumerate(values(self.element)) if each.field == field), self.value_index)
+        return replace(self, value_index=index)
 
     @property
     def stride(self) -> float:

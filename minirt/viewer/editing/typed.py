@@ -3,7 +3,8 @@
 3.5 or 3,5       that value; a comma where one number is expected is a decimal comma
 -3               a negative number
 2*3+1  (1+2)/4   the result
-1,2,3  1 2 3     three numbers for a colour, sizes, a position or a direction, even if one part of it is active
+1,2,3  1 2 3     three numbers for a colour, sizes, a position or a direction, even if one part of it is active;
+                 in the picture they are the position where one number is active
 *=2  +=0.5       the present value times 2, or plus 0.5; also -= and /=
 
 In the picture a digit begins a value, and = any other one: =-3, =+=0.5.
@@ -19,7 +20,7 @@ from typing import Any
 
 from minirt.element import Element
 from minirt.errors import ElementError, FieldError
-from minirt.fields import Colour, Direction, Three, Whole
+from minirt.fields import Colour, Direction, Point, Three, Whole
 from minirt.fields.scalars import found, number
 from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
@@ -56,6 +57,14 @@ def with_value(state: State, value: Value, new: Callable[[Element, Value], Any],
             after = element.replace(**{own.field.name: whole.replaced(element, given)})
             changed[index] = keep_standing(primary, element, after)
     return state.end_merging().edit_elements(changed, f"typed {value.name}", now).end_merging()
+
+
+def value_for(state: State, text: str) -> Value:
+    """The value that a typed text is for: the active one; where that is one number, the position for three of them."""
+    active = state.active
+    is_for_place = not isinstance(active.get(state.element), tuple) and three_words(text.removeprefix("="))
+    places = [each for each in values(state.element) if isinstance(each.leaf, Point)]
+    return places[0]._replace(channel=None) if is_for_place and places else active
 
 
 def is_like(one: Value, other: Value) -> bool:

@@ -86,7 +86,7 @@ class Pages:
     def picture(self) -> None:
         """Show the buttons that save the picture and the scene, and the settings of a film of a turntable."""
         self.rows.gui.buttons(BUTTONS)
-        imgui.separator_text(translated("turntable"))
+        imgui.separator_text(translated("film"))
         self._format = self.rows.option("format", FILMS, self._format) or self._format
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
         if FILMS[self._format].is_lossy:

@@ -42,7 +42,7 @@ class Panel(Gui):
             translated("Elements"): elements.show,
             translated("Scene"): self._pages.scene,
             translated("History"): self._pages.history,
-            translated("Picture"): self._pages.picture,
+            translated("Picture, film"): self._pages.picture,
         }
 
     def open(self, is_open: bool, has_keys: bool) -> None:
@@ -97,7 +97,7 @@ class Panel(Gui):
                         show()
                     imgui.end_child()
                     imgui.end_tab_item()
-            if imgui.tab_item_button(">###close", imgui.TabItemFlags.TRAILING):
+            if imgui.tab_item_button("x###close", imgui.TabItemFlags.TRAILING):
                 self.wanted = "toggle panel"
             self.hint("close the panel")
             imgui.end_tab_bar()

@@ -9,11 +9,15 @@ import numpy as np
 import pytest
 
 from minirt.fields import Triple
+from minirt.mlx.text import measure
 from minirt.scene import Scene, dump
+from minirt.shapes import Sphere
 from minirt.viewer.app.session import Session
+from minirt.viewer.display.lists import MARGIN
 from minirt.viewer.display.marks import arrow_tip, arrows
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.screen import darken_beyond
+from minirt.viewer.display.words import title_in_words, values_in_words
 from minirt.viewer.editing.colours import COLOURS, colour_word
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.typed import set_typed
@@ -93,6 +97,33 @@ def test_a_sum_with_blanks_is_one_number(text: str, number: float) -> None:
     sphere = initial_state(scene()).select(3)
     assert typed(sphere, "centre: y", text).element.centre == (0, number, 0)
     assert typed(sphere, "diameter", text).element.diameter == number
+
+
+def test_three_numbers_are_the_position_where_one_number_is_active() -> None:
+    session = played("resize 640x480", "press Tab", *(f"text {each}" for each in "8,4,-3"), "press Return", text=PAIR)
+    assert session.state.scene.lights[0].position == (8.0, 4.0, -3.0)
+    assert session.state.scene.lights[0].brightness == 0.6
+
+
+@pytest.mark.parametrize(("beside", "is_on_it"), [((0, -4), False), ((0, 4), True), ((1, -4), True), ((1, 4), False)])
+def test_a_click_on_a_value_of_the_line_on_top_begins_to_type_it(beside: tuple[int, int], is_on_it: bool) -> None:
+    """`beside`: columns from the start (0) or the end (1) of the words of the value."""
+    lines = "resize 1280x720", "press Tab", "press Tab"
+    session = played(*lines, text=PAIR)
+    shown = [title_in_words(session.state.element), *values_in_words(session.state)]
+    index = next(at for at, value in enumerate(shown) if value.startswith("centre"))
+    ends = ", ".join(shown[:index]) + ", ", ", ".join(shown[: index + 1])
+    column = MARGIN + measure(ends[beside[0]], session.screen.text_size)[0] + beside[1]
+    typed_text = (*(f"text {each}" for each in "4,2,1"), "press Return")
+    session = played(*lines, f"click {column},{MARGIN + 5}", *typed_text, text=PAIR)
+    sphere = next(each for each in session.state.scene.shapes if isinstance(each, Sphere))
+    assert (sphere.centre == (4, 2, 1)) == is_on_it
+
+
+def test_a_right_click_on_a_tool_is_none_on_what_lies_behind_it() -> None:
+    session = play("resize 640x480", "press Tab", "click 8,240 right")
+    assert session.state.selected == play("resize 640x480", "press Tab").state.selected
+    assert session.screen.list_box is None
 
 
 @pytest.mark.parametrize("text", ["-3 -4 0", "-0.6 -0.8 0", "-300,-400,0"])
