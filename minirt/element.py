@@ -52,7 +52,7 @@ class Record(Immutable):
     """Values of declared fields. ElementError if one is out of range."""
 
     title: ClassVar[str]  # its name in messages and documentation
-    other_names: ClassVar[Mapping[str, Iterable[str]]] = {
+    _other_names: ClassVar[Mapping[str, Iterable[str]]] = {
         "size": ("sizes", "diameter", "side", "scale"),
         "radius": ("diameter",),
         "position": ("centre", "apex", "vertex", "point"),

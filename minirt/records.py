@@ -91,7 +91,7 @@ class Immutable:
     """Base class of records: the methods of a frozen dataclass. Defaults are values, and not shown by `repr`."""
 
     __signature__ = FieldSignature()
-    other_names: ClassVar[Mapping[str, Iterable[str]]] = {}  # of fields in other programs, by the names here
+    _other_names: ClassVar[Mapping[str, Iterable[str]]] = {}  # of fields in other programs, by the names here
 
     def __init__(self, *values: Any, **named: Any) -> None:
         positional, defaults = parameters(type(self))
@@ -103,7 +103,7 @@ class Immutable:
             or any(value is MISSING for value in complete.values())
         ):
             for name in set(named).difference(defaults):
-                meant = next((each for each in self.other_names.get(name, ()) if each in defaults), "")
+                meant = next((each for each in self._other_names.get(name, ()) if each in defaults), "")
                 found = hint(meant) or did_you_mean(name, defaults)
                 raise TypeError(f"{type(self).__name__} has no field {name!r}{found}")
             type(self).__signature__.bind(*values, **named)  # TypeError, which says what is wrong

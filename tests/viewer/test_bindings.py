@@ -242,6 +242,10 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next view": ((), lambda _, after: after.refinement.latest.job.view == "normals"),
     "focus": ((f"move {AT_SPHERE}",), focused),
     "choose colour": (SPHERE, lambda _, after: "as it is" in getattr(after.screen.list_box, "rows", ())),
+    "choose second colour": (
+        (*SPHERE, "press M", *(f"press {letter}" for letter in "CHECKER"), "press Return"),
+        lambda _, after: getattr(after.screen.list_box, "title", "").startswith("checker colour"),
+    ),
     "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
     "add": ((), lambda _, after: isinstance(after.state.element, Sphere) and len(after.state.scene.spheres) == 2),
     "add previous": (

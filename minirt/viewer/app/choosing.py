@@ -20,7 +20,7 @@ from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
 from minirt.viewer.display.lists import MARGIN, WHEEL, ListBox, layout_of
 from minirt.viewer.editing import structure
-from minirt.viewer.editing.colours import COLOUR, colours
+from minirt.viewer.editing.colours import COLOUR, SECOND_COLOUR, colours, colours_of
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import GAP, searchable, translated
 
@@ -29,13 +29,14 @@ LISTS = {  # actions that open a list of states, and the kind of the change that
     **dict.fromkeys(ADDING, structure.ELEMENT),
     "add attribute": structure.ATTRIBUTE,
     "choose colour": COLOUR,
+    SECOND_COLOUR: COLOUR,
 }
 TITLES = {  # of these lists, and what is said where they are empty
     structure.ELEMENT: ("element", ""),
     structure.ATTRIBUTE: ("attribute", "{} has no attribute that can be added"),
     COLOUR: ("colour", "{} has no colour"),
 }
-HINT = "type, arrows, click or Enter    Esc: none"
+HINT = "preview    click or Enter: keep it    Esc: none"
 
 
 class ListRow(NamedTuple):
@@ -70,6 +71,9 @@ class Choosing:
         """Add the first choice of an action of LISTS, or by keys an element of the kind that was added last."""
         group = LISTS[action]
         title, complaint = TITLES[group]
+        if action == SECOND_COLOUR and (others := colours_of(state.element)[1:]):
+            state = state.with_active(others[0])
+            title = state.active.name
         choices = list(colours(state) if group == COLOUR else structure.choices(state, group))
         if not choices:
             self.session.show(state.with_message(complaint.format(state.element.title)))

@@ -110,6 +110,7 @@ class EventDispatcher:
         assert tool
         self.typing.end()
         self.choosing.end()
+        session.screen.tool = None  # its name would cover a list
         if tool.handles:
             session.screen.handle_kind = "" if session.screen.handle_kind == tool.handles else tool.handles
             session.refresh()

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from minirt.fields import Triple
 from minirt.scene import Camera
 from minirt.shapes import Shape
-from minirt.viewer.editing.colours import colour_value
+from minirt.viewer.editing.colours import SECOND_COLOUR, colour_value, colours_of
 from minirt.viewer.editing.state import State
 
 OPEN_MENU = "open menu"  # the action that opens the list of what can be done
 MENU = {  # its rows: actions, and what they are called there
     "add": "add here >",
     "choose colour": "colour >",
+    SECOND_COLOUR: "second colour >",
     "add attribute": "add an attribute >",
     "duplicate": "duplicate",
     "delete": "delete",
@@ -33,10 +34,12 @@ def menu_of(state: State, point: Triple | None) -> Iterator[str]:
     element = state.element
     without = {
         "choose colour": colour_value(element) is None,
+        SECOND_COLOUR: len(colours_of(element)) < 2,
         "delete": element.required,
         "drop": not isinstance(element, Shape) or element.infinite,
         "look through": not isinstance(element, Camera) or element is state.scene.camera,
         "focus": point is None,
+        "toggle panel": not isinstance(element, Camera),
         "undo": not state.undo_stack,
         "redo": not state.redo_stack,
     }

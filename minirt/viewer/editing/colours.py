@@ -13,6 +13,7 @@ from minirt.viewer.editing.values import Value, values
 
 GREY = 0.15  # saturation, or brightness, below which a colour is a grey
 HUES = 5  # brightnesses that are as far from each other as the two ends of the circle of hues
+SECOND_COLOUR = "choose second colour"  # the action that gives the colour of a pattern
 COLOUR = "colour"  # kind of the changes that give colours by words, see `State.change`
 COLOURS: dict[str, Triple] = {
     "black": (0, 0, 0),
@@ -55,8 +56,14 @@ def colour_word(colour: Triple) -> str:
 
 def colour_value(element: Element, active: Value | None = None) -> Value | None:
     """Return the active value if it is a colour, or else the first colour of an element; None where it has none."""
-    every = [each for each in (active, *values(element)) if each and isinstance(each.leaf, Colour)]
-    return every[0]._replace(channel=None) if every else None
+    is_colour = active is not None and isinstance(active.leaf, Colour)
+    every = [active, *colours_of(element)] if is_colour else colours_of(element)
+    return every[0]._replace(channel=None) if every and every[0] else None
+
+
+def colours_of(element: Element) -> list[Value]:
+    """Return the colours of an element: its own, and those of its patterns."""
+    return [*dict.fromkeys(each._replace(channel=None) for each in values(element) if isinstance(each.leaf, Colour))]
 
 
 def own_colour(element: Element) -> Triple | None:

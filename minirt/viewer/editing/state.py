@@ -80,9 +80,12 @@ class State:
         all_values = values(self.element)
         return all_values[self.value_index % len(all_values)]
 
-    def with_active(self, field: Field) -> State:
-        """The state in which the first value of a field of the element is the active one."""
-        index = next((at for at, each in enumerate(values(self.element)) if each.field == field), self.value_index)
+    def with_active(self, wanted: Field | Value) -> State:
+        """The state in which the first value of a field of the element, or the first part of a value, is active."""
+        every = enumerate(values(self.element))
+        index = next(
+            (at for at, each in every if wanted in (each.field, each._replace(channel=None))), self.value_index
+        )
         return replace(self, value_index=index)
 
     @property

@@ -184,7 +184,7 @@ def test_an_element_without_attributes_has_no_list_of_them() -> None:
         ("=*=", "must be a number"),
         ("1.2.3", "must be a number"),
         ("=/=0", "divided by 0"),
-        ("1,2,3", "takes one number"),
+        ("1,2,3,4", "takes one number"),
         ("=", "must be a number"),
     ],
 )

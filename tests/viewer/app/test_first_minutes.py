@@ -99,6 +99,15 @@ def test_a_sum_with_blanks_is_one_number(text: str, number: float) -> None:
     assert typed(sphere, "diameter", text).element.diameter == number
 
 
+@pytest.mark.parametrize("key", ["U", "Shift+U"])
+def test_each_of_two_colours_has_a_list(key: str) -> None:
+    text = PAIR.replace("255,0,0", "255,0,0 checker:0.5,9,9,9")
+    keys = ["down Shift", "press U", "up Shift"] if "+" in key else ["press U"]
+    session = played("press Tab", "press Tab", *keys, *(f"press {each}" for each in "WHITE"), "press Return", text=text)
+    ball = session.state.scene.spheres[0]
+    assert (ball.colour, ball.checker.colour) == ((255, 0, 0), (255,) * 3) if "+" in key else ((255,) * 3, (9, 9, 9))
+
+
 def test_three_numbers_are_the_position_where_one_number_is_active() -> None:
     session = played("resize 640x480", "press Tab", *(f"text {each}" for each in "8,4,-3"), "press Return", text=PAIR)
     assert session.state.scene.lights[0].position == (8.0, 4.0, -3.0)

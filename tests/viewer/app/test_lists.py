@@ -54,11 +54,18 @@ def test_a_right_click_shows_what_can_be_done_with_the_element_there() -> None:
     assert session.state.scene.items == scene().items
     box = box_of(session)
     assert (box.title, box.place) == ("sphere 1", AT_SPHERE)
-    assert set(box.rows) == {*MENU.values()} - {"look through", "undo", "redo"}
+    assert set(box.rows) == {*MENU.values()} - {
+        "look through",
+        "undo",
+        "redo",
+        "second colour >",
+        "panel: values, picture, film",
+    }
     assert box.keys[box.rows.index("duplicate")] == "Ctrl+D"
     nothing = play("press Tab", right_click(NOWHERE))
     assert nothing.state.element is nothing.state.scene.camera
     assert {"delete", "drop onto what lies beneath", "focus here"}.isdisjoint(rows(nothing))
+    assert "panel: values, picture, film" in rows(nothing)
     edited = play("press Tab", "press Tab", "press D", right_click(AT_SPHERE))
     assert "undo" in rows(edited)
     assert not rows(play("drag 320,240 400,300 right"))  # which looks around
