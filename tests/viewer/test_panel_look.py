@@ -210,7 +210,7 @@ def test_the_picture_is_centred_in_what_the_panel_leaves_and_nothing_of_it_is_hi
     assert size[0] * 2 // 5 <= left == session.screen.size[0] < size[0]
     assert session.refinement.latest.job.size == (left, size[1])
     colour = np.array(colour_of(session.state.scene)[:3])
-    assert (session.screen.frame[-1, :left, :3] == colour - colour // 4).all()  # not on the picture of the whole window
+    assert (session.screen.frame[-1, :left, :3] == colour - colour // 4).all()  # outside of the saved picture
     assert not session.screen.frame[-1, left:, :3].any()
     assert session.view.pixel((0, 0, 0)) == pytest.approx((left / 2, size[1] / 2))  # the sphere
     memory.click(left // 2, size[1] // 2)
