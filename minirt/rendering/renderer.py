@@ -129,10 +129,11 @@ class Renderer:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and the unclamped
         light into `linear`, float64 (h, w, 3), if given: the whole picture, or the rectangle at `crop` of a larger one.
 
-        False where `cancel` ended it early, or `is_wanted` says no. It is asked as soon as `cancel` has an effect, and
-        after the last ray: whoever first stops wanting the picture and then cancels is heard at any time. With
-        `edges_only` the pixels hold a picture of the scene, which is rendered again only where neighbours differ;
-        elsewhere the light stays as it is, too.
+        False where `cancel` ended it early, or `is_wanted` says no. That is asked twice: once `cancel` has an effect,
+        before the first ray, and after the last one; so stop wanting the picture, and then call `cancel`. With
+        `edges_only` the pixels hold a picture of the scene, and only packets of it in which neighbours differ are
+        rendered again, unless a lens or a light with a size blurs all of it; elsewhere the light stays as it is, too.
+        RenderError for a wrong number of samples, or where there is too little memory.
         """
         with self.busy:
             return self._draw(Request(scene, pixels, linear, crop), samples, is_wanted, edges_only)

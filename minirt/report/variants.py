@@ -133,20 +133,22 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     """Yield the scene without each material and each kind of shape that does nothing for its picture.
 
     The lists for culling tell what can be seen: they may hold too much, never too little. Where a mirror or glass can
-    be seen, every shape counts as seen.
+    be seen nothing is yielded. Glass that a light can see counts as used: its shadow may be seen.
     """
     packing = Packing()
     arrays = packing.pack(scene, width, height)
+    in_tiles = arrays.tile_shapes[: arrays.groups[-1].tile_starts[-1]]  # behind those is room to spare
+    listed = arrays.listed[:, 3]  # the index of each shape in the lists
     seen, lit = (
-        [scene.shapes[index] for index in arrays.listed[np.unique(each), 3].tolist()]
-        for each in (arrays.tile_shapes[: arrays.groups[-1].tile_starts[-1]], arrays.light_shapes)
+        [scene.shapes[index] for index in listed[np.unique(each)].tolist()] for each in (in_tiles, arrays.light_shapes)
     )
     used = {feature for shape in seen for feature in material_features(shape)}
+    casts_light = {feature for shape in lit if shape.glass for feature in material_features(shape)}
     if "reflective" in used:
         return
     materials = {feature for shape in scene.shapes for feature in material_features(shape)}
     for feature, words in WORDS.items():
-        if feature in materials - used:
+        if feature in materials - used - casts_light:
             kept = (without_material(each, feature) for each in scene.elements)
             yield Variant("unseen", words, "without", Scene(kept, scene.file))
     if "parallel" in features(scene):  # whose shadow rays need no list

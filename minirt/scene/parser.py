@@ -60,9 +60,9 @@ def load(
 def load_for_window(
     path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False, new: bool = False
 ) -> tuple[Reading, SceneError | None]:
-    """Read a scene file, leniently where it is in a dialect that a strict reader refuses, whose error is returned, too.
+    """Read a scene file as asked. If that fails on a dialect, read it leniently, and return the first error, too.
 
-    SceneError for other errors, such as a number out of range or a second camera.
+    SceneError where no line is in a dialect, or where the file is no scene even so.
     """
     try:
         return load(path, lenient, left_handed, new), None
@@ -71,6 +71,7 @@ def load_for_window(
 
         with suppress(SceneError):
             reading = load(path, True, left_handed, new)
+            # Some notices are of other ways to write, and not of mistakes.
             if any(notice.message.startswith(DIALECT) for notice in reading.notices):
                 return reading, error
         raise

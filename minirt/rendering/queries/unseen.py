@@ -85,12 +85,17 @@ def is_lit(scene: Scene) -> bool:
 
 
 def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
-    """Return which shape the eye is in, if there are others outside of it or the picture is even; else ''."""
-    eye, bounded, (starts, ends) = np.array(scene.camera.position), is_bounded(arrays), arrays.boxes.swapaxes(0, 1)
+    """Return a sentence about the shape that the eye is in, or nothing.
+
+    Where the picture is not even that is one of no glass that has others wholly outside of it.
+    """
+    eye, bounded = np.array(scene.camera.position), is_bounded(arrays)
+    starts, ends = arrays.boxes[:, 0], arrays.boxes[:, 1]
     for index in np.flatnonzero(~bounded | ((starts <= eye) & (eye <= ends)).all(axis=1)).tolist():
         shape, name = arrays.shapes[index], shape_name(scene, index)
-        if flat := shape.flat():
-            distance = abs(np.dot(np.subtract(eye, flat[0]), flat[1]))
+        if plane := shape.flat():
+            point, normal = plane
+            distance = abs(np.dot(np.subtract(eye, point), normal))
             if is_even and distance <= IN_PLANE * (1 + np.abs(eye).max()):
                 return f"the eye is in {name}"
         elif encloses(shape, eye):

@@ -20,7 +20,7 @@ from minirt.viewer.app.typed_value import ENTER
 from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding, keys_of
 from minirt.viewer.display.lists import MARGIN, WHEEL, ListBox, layout_of
 from minirt.viewer.editing import structure
-from minirt.viewer.editing.colours import COLOUR, SECOND_COLOUR, colours, colours_of
+from minirt.viewer.editing.colours import COLOUR, SECOND_COLOUR, colours, colours_of, next_colour
 from minirt.viewer.editing.state import State
 from minirt.viewer.language import GAP, searchable, translated
 
@@ -71,9 +71,9 @@ class Choosing:
         """Add the first choice of an action of LISTS, or by keys an element of the kind that was added last."""
         group = LISTS[action]
         title, complaint = TITLES[group]
-        if action == SECOND_COLOUR and (others := colours_of(state.element)[1:]):
-            state = state.with_active(others[0])
-            title = state.active.name
+        if group == COLOUR and (every := colours_of(state.element)):
+            state = state.with_active(next_colour(state) if action == SECOND_COLOUR else every[0])
+            title = state.active.name.partition(":")[0]  # of all three parts
         choices = list(colours(state) if group == COLOUR else structure.choices(state, group))
         if not choices:
             self.session.show(state.with_message(complaint.format(state.element.title)))

@@ -108,7 +108,7 @@ def open_session(
             wanted = size or size_of(scene)
             fitting = min(wanted[0], screen[0]), min(wanted[1], screen[1])
             session = Session(mlx, display, scene, path, fitting, renderer, BackgroundPainter, **options)
-            EventDispatcher(session)
+            EventDispatcher(session)  # which becomes the hooks of the window
             session.screen.tips = session.screen.handles = True
             mlx.mlx_set_window_icon(session.window, application_icons())
             return session

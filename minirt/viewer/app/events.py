@@ -86,9 +86,10 @@ class EventDispatcher:
                 self.use_tool(x, y)
             case Event.BUTTON_PRESS, (Button.RIGHT | Button.MIDDLE, x, y) if screen.tool_at(x, y):
                 pass  # what lies behind the tool is not meant
-            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if field := screen.field_at(session.state, x, y):
-                session.show(session.state.with_active(field))
-                self.typing.begin("=")
+            case Event.BUTTON_PRESS, (Button.LEFT, x, y) if self.is_on_line(x, y):
+                if field := screen.field_at(session.state, x, y):  # beside the values a click does nothing
+                    session.show(session.state.with_active(field))
+                    self.typing.begin("=")
             case Event.MOTION_NOTIFY, (x, y):
                 if self.choosing.takes_motion(x, y):
                     return
@@ -101,6 +102,12 @@ class EventDispatcher:
                     session.refresh()
             case _:
                 handler(*arguments)
+
+    def is_on_line(self, x: int, y: int) -> bool:
+        """Whether a pixel is on the line on top, and on no list or icon there."""
+        session = self.session
+        is_free = not self.choosing.is_open and session.screen.is_on_line(session.state, x, y)
+        return is_free and not self.mouse.icon_at(x, y)
 
     def use_tool(self, x: int, y: int) -> None:
         """Use the tool at a pixel; an open list or a typed value is closed first, and a tool that opens a list does no

@@ -14,7 +14,7 @@ from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import Binding
 from minirt.viewer.display.marks import LENGTH as ARROW_LENGTH
-from minirt.viewer.display.marks import SIZE, arrow_tip, arrows, visible_icons
+from minirt.viewer.display.marks import SIZE, Icon, arrow_tip, arrows, visible_icons
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, handle_at, handles_of, pull
 from minirt.viewer.editing.motion import APPROACHING, approach, in_reach, look_at
@@ -205,16 +205,20 @@ class Mouse:
         session.show(state.make_primary(owner))
         return point
 
-    def owner_at(self, x: int, y: int) -> tuple[int | None, Triple | None]:
-        """Return the index of the element under the pointer, and the point of the scene there; None without one."""
+    def icon_at(self, x: int, y: int) -> Icon | None:
+        """Return the icon at a pixel that is drawn on top, None where there is none."""
         session, state, screen = self.session, self.session.state, self.session.screen
         icons = visible_icons(state.scene, state.chosen, session.view, screen.scale, screen.icons)
         reach = SIZE * screen.scale / 2 if screen.level > HudLevel.NOTHING else -1.0
         under = [each for each in icons if max(abs(each.x - x), abs(each.y - y)) <= reach]
-        if under:
-            owner = under[-1].owner  # of the icon that is drawn on top
-            element = state.scene.elements[owner]
-            return owner, None if element is state.scene.camera else position_of(element)
+        return under[-1] if under else None
+
+    def owner_at(self, x: int, y: int) -> tuple[int | None, Triple | None]:
+        """Return the index of the element under the pointer, and the point of the scene there; None without one."""
+        session, state = self.session, self.session.state
+        if icon := self.icon_at(x, y):
+            element = state.scene.elements[icon.owner]
+            return icon.owner, None if element is state.scene.camera else position_of(element)
         shape, point = session.surface_at(x, y)
         return index_of(state.scene, shape) if shape else None, point
 

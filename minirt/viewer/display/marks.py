@@ -111,7 +111,10 @@ def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
 
 
 def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: float) -> None:
-    """Draw a handle in the colour of its axis; arrows and boxes have the letter of the axis."""
+    """Draw a handle in the colour of its axis.
+
+    Arrows that move have the letter of the axis, boxes that resize the first letter of the value that they change.
+    """
     colour, (x, y) = list(AXIS_COLOURS.values())[handle.axis], handle.points[0]
     if handle.kind == TURN:
         at, ring = np.arange(len(handle.points)), np.array(handle.points)  # all at once: a tenth of the time
@@ -122,7 +125,8 @@ def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: flo
         return
     if handle.kind == MOVE and centre:
         draw_line(pixels, centre, (x, y), colour)
-    icon = Icon(0, round(x), round(y), "" if handle.kind == SLIDE else "XYZ"[handle.axis], colour)
+    letter = translated(handle.value.name)[0] if handle.value else "XYZ"[handle.axis]
+    icon = Icon(0, round(x), round(y), "" if handle.kind == SLIDE else letter, colour)
     draw_icon(pixels, icon, HANDLE_SCALES[handle.kind] * scale, GOLD if handle.kind == RESIZE else BLACK)
 
 

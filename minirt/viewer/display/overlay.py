@@ -11,7 +11,7 @@ from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
 from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
 from minirt.viewer.display.painter import Painted, Pixels
-from minirt.viewer.display.words import bracketed, short_numbers, title_in_words, values_in_words
+from minirt.viewer.display.words import bracketed, short_numbers, title_in_words, value_in_words, values_in_words
 from minirt.viewer.editing.state import MoveAxes, State
 from minirt.viewer.language import GAP, translated
 
@@ -68,28 +68,36 @@ def draw_hud(pixels: Pixels, state: State, shown: Painted | None, level: HudLeve
 
 
 def fitting_words(state: State, width: int, size: int) -> str:
-    """Return the title of the selected element, its active value, and as many others as fit on a line with the keys."""
-    first, *others = values_in_words(state)
-    words = f"{title_in_words(state.element)}, {first}"
+    """Return the title of the selected element and as many values as fit on a line with the keys.
+
+    Where the active one is not among them it takes the place of the others.
+    """
     room = width - measure(GAP + translated(hints(state, every=False)), size)[0] - 2 * MARGIN
-    for value in others:
-        longer = f"{words}, {value}"
+    title, words, has_active = title_in_words(state.element), "", False
+    for value, field in values_in_words(state).items():
+        longer = f"{words or title}, {value}"
         if measure(longer, size)[0] > room:
             break
-        words = longer
-    return words
+        words, has_active = longer, has_active or field == state.active.field
+    return words if has_active else f"{title}, {value_in_words(state, state.active.field)}"
 
 
 def field_at(state: State, x: int, y: int, width: int, size: int) -> Field | None:
     """Return the field whose value is at a pixel of the line on top of a window of a width; None beside the values."""
-    line, words = fitting_words(state, width, size), title_in_words(state.element)
+    line = fitting_words(state, width, size)
     for value, field in values_in_words(state).items():
-        start = MARGIN + measure(f"{words}, ", size)[0]
-        words = f"{words}, {value}"
-        end, bottom = MARGIN + measure(words, size)[0], MARGIN + measure(words, size)[1] + PADDING
-        if start <= x < end and y < bottom and line.startswith(words):
+        before, found, _ = line.partition(f", {value}")
+        start, end = (MARGIN + measure(words, size)[0] for words in (f"{before}, ", before + found))
+        if found and start <= x < end and is_on_line(x, y, state, width, size):
             return field
     return None
+
+
+def is_on_line(x: int, y: int, state: State, width: int, size: int) -> bool:
+    """Whether a pixel is on the line on top of a window of a width: on its words or on its keys."""
+    words = GAP.join((fitting_words(state, width, size), translated(hints(state, every=False))))
+    right, bottom = measure(words, size)
+    return x < min(width, MARGIN + right + PADDING) and y < MARGIN + bottom + PADDING
 
 
 def last_lines(text: str, count: int) -> str:

@@ -70,13 +70,16 @@ class Refinement:
             self._request(answer.next())
 
     def collect(self) -> list[Exception]:
-        """Take the outcomes of the painter; return the errors among them."""
+        """Take the outcomes of the painter, of which the last picture becomes `latest`; return the errors among them.
+
+        A job that was cancelled and is still wanted is requested again.
+        """
         errors = []
         for outcome in self.painter.take():
             if outcome.error:
                 errors.append(outcome.error)
                 continue
-            # A still picture that comes after the next movement has begun would set the resolution of that movement.
+            # The next movement begins with the resolution of a still picture: one that comes later must not count.
             late = outcome.pixels is not None and not outcome.job.urgent and outcome.job is not self._requested
             if not outcome.preview and not late:
                 self.resolution.record(outcome)

@@ -106,10 +106,14 @@ class Screen:
         is_shown = self.handles and self.level and not self.help
         return tool_at(x, y, *self.size, self.scale) if is_shown else None
 
+    def is_on_line(self, state: State, x: int, y: int) -> bool:
+        """Whether a pixel is on the line on top."""
+        is_shown = self.level == HudLevel.LINE and not self.help
+        return is_shown and overlay.is_on_line(x, y, state, self.size[0], self.text_size)
+
     def field_at(self, state: State, x: int, y: int) -> Field | None:
         """Return the field whose value the line on top shows at a pixel, None beside the values."""
-        is_shown = self.level == HudLevel.LINE and not self.help and not self.list_box
-        return overlay.field_at(state, x, y, self.size[0], self.text_size) if is_shown else None
+        return overlay.field_at(state, x, y, self.size[0], self.text_size)
 
     @property
     def tools_width(self) -> int:

@@ -25,17 +25,14 @@ def title_in_words(element: Element) -> str:
 
 
 def values_in_words(state: State) -> dict[str, Field]:
-    """Return the values of the selected element with their titles, the active one first, those at their default not.
-
-    They are the keys: each stands for a field.
-    """
+    """Return the values of the selected element with their titles, except those at their default, and their fields."""
     element, active = state.element, state.active
     fields = [
         field
         for field in fields_of(type(element))
         if field == active.field or not field.keyed or getattr(element, field.name) != field.default
     ]
-    fields.sort(key=lambda field: (field != active.field, order(field)))
+    fields.sort(key=order)
     return {value_in_words(state, field): field for field in fields}
 
 

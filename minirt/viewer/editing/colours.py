@@ -66,6 +66,14 @@ def colours_of(element: Element) -> list[Value]:
     return [*dict.fromkeys(each._replace(channel=None) for each in values(element) if isinstance(each.leaf, Colour))]
 
 
+def next_colour(state: State) -> Value:
+    """Return the colour of a pattern of the selected element, the next after the active one; its own if it has none."""
+    own, *others = colours_of(state.element)
+    active = state.active._replace(channel=None)
+    at = others.index(active) + 1 if active in others else 0
+    return others[at % len(others)] if others else own
+
+
 def own_colour(element: Element) -> Triple | None:
     """Return the first colour of an element that no attribute has, in levels from 0 to 255; None without one."""
     own = (getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour))

@@ -130,10 +130,11 @@ class State:
         return replace(self, last_change=None)
 
     def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
-        """Replace the scene and push the old one on the undo stack.
+        """Replace the scene, push the old one on the undo stack, and empty the redo stack.
 
         kind: changes of the same kind within MERGE_SECONDS are undone together; an empty kind is never merged.
-        Values that a camera was given are noted in it as `edited`: unlike looking around they are to be saved.
+        What was typed for a camera, or changed beside its place and direction, is noted in it as `edited`: that counts
+        as unsaved, looking around does not.
         """
         last = self.last_change
         merged = bool(kind) and last is not None and last[0] == kind and now - last[1] <= MERGE_SECONDS

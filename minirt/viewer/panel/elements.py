@@ -69,8 +69,9 @@ class Elements:
         if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
             if state.selected != self._followed and state.selected in indices:
                 self._followed = state.selected
-                place = indices.index(state.selected) * imgui.get_frame_height_with_spacing()
-                imgui.set_scroll_y(max(0.0, place - height / 2))
+                row = imgui.get_frame_height_with_spacing()
+                last = len(indices) * row - imgui.get_content_region_avail()[1]  # Dear ImGui stops there a frame later
+                imgui.set_scroll_y(max(0.0, min(indices.index(state.selected) * row - height / 2, last)))
             for place in seen(len(indices)):
                 self.row(indices[place])
         imgui.end_child()
@@ -146,8 +147,8 @@ class Elements:
         self.rows.gui.show(after)
 
     def type_name(self, index: int) -> None:
-        """Show the name that is typed; Enter, and the focus of another widget, take it. Where the click that began it
-        was the first of two they mean what they mean in any row."""
+        """Show the name that is typed; Enter, and the focus of another widget, take it. If the click that began it was
+        the first of a double click, typing ends, and the element is brought into view."""
         if self._takes_focus:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1.0)

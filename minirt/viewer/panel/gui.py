@@ -82,9 +82,10 @@ class Gui:
         return bool(self.io.want_text_input)
 
     def takes(self, event: Event | str, *arguments: Any) -> bool:
-        """Show an event to the open panel; return whether it takes it, so that it is not one of the picture.
+        """Pass an event to Dear ImGui; return whether the panel takes it, so that it is not one of the picture.
 
-        A button that goes down on the picture takes the keys from the panel.
+        `arguments`: x, y of a motion; button, x, y; the code of a key; the characters of "text". After a button that
+        goes down on the picture the panel wants no keys.
         """
         taken = False
         match event, arguments:
