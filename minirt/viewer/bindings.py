@@ -147,7 +147,7 @@ BINDINGS = (
     once(CHANGE, "type value", "type the active value: 3.5 Enter, or = -3 Enter, = *=2 Enter, = +=0.5 Enter", "="),
     once(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
     once(CHANGE, "previous value", "previous value", "Shift+V"),
-    once(CHANGE, "choose colour", "colour of the selected element, from a list of words", "U"),
+    once(CHANGE, "choose colour", "colour, from a list of words", "U"),
     once(CHANGE, "choose second colour", "second colour: of a pattern", "Shift+U"),
     once(CHANGE, "add attribute", "add an attribute from a list: type, arrows, Enter; again: the next", "M"),
     once(CHANGE, "rename", "name the selected element: type, Enter; the file has it as a comment", "F2"),
