@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from contextlib import suppress
 from functools import lru_cache
-from math import cos, hypot, radians, sin, tan
+from math import cos, hypot, radians, sin, sqrt, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,12 +14,15 @@ from numpy.typing import NDArray
 from minirt.compare.table import OURS, Guess
 from minirt.rendering.queries.rays import trace
 from minirt.scene import Camera, Scene
-from minirt.shapes import Cone, Cylinder, Sphere
+from minirt.scene.dialect_tables import turned as by_angles
+from minirt.shapes import Cone, Cylinder, Hyperboloid, Sphere
 from minirt.shapes.shape import Capped
 
 Floats = NDArray[np.float64]
 AXES = {"y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1), "x": (1, 0, 0), "-x": (-1, 0, 0)}
 SHAPES = "radius", "cylinder", "axis", "cone"  # parameters that change the shapes of the scene
+LONG = "not normalised", "in the formula"  # of axes, whose length is not 1 then
+STEEPEST = 89.0  # degrees from the axis of a cone to its side
 MOST_LAYERS = 4  # of caps or inner sides that a ray passes
 ON_CAP = 0.999  # cosine between the normal of a cap and the axis
 
@@ -54,6 +59,8 @@ def frame(camera: Camera, guess: Guess) -> Floats:
     forward = np.array(camera.direction)
     if guess["direction"] == "reversed":
         forward = -forward
+    if guess["direction"] == "angles":
+        forward = np.array(by_angles(as_written(camera)))
     if guess["up"].startswith("from the "):
         axis = np.array(AXES[guess["up"].removeprefix("from the ")], float)
         turned = rotation(axis, forward)
@@ -71,6 +78,14 @@ def frame(camera: Camera, guess: Guess) -> Floats:
     if guess["mirrored"] != camera.left_handed:
         right = -right
     return np.array([right, -up if guess["flipped"] else up, forward])
+
+
+def as_written(element: Camera | Cone | Cylinder) -> tuple[float, float, float]:
+    """Return the direction of an element as its line in the file has it, where it need not be of length 1."""
+    with suppress(IndexError, ValueError):
+        x, y, z = map(float, re.findall(r"\S+,\S+,\S+", element.source)[1].split(","))
+        return x, y, z
+    return element.direction if isinstance(element, Camera) else element.axis
 
 
 def rotation(axis: Floats, onto: Floats) -> Floats:
@@ -114,28 +129,43 @@ def changed_scene(scene: Scene, guess: Guess) -> Scene:
 def edited(scene: Scene, radius: str, cylinder: str, axis: str, cone: str) -> Scene:
     """Return the scene with changed spheres, cylinders and cones."""
     for shape in scene.shapes:
-        changes: dict[str, Any] = {}
+        new: Any = shape
         if isinstance(shape, Sphere) and radius in ("spheres", "all"):
-            changes["diameter"] = shape.diameter * 2
+            new = shape.replace(diameter=shape.diameter * 2)
+        if isinstance(shape, Cone | Cylinder) and axis in LONG:
+            new = lengthened(shape, hypot(*as_written(shape)), axis)
         if isinstance(shape, Cylinder):
-            changes = cylinder_changes(shape, radius, cylinder, axis)
-        if isinstance(shape, Cone) and cone != "apex":
-            apex, way = np.array(shape.apex), np.array(shape.axis)
-            changes["axis"] = tuple(-way)
-            if cone == "base":
-                changes["apex"] = tuple(apex + way * shape.height)
-        if changes:
-            scene = scene.replace(shape, **changes)
+            new = new.replace(**cylinder_changes(new, radius, cylinder, axis))
+        if isinstance(shape, Cone):
+            new = new.replace(**cone_changes(new, cone))
+        if new != shape:
+            scene = scene.replace(shape, new)
+        if isinstance(shape, Cone) and cone == "both halves":
+            scene = scene.add(new.replace(axis=tuple(-np.array(new.axis))))
     return scene
 
 
-def cylinder_changes(shape: Cylinder, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
+def lengthened(shape: Cone | Cylinder, length: float, axis: str) -> Cone | Cylinder | Hyperboloid:
+    """Return a shape as a formula draws it into which the axis goes with a length other than 1."""
+    if axis == "not normalised":
+        return shape.replace(height=shape.height * length)
+    height = shape.height / length
+    if isinstance(shape, Cone):  # (p . axis)^2 = p . p / (1 + slope^2)
+        steepness = length**2 * (1 + (shape.diameter / 2 / shape.height) ** 2) - 1
+        return shape.replace(height=height, diameter=2 * height * sqrt(steepness)) if steepness > 0 else shape
+    if length < 1:
+        return shape
+    across = sqrt(shape.diameter**2 + (length**2 - 1) * height**2)  # p . p - (p . axis)^2 = radius^2
+    return Hyperboloid(shape.centre, shape.axis, shape.diameter, across, height, shape.colour)
+
+
+def cylinder_changes(shape: Cylinder | Hyperboloid, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
     """Return the changed fields of a cylinder."""
     changes: dict[str, Any] = {}
     x, y, z = shape.axis
     ways = {"upright": (0.0, 1.0, 0.0), "-x": (-x, y, z), "-z": (x, y, -z), "swapped": (z, y, x)}
     way = np.array(ways.get(axis, shape.axis))
-    if axis != "as given":
+    if axis in ways:
         changes["axis"] = tuple(way)
     if radius in ("cylinders", "all"):
         changes["diameter"] = shape.diameter * 2
@@ -147,6 +177,19 @@ def cylinder_changes(shape: Cylinder, radius: str, cylinder: str, axis: str) -> 
     if cylinder == "doubled":
         changes["height"] = shape.height * 2
     return changes
+
+
+def cone_changes(shape: Cone, cone: str) -> dict[str, Any]:
+    """Return the changed fields of a cone."""
+    apex, way = np.array(shape.apex), np.array(shape.axis)
+    if cone == "reversed":
+        return {"axis": tuple(-way)}
+    if cone == "base":
+        return {"axis": tuple(-way), "apex": tuple(apex + way * shape.height)}
+    if cone in ("angle", "half angle"):
+        half = shape.diameter / (2 if cone == "angle" else 1)
+        return {"diameter": 2 * shape.height * tan(radians(min(half, STEEPEST)))}
+    return {}
 
 
 def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np.bool_]:
@@ -179,8 +222,7 @@ def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any
 
 def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Seen:
     """Trace pixels of a picture, from what they show to all lamps, and the same of what mirrors show."""
-    scene = changed_scene(scene, guess)
-    ways = directions(scene, size, x, y, guess)
+    scene, ways = changed_scene(scene, guess), directions(scene, size, x, y, guess)
     seen = met(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)
     if not guess["reflections"]:
         return seen
@@ -190,8 +232,12 @@ def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess)
 
 
 def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:
-    """Trace rays, and from what they meet to all lamps."""
+    """Trace rays, and from what they meet to all lamps. Second halves of cones, the last shapes, count as the first."""
     _, owner, point, normal = hits(scene, origins, ways, guess)
+    if guess["cone"] == "both halves":
+        first = len(scene.shapes) - len(scene.cones) // 2
+        cones = [scene.shapes.index(cone) for cone in scene.cones[: len(scene.cones) // 2]]
+        owner = np.array([*range(first), *cones, -1])[owner]
     lamps, count = scene.lights, len(owner)
     to_light, distance = np.zeros((len(lamps), count, 3)), np.full((len(lamps), count), np.inf)
     strength, open_to, open_beyond = np.ones((len(lamps), count)), *np.zeros((2, len(lamps), count), bool)

@@ -92,7 +92,9 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     if guess["colours"] == "object ignored":
         colours = np.ones_like(colours)
     is_white = guess["colours"] == "light ignored"
-    bright = [numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness for lamp in lamps]
+    bright = [
+        numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness ** guess["brightness"] for lamp in lamps
+    ]
     normal, cosine = cosines(seen, guess)
     arrived = arriving(seen, guess)
     light = cosine * arrived

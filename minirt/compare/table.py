@@ -26,6 +26,7 @@ OURS: Guess = {
     "cone": "apex",
     "caps": True,
     "inside": True,
+    "brightness": 1,  # the power in which that of lamps counts
     "ambient": "object x light",
     "ambient_in_shadow": True,
     "shadows": "to the lamp",
@@ -65,6 +66,8 @@ GEOMETRY = rows(
     ("mirrored", True, "left and right are swapped: negate the camera's right vector (right = direction x up)"),
     ("flipped", True, "the picture is upside down: row 0 is the upper one, y grows downwards in pictures"),
     ("direction", "reversed", "the camera looks backwards: negate the viewing direction"),
+    ("direction", "angles",
+     "the camera's direction is taken as angles by which it is turned: it is a vector, the way that the camera looks"),
     *(("up", up, f"the camera's up is {up}: the reference builds right = direction x (0,1,0)")
       for up in ("z", "-z", "x", "-x", "-y")),
     *(("up", up, f"the camera is turned by the shortest rotation {up} axis onto its direction, {SHORTEST}")
@@ -91,8 +94,15 @@ GEOMETRY = rows(
     ("axis", "-x", "the x of cylinders' axes is negated: they lean to the other side"),
     ("axis", "-z", "the z of cylinders' axes is negated: they lean to the other side"),
     ("axis", "swapped", "x and z of cylinders' axes are swapped"),
+    ("axis", "not normalised", "the ends of cylinders and cones lie further off where their axis is longer: "
+     "scale the axis to length 1"),
+    ("axis", "in the formula", "an axis that is not of length 1 bends or shortens cylinders and cones: "
+     "scale it to length 1 before it enters the formula"),
     ("cone", "base", "the point of a cone is taken as the centre of its base: here it is the apex"),
     ("cone", "reversed", "cones open against their axis: here the axis runs from the apex to the base"),
+    ("cone", "both halves", "cones go on beyond their apex, with a second half: leave out hits at negative heights"),
+    ("cone", "angle", "the diameter of cones is taken as their angle in degrees, from side to side"),
+    ("cone", "half angle", "the diameter of cones is taken as the angle in degrees from their axis to their side"),
     ("caps", False, "cylinders and cones have no caps: one looks into them"),
     ("inside", False,
      "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
@@ -110,6 +120,8 @@ LIGHT = rows(
     ("ambient", "none", "there is no ambient light"),
     ("ambient", "not in shadow", "shadows are without ambient light: it reaches all surfaces",
      {"ambient_in_shadow": False}),
+    ("diffuse", "brightness squared",
+     "the brightness of lamps counts twice: multiply by it once", {"brightness": 2}),
     ("shadows", "none", "there are no shadows: send a ray from the point to the lamp"),
     ("shadows", "behind the lamp",
      "things behind the lamp cast shadows, too: only hits nearer than the lamp count"),
