@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from math import cos, hypot, radians, sin, sqrt, tan
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from minirt.compare.table import OURS, Guess
 from minirt.rendering.queries.rays import trace
 from minirt.scene import Camera, Scene
-from minirt.scene.dialect_tables import turned as by_angles
+from minirt.scene.dialect_tables import turned
 from minirt.shapes import Cone, Cylinder, Hyperboloid, Sphere
 from minirt.shapes.shape import Capped
 
@@ -56,28 +57,38 @@ def dots(one: Floats, other: Floats) -> Floats:
 
 def frame(camera: Camera, guess: Guess) -> Floats:
     """Return right, up and forward of a picture, (3, 3)."""
-    forward = np.array(camera.direction)
-    if guess["direction"] == "reversed":
-        forward = -forward
-    if guess["direction"] == "angles":
-        forward = np.array(by_angles(as_written(camera)))
-    if guess["up"].startswith("from the "):
-        axis = np.array(AXES[guess["up"].removeprefix("from the ")], float)
-        turned = rotation(axis, forward)
-        right, up = turned @ np.cross(axis, (0.0, 1.0, 0.0)), turned @ np.array([0.0, 1.0, 0.0])
-    elif guess["up"] == "x first":
+    right, over, forward = looking(view(camera, guess["direction"]), guess["up"], camera.roll + guess["roll"])
+    if guess["mirrored"] != camera.left_handed:
+        right = -right
+    return np.array([right, -over if guess["flipped"] else over, forward])
+
+
+def view(camera: Camera, direction: str) -> tuple[float, float, float]:
+    """Return the way in which a camera looks whose direction is read in one of the ways."""
+    if direction == "angles":
+        return turned(as_written(camera))
+    x, y, z = camera.direction
+    return (-x, -y, -z) if direction == "reversed" else (x, y, z)
+
+
+@lru_cache(256)
+def looking(direction: tuple[float, float, float], way_up: str, roll: float) -> Floats:
+    """Return right, up and forward of a camera, (3, 3), whose up is made in one of the ways."""
+    forward = np.array(direction)
+    if way_up.startswith("from the "):
+        axis = np.array(AXES[way_up.removeprefix("from the ")], float)
+        matrix = rotation(axis, forward)
+        right, up = matrix @ np.cross(axis, (0.0, 1.0, 0.0)), matrix @ np.array([0.0, 1.0, 0.0])
+    elif way_up == "x first":
         up = unit(np.cross((-1.0, 0.0, 0.0), forward))
         up = up if up.any() else np.array([0.0, 0.0, 1.0])
         right = np.cross(forward, up)
     else:
-        right = np.cross(forward, AXES[guess["up"]])
+        right = np.cross(forward, AXES[way_up])
         right = unit(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0.0, 0.0])
         up = np.cross(right, forward)
-    turn = radians(camera.roll + guess["roll"])
-    right, up = cos(turn) * right - sin(turn) * up, sin(turn) * right + cos(turn) * up
-    if guess["mirrored"] != camera.left_handed:
-        right = -right
-    return np.array([right, -up if guess["flipped"] else up, forward])
+    turn = radians(roll)
+    return np.array([cos(turn) * right - sin(turn) * up, sin(turn) * right + cos(turn) * up, forward])
 
 
 def as_written(element: Camera | Cone | Cylinder) -> tuple[float, float, float]:
@@ -229,6 +240,16 @@ def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess)
     there, normal = (seen.owner >= 0)[:, None], np.nan_to_num(seen.normal)
     mirrored = ways - 2 * dots(ways, normal)[:, None] * normal
     return seen._replace(mirror=met(scene, np.where(there, seen.point, scene.camera.position), mirrored, guess))
+
+
+def see_each(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guesses: Sequence[Guess]) -> Iterator[Seen]:
+    """Trace the same pixels under guesses that differ in the camera alone, all at once."""
+    ways = np.concatenate([directions(scene, size, x, y, guess) for guess in guesses])
+    origins = np.broadcast_to(np.array(scene.camera.position), ways.shape)
+    *of_rays, mirror = met(changed_scene(scene, guesses[0]), origins, ways, guesses[0])
+    for start in range(0, len(ways), len(x)):
+        part = slice(start, start + len(x))
+        yield Seen(*(each[part] for each in of_rays[:4]), *(each[:, part] for each in of_rays[4:]), mirror)
 
 
 def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:

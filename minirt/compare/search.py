@@ -6,14 +6,14 @@ they are; then the light; then all rows of the table in turn, from the best few 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Floats, Seen, frame, see, slopes
+from minirt.compare.geometry import SHAPES, Floats, Seen, changed_scene, frame, see, see_each, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
@@ -27,6 +27,7 @@ ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
 EVEN = 0.001  # unevenness of a camera and of sizes that may be right
 NAMED, FREE = 7, 3  # cameras of the table, and those with another field of view, from which shapes are tried
 BEGINNINGS, FINALISTS = 8, 3
+AT_ONCE = 32  # cameras that are traced in one call
 ALIKE = 1.05  # scores up to this times another are as good
 NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
@@ -43,11 +44,17 @@ class Case:
         self.height, self.width = picture.shape[:2]
         self.judged = lighting.plain_shapes(scene)
         has_specks = speck_share(picture) > SPECKLED
-        self.table = [row for row in TABLE if row.name != "acne" or has_specks]
+        self.table = [row for row in TABLE if self.tells(row) and (row.name != "acne" or has_specks)]
         self.light = [row for row in self.table if row in LIGHT]
-        self.cameras = tuple(cameras(self))
+        self.cameras = cameras(self)
         self.kept: dict[Any, Seen] = {}
         self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self.scores: dict[Any, tuple[float, int]] = {}
+        self.unevenness: dict[Any, float] = {}
+
+    def tells(self, row: Hypothesis) -> bool:
+        """Whether a row changes this scene, if it is about shapes."""
+        return not set(row.changes) <= set(SHAPES) or changed_scene(self.scene, OURS | row.changes) is not self.scene
 
     def sample(self, count: int) -> tuple[Floats, Floats, Floats]:
         """Return x, y and colours of about that many pixels, on a slanted grid."""
@@ -77,11 +84,34 @@ class Case:
         seen = self.see(guess, count)
         return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
 
-    def unevenness(self, guess: Guess) -> float:
-        """Return how far the regions of a guess are from being one colour in one light each."""
-        seen = self.see(guess, COARSE)
-        residual = lighting.unevenness(seen, self.sample(COARSE)[2], guess)
-        return float(np.minimum(residual, lighting.STEADY**2).mean())
+    def score(self, guess: Guess, count: int = FINE) -> float:
+        """Return the score of a guess on a sample; all of them are kept, as the number of odd factors is."""
+        return self.scored(guess, count)[0]
+
+    def scored(self, guess: Guess, count: int = FINE) -> tuple[float, int]:
+        """Return the score of a guess on a sample, and the number of its odd factors."""
+        key = count, *guess.values()
+        if key not in self.scores:
+            fit = self.fit(guess, count)
+            self.scores[key] = fit.score, fit.odd
+        return self.scores[key]
+
+    def evenest(self, guesses: Iterable[Guess]) -> list[Guess]:
+        """Sort guesses by how far their regions are from being one colour in one light each; first the evenest.
+
+        Cameras that look at the same shapes are traced at once: the rays of one take less time than a call.
+        """
+        x, y, colours = self.sample(COARSE)
+        groups: dict[Any, list[Guess]] = {}
+        for each in guesses:
+            groups.setdefault(tuple(each[name] for name in SHAPES), []).append(each)
+        for group in groups.values():
+            for start in range(0, len(group), AT_ONCE):
+                some = group[start : start + AT_ONCE]
+                for each, seen in zip(some, see_each(self.scene, (self.width, self.height), x, y, some), strict=True):
+                    residual = np.minimum(lighting.unevenness(seen, colours, each), lighting.STEADY**2)
+                    self.unevenness[tuple(each.values())] = float(residual.mean())
+        return sorted(guesses, key=lambda each: self.unevenness[tuple(each.values())])
 
 
 CAMERA = "direction", "flipped", "mirrored", "up", "fov", "scale", "roll"
@@ -90,25 +120,24 @@ GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "s
 
 def search(case: Case) -> Guess:
     """Find the guess that explains the picture best."""
-    seen_from = sorted(case.cameras, key=case.unevenness)
-    if case.unevenness(seen_from[0]) > EVEN:  # sizes may hide the camera
+    seen_from = case.evenest(case.cameras.values())
+    if case.unevenness[tuple(seen_from[0].values())] > EVEN:  # sizes may hide the camera
         radii = [row.changes for row in GEOMETRY if row.name == "radius"]
         named = [each for each in seen_from if each["scale"] == 1.0]
-        seen_from += [each | changes for each in named for changes in radii]
-        seen_from.sort(key=case.unevenness)
+        seen_from = case.evenest([*seen_from, *(each | changes for each in named for changes in radii)])
     free = [each for each in seen_from if each["scale"] != 1.0]
     seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
     cylinders, cones, spheres = case.scene.cylinders, case.scene.cones, case.scene.spheres
     there = {"cylinder": cylinders, "radius": spheres + cylinders, "cone": cones}
     names = [name for name, shapes in there.items() if shapes]
     shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
-    variants = [each | dict(zip(names, values, strict=True)) for values in product(*shaped) for each in seen_from]
-    variants.sort(key=case.unevenness)
+    combined = [dict(zip(names, values, strict=True)) for values in product(*shaped)]
+    variants = case.evenest([each | changes for changes in combined for each in seen_from])
     matt = [row for row in case.light if row.name not in ("specular", "reflections")]
     lit = [descend(case, each, by_gain(case, each, matt), 1) for each in [OURS, *variants[:BEGINNINGS]]]
-    best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
+    best = sorted(lit, key=case.score)[:FINALISTS]
     found = [simplest(case, descend(case, each, case.table, 3)) for each in best]
-    return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
+    return descend(case, min(found, key=case.score), case.light, 1, LARGE)
 
 
 def speck_share(picture: Floats) -> float:
@@ -118,9 +147,9 @@ def speck_share(picture: Floats) -> float:
     return float((beside - light[:, 1:-1] > SPECK).mean())
 
 
-def cameras(case: Case) -> Iterator[Guess]:
-    """Yield guesses about the camera, simple ones first; of those that draw the same only the first."""
-    drawn = set()
+def cameras(case: Case) -> dict[tuple[float, ...], Guess]:
+    """Return guesses about the camera by what they draw, simple ones first; of those that draw the same the first."""
+    found: dict[tuple[float, ...], Guess] = {}
     views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
     names = "direction", "flipped", "mirrored", "up"  # of two that draw the same, the mirrored one is likelier
     values = product(("as given", "reversed"), (False, True), (False, True), UPS)
@@ -128,9 +157,8 @@ def cameras(case: Case) -> Iterator[Guess]:
     for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
         for fov, scale in views if each["direction"] == "as given" else views[:2]:
             guess = each | {"fov": fov, "scale": scale}
-            if (key := drawn_by(case, guess)) not in drawn:
-                drawn.add(key)
-                yield guess
+            found.setdefault(drawn_by(case, guess), guess)
+    return found
 
 
 def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
@@ -173,17 +201,17 @@ def is_near(highlight: Any, other: tuple[str, int, str]) -> bool:
 
 def by_gain(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> list[Hypothesis]:
     """Sort rows by how well a guess explains the picture with each of them."""
-    return sorted(rows, key=lambda row: case.fit(guess | row.changes).score)
+    return sorted(rows, key=lambda row: case.score(guess | row.changes))
 
 
 def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
     """Improve a guess, one parameter after the other, until no step explains the picture clearly better."""
-    best = case.fit(guess, count).score
+    best = case.score(guess, count)
     for _ in range(rounds):
         before = best
         for name in steps(guess, rows):
             for each in steps(guess, rows).get(name, ()):
-                score = case.fit(each, count).score
+                score = case.score(each, count)
                 if score < best * (BETTER if count == FINE else BETTER_YET):
                     guess, best = each, score
         if best == before:
@@ -195,14 +223,15 @@ def simplest(case: Case, guess: Guess) -> Guess:
     """Return the guess of fewest differences that explains the picture as well: with a camera of the table that draws
     nearly the same in place of free numbers, and with plainer light."""
     key = drawn_by(case, guess)
-    cameras = [guess | {name: each[name] for name in CAMERA} for each in case.cameras]
-    cameras += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS] + [guess | {"roll": 0.0}]
-    near = [each for each in cameras if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR]
+    others = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS] + [guess | {"roll": 0.0}]
+    cameras = [*case.cameras.items(), *((drawn_by(case, each), each) for each in others)]
+    apart = np.abs(np.array([drawn for drawn, _ in cameras]) - key).max(axis=1)
+    near = [each for away, (_, each) in zip(apart, cameras, strict=True) if away < NEAR]
     forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]
     lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
-    for others in ([{name: each[name] for name in CAMERA} for each in near], lights):
-        fits = [(each, case.fit(each)) for each in [guess, *(guess | changes for changes in others)]]
-        limit = fits[0][1].score * ALIKE + NEAR_SCORE
-        alike = [(differences(each) + fit.odd, number) for number, (each, fit) in enumerate(fits) if fit.score <= limit]
-        guess = fits[min(alike)[1]][0]
+    for changed in ([{name: each[name] for name in CAMERA} for each in near], lights):
+        guesses = [guess, *(guess | changes for changes in changed)]
+        limit = case.score(guess) * ALIKE + NEAR_SCORE
+        guess = min((each for each in guesses if case.score(each) <= limit),
+                    key=lambda each: differences(each) + case.scored(each)[1])  # fmt: skip
     return guess
