@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from minirt.compare.table import OURS, Guess
 from minirt.rendering.queries.rays import trace
 from minirt.scene import Camera, Scene
-from minirt.scene.dialect_tables import turned
+from minirt.scene.dialect_tables import CAMERAS, CONES, Meanings
 from minirt.shapes import Cone, Cylinder, Hyperboloid, Sphere
 from minirt.shapes.shape import Capped
 
@@ -23,7 +23,13 @@ Floats = NDArray[np.float64]
 AXES = {"y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1), "x": (1, 0, 0), "-x": (-1, 0, 0)}
 SHAPES = "radius", "cylinder", "axis", "cone"  # parameters that change the shapes of the scene
 LONG = "not normalised", "in the formula"  # of axes, whose length is not 1 then
-STEEPEST = 89.0  # degrees from the axis of a cone to its side
+WIDEST = 178.0  # degrees from side to side of a cone
+CONE_CHANGES: Meanings = {
+    "base": CONES["base"],
+    "reversed": lambda cone, axis: {"axis": tuple(-np.array(axis))},
+    "angle": lambda cone, _: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST / 2)), ()),
+    "whole angle": lambda cone, _: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST) / 2), ()),
+}
 MOST_LAYERS = 4  # of caps or inner sides that a ray passes
 ON_CAP = 0.999  # cosine between the normal of a cap and the axis
 
@@ -57,18 +63,13 @@ def dots(one: Floats, other: Floats) -> Floats:
 
 def frame(camera: Camera, guess: Guess) -> Floats:
     """Return right, up and forward of a picture, (3, 3)."""
-    right, over, forward = looking(view(camera, guess["direction"]), guess["up"], camera.roll + guess["roll"])
+    way = camera.direction
+    if guess["direction"] in CAMERAS:
+        way = CAMERAS[guess["direction"]](camera, as_written(camera))["direction"]
+    right, over, forward = looking(way, guess["up"], camera.roll + guess["roll"])
     if guess["mirrored"] != camera.left_handed:
         right = -right
     return np.array([right, -over if guess["flipped"] else over, forward])
-
-
-def view(camera: Camera, direction: str) -> tuple[float, float, float]:
-    """Return the way in which a camera looks whose direction is read in one of the ways."""
-    if direction == "angles":
-        return turned(as_written(camera))
-    x, y, z = camera.direction
-    return (-x, -y, -z) if direction == "reversed" else (x, y, z)
 
 
 @lru_cache(256)
@@ -147,8 +148,8 @@ def edited(scene: Scene, radius: str, cylinder: str, axis: str, cone: str) -> Sc
             new = lengthened(shape, hypot(*as_written(shape)), axis)
         if isinstance(shape, Cylinder):
             new = new.replace(**cylinder_changes(new, radius, cylinder, axis))
-        if isinstance(shape, Cone):
-            new = new.replace(**cone_changes(new, cone))
+        if isinstance(shape, Cone) and cone in CONE_CHANGES:
+            new = new.replace(**CONE_CHANGES[cone](new, new.axis))
         if new != shape:
             scene = scene.replace(shape, new)
         if isinstance(shape, Cone) and cone == "both halves":
@@ -190,19 +191,6 @@ def cylinder_changes(shape: Cylinder | Hyperboloid, radius: str, cylinder: str, 
     return changes
 
 
-def cone_changes(shape: Cone, cone: str) -> dict[str, Any]:
-    """Return the changed fields of a cone."""
-    apex, way = np.array(shape.apex), np.array(shape.axis)
-    if cone == "reversed":
-        return {"axis": tuple(-way)}
-    if cone == "base":
-        return {"axis": tuple(-way), "apex": tuple(apex + way * shape.height)}
-    if cone in ("angle", "half angle"):
-        half = shape.diameter / (2 if cone == "angle" else 1)
-        return {"diameter": 2 * shape.height * tan(radians(min(half, STEEPEST)))}
-    return {}
-
-
 def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np.bool_]:
     """Whether hits lie on caps of cylinders and cones."""
     axes = np.array([shape.axis if isinstance(shape, Capped) else (0, 0, 0) for shape in scene.shapes] + [(0, 0, 0)])
@@ -233,23 +221,23 @@ def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any
 
 def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Seen:
     """Trace pixels of a picture, from what they show to all lamps, and the same of what mirrors show."""
-    scene, ways = changed_scene(scene, guess), directions(scene, size, x, y, guess)
-    seen = met(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)
+    (seen,) = see_each(scene, size, x, y, [guess])
     if not guess["reflections"]:
         return seen
     there, normal = (seen.owner >= 0)[:, None], np.nan_to_num(seen.normal)
-    mirrored = ways - 2 * dots(ways, normal)[:, None] * normal
-    return seen._replace(mirror=met(scene, np.where(there, seen.point, scene.camera.position), mirrored, guess))
+    mirrored = seen.direction - 2 * dots(seen.direction, normal)[:, None] * normal
+    origins = np.where(there, seen.point, scene.camera.position)
+    return seen._replace(mirror=met(changed_scene(scene, guess), origins, mirrored, guess))
 
 
 def see_each(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guesses: Sequence[Guess]) -> Iterator[Seen]:
-    """Trace the same pixels under guesses that differ in the camera alone, all at once."""
+    """Trace the same pixels under guesses that differ in the camera alone, all at once; without mirrors."""
     ways = np.concatenate([directions(scene, size, x, y, guess) for guess in guesses])
     origins = np.broadcast_to(np.array(scene.camera.position), ways.shape)
-    *of_rays, mirror = met(changed_scene(scene, guesses[0]), origins, ways, guesses[0])
+    seen = met(changed_scene(scene, guesses[0]), origins, ways, guesses[0])
     for start in range(0, len(ways), len(x)):
         part = slice(start, start + len(x))
-        yield Seen(*(each[part] for each in of_rays[:4]), *(each[:, part] for each in of_rays[4:]), mirror)
+        yield Seen(*(each[part] for each in seen[:4]), *(each[:, part] for each in seen[4:9]))
 
 
 def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:

@@ -84,12 +84,8 @@ class Case:
         seen = self.see(guess, count)
         return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
 
-    def score(self, guess: Guess, count: int = FINE) -> float:
-        """Return the score of a guess on a sample; all of them are kept, as the number of odd factors is."""
-        return self.scored(guess, count)[0]
-
-    def scored(self, guess: Guess, count: int = FINE) -> tuple[float, int]:
-        """Return the score of a guess on a sample, and the number of its odd factors."""
+    def score(self, guess: Guess, count: int = FINE) -> tuple[float, int]:
+        """Return the score of a guess on a sample, and the number of its odd factors; all of them are kept."""
         key = count, *guess.values()
         if key not in self.scores:
             fit = self.fit(guess, count)
@@ -206,12 +202,12 @@ def by_gain(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> list[Hypoth
 
 def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
     """Improve a guess, one parameter after the other, until no step explains the picture clearly better."""
-    best = case.score(guess, count)
+    best, _ = case.score(guess, count)
     for _ in range(rounds):
         before = best
         for name in steps(guess, rows):
             for each in steps(guess, rows).get(name, ()):
-                score = case.score(each, count)
+                score, _ = case.score(each, count)
                 if score < best * (BETTER if count == FINE else BETTER_YET):
                     guess, best = each, score
         if best == before:
@@ -231,7 +227,7 @@ def simplest(case: Case, guess: Guess) -> Guess:
     lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
     for changed in ([{name: each[name] for name in CAMERA} for each in near], lights):
         guesses = [guess, *(guess | changes for changes in changed)]
-        limit = case.score(guess) * ALIKE + NEAR_SCORE
-        guess = min((each for each in guesses if case.score(each) <= limit),
-                    key=lambda each: differences(each) + case.scored(each)[1])  # fmt: skip
+        limit = case.score(guess)[0] * ALIKE + NEAR_SCORE
+        alike = [each for each in guesses if case.score(each)[0] <= limit]
+        guess = min(alike, key=lambda each: differences(each) + case.score(each)[1])
     return guess
