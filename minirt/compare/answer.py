@@ -21,7 +21,7 @@ CLEARLY = 4  # times as many pixels are explained only with a cause as only with
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
 LEAST_SEEN = 0.005  # share of pixels of a shape that tells the camera
 LEAST_EDGES = 50  # pixels of the sample
-EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
+EDGE_GAIN, EDGES_LEFT = 0.5, 0.3  # of the unexplained pixels at edges, and of all, a cause that moves edges may leave
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
 LEAST_REST = 0.001  # share of pixels of a part that is worth a line
 MOST_REST = 6  # parts
@@ -155,7 +155,7 @@ def at_edges(judge: Judge) -> Judge:
 
     tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
     best = min((guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts), key=left)
-    return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
+    return Judge(case, best, judge.tolerance) if left(best) < min(EDGE_GAIN * left(guess), EDGES_LEFT) else judge
 
 
 def causes(judge: Judge, guess: Guess) -> list[Cause]:

@@ -89,8 +89,7 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     mirrors show are added up by `factors`."""
     shapes, lamps = scene.shapes, scene.lights
     colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
-    if guess["colours"] == "object ignored":
-        colours = np.ones_like(colours)
+    colours = colours ** {"object ignored": 0, "object squared": 2}.get(guess["colours"], 1)
     is_white = guess["colours"] == "light ignored"
     bright = [
         numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness ** guess["brightness"] for lamp in lamps
@@ -102,9 +101,10 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     light = light / np.maximum(distance, 1e-3) ** exponent(guess)
     tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
-    plain = np.ones_like(colours)
+    plain, lamps_light = np.ones_like(colours), np.sum([0 * tint, *bright], axis=0)
     forms = {"object x light": colours * tint, "light alone": plain * tint, "light plus object": plain * tint,
-             "object alone": colours * grey, "of the lamps": colours * np.sum([0 * tint, *bright], axis=0)}  # fmt: skip
+             "object alone": colours * grey, "of the lamps": colours * lamps_light,
+             "in light of the lamps": colours * tint * lamps_light}  # fmt: skip
     lit = guess["ambient_in_shadow"] | (light > 0).any(axis=0)
     terms = np.zeros((*colours.shape, LAMPS + len(lamps)))
     terms[..., AMBIENT] = forms.get(guess["ambient"], 0 * colours) * lit[:, None]

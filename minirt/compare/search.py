@@ -20,7 +20,7 @@ from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
 UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
-FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too near"
+FOVS = "horizontal", "vertical", "square", "full angle", "ignored", "not normalised", "too near"
 SCALES = tuple(np.geomspace(0.35, 2.8, 19))
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
@@ -33,7 +33,7 @@ NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
-FIRST_EXPONENTS, STEPS = (8, 50, 200), 2  # of highlights: those that are tried first, and how far others are from them
+FIRST_EXPONENTS, STEPS = (16, 64, 512), 2  # of highlights: those that are tried first, and how far others are from them
 
 
 class Case:
@@ -169,20 +169,24 @@ def differences(guess: Guess) -> int:
     return [*(guess[name] != value for name, value in OURS.items()), *costly].count(True)
 
 
-def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
+def steps(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
     """Return the neighbours of a guess by the parameter in which they differ."""
     found: dict[str, list[Guess]] = {}
     for row in rows:
         (name, value), *_ = row.changes.items()
         if guess[name] != value and (name != "specular" or is_near(guess[name], value)):
             found.setdefault(name, []).append(guess | row.changes)
+            if name in SHAPES:  # one size may hide another
+                found[name].append(guess | {each: OURS[each] for each in SHAPES} | row.changes)
     for name, near in found.items():
         if guess[name] != OURS[name]:
             near.append(guess | {name: OURS[name]})
     if "fov" in found:  # rows of the camera
-        scales = [guess["scale"] * factor for factor in FINER] + [1.0]
-        found["fov"] += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS if guess["scale"] != 1.0]
-        found["scale"] = [guess | {"scale": scale} for scale in scales]
+        plain = guess | {"fov": "square" if guess["fov"] == "square" else "horizontal"}  # the others are factors, too
+        across = [slopes(case.scene.camera, case.width / case.height, each)[0] for each in (guess, plain)]
+        scales = [guess["scale"] * across[0] / across[1] * factor for factor in FINER]
+        found["fov"] = [each | {"scale": 1.0} for each in found["fov"]]
+        found["scale"] = [plain | {"scale": scale} for scale in (*scales, 1.0)]
         found["roll"] = [guess | {"roll": guess["roll"] + sign * turn} for turn in ROLLS for sign in (1, -1)]
         found["roll"].append(guess | {"roll": 0.0})
     return found
@@ -205,8 +209,8 @@ def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, c
     best, _ = case.score(guess, count)
     for _ in range(rounds):
         before = best
-        for name in steps(guess, rows):
-            for each in steps(guess, rows).get(name, ()):
+        for name in steps(case, guess, rows):
+            for each in steps(case, guess, rows).get(name, ()):
                 score, _ = case.score(each, count)
                 if score < best * (BETTER if count == FINE else BETTER_YET):
                     guess, best = each, score
@@ -224,10 +228,11 @@ def simplest(case: Case, guess: Guess) -> Guess:
     apart = np.abs(np.array([drawn for drawn, _ in cameras]) - key).max(axis=1)
     near = [each for away, (_, each) in zip(apart, cameras, strict=True) if away < NEAR]
     forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]
-    lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
+    lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)] + [{"brightness": 2}]
     for changed in ([{name: each[name] for name in CAMERA} for each in near], lights):
         guesses = [guess, *(guess | changes for changes in changed)]
         limit = case.score(guess)[0] * ALIKE + NEAR_SCORE
         alike = [each for each in guesses if case.score(each)[0] <= limit]
-        guess = min(alike, key=lambda each: differences(each) + case.score(each)[1])
+        odd = [case.score(each)[1] for each in alike]  # a name is preferred to a factor
+        guess = min(zip(alike, odd, strict=True), key=lambda each: (differences(each[0]) + each[1], each[1]))[0]
     return guess

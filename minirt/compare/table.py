@@ -77,6 +77,7 @@ GEOMETRY = rows(
      "the field of view is taken as vertical: your rays use tan(fov/2) for y; the subject's is horizontal"),
     ("fov", "square", "the field of view is used for x and y alike: multiply y by height/width"),
     ("fov", "full angle", "tan(fov) is used in place of tan(fov/2): the field of view is the whole angle"),
+    ("fov", "ignored", "the field of view of the scene is not used: your rays always see 90 degrees across"),
     ("fov", "not normalised",
      "right and up are too short where the camera looks up or down: normalise the product direction x up"),
     ("fov", "too near", "the picture plane is too near where the camera looks up or down: normalise the product "
@@ -108,13 +109,15 @@ GEOMETRY = rows(
      "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
 )  # fmt: skip
 
-EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 512, 1000
+EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 360, 512, 1000
 LIGHT = rows(
     ("ambient", "light alone", "the ambient light is added as it is: multiply it by the colour of the object"),
     ("ambient", "light plus object",
      "the ambient light and a share of the object's colour are added: multiply one by the other instead"),
     ("ambient", "object alone",
      "the colour of the ambient light is ignored: multiply it by the colour of the object"),
+    ("ambient", "in light of the lamps",
+     "the ambient light is multiplied by that of the lamps, too: it does not depend on them"),
     ("ambient", "of the lamps",
      "the ambient light is a share of the lamps': use brightness and colour of the line A instead"),
     ("ambient", "none", "there is no ambient light"),
@@ -132,6 +135,7 @@ LIGHT = rows(
     ("fading", "linear", "light fades in proportion to the distance from the lamp: here it does not fade"),
     ("colours", "light ignored", "the colours of the lamps are ignored"),
     ("colours", "object ignored", "the colours of the objects are ignored"),
+    ("colours", "object squared", "the colours of the objects count twice: multiply the sum of the light by them once"),
     ("colours", "swapped", "red and blue are swapped: pixels are blue, green, red"),
     ("gamma", 2.2, "levels are light^(1/2.2): the reference writes light without a curve"),
     ("gamma", 2.0, "levels are the square root of light: the reference writes light without a curve"),
