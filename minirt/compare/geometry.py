@@ -27,8 +27,8 @@ WIDEST = 178.0  # degrees from side to side of a cone
 CONE_CHANGES: Meanings = {
     "base": CONES["base"],
     "reversed": lambda cone, axis: {"axis": tuple(-np.array(axis))},
-    "angle": lambda cone, _: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST / 2)), ()),
-    "whole angle": lambda cone, _: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST) / 2), ()),
+    "angle": lambda cone, axis: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST / 2)), axis),
+    "whole angle": lambda cone, axis: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST) / 2), axis),
 }
 MOST_LAYERS = 4  # of caps or inner sides that a ray passes
 ON_CAP = 0.999  # cosine between the normal of a cap and the axis
@@ -238,7 +238,8 @@ def see_each(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guesses:
     seen = met(changed_scene(scene, guesses[0]), origins, ways, guesses[0])
     for start in range(0, len(ways), len(x)):
         part = slice(start, start + len(x))
-        yield Seen(*(each[part] for each in seen[:4]), *(each[:, part] for each in seen[4:9]))
+        parts: list[Any] = [*(each[part] for each in seen[:4]), *(each[:, part] for each in seen[4:9])]
+        yield Seen(*parts)
 
 
 def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:

@@ -28,8 +28,8 @@ EVEN = 0.001  # unevenness of a camera and of sizes that may be right
 NAMED, FREE = 7, 3  # cameras of the table, and those with another field of view, from which shapes are tried
 BEGINNINGS, FINALISTS = 8, 3
 AT_ONCE = 32  # cameras that are traced in one call
-ALIKE = 1.05  # scores up to this times another are as good
-NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
+ALIKE, ALIKE_CAMERA = 1.05, 1.03  # scores up to this times another are as good
+NEAR_SCORE, NEAR_CAMERA = 0.0004, 0.00004  # as are those that differ by a tenth, for cameras a hundredth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
@@ -118,15 +118,13 @@ def search(case: Case) -> Guess:
     """Find the guess that explains the picture best."""
     seen_from = case.evenest(case.cameras.values())
     if case.unevenness[tuple(seen_from[0].values())] > EVEN:  # sizes may hide the camera
-        radii = [row.changes for row in GEOMETRY if row.name == "radius"]
+        radii = [row.changes for row in case.table if row.name == "radius"]
         named = [each for each in seen_from if each["scale"] == 1.0]
         seen_from = case.evenest([*seen_from, *(each | changes for each in named for changes in radii)])
     free = [each for each in seen_from if each["scale"] != 1.0]
     seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
-    cylinders, cones, spheres = case.scene.cylinders, case.scene.cones, case.scene.spheres
-    there = {"cylinder": cylinders, "radius": spheres + cylinders, "cone": cones}
-    names = [name for name, shapes in there.items() if shapes]
-    shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
+    names = "cylinder", "radius", "cone"
+    shaped = [[OURS[name], *(row.changes[name] for row in case.table if name in row.changes)] for name in names]
     combined = [dict(zip(names, values, strict=True)) for values in product(*shaped)]
     variants = case.evenest([each | changes for changes in combined for each in seen_from])
     matt = [row for row in case.light if row.name not in ("specular", "reflections")]
@@ -229,9 +227,10 @@ def simplest(case: Case, guess: Guess) -> Guess:
     near = [each for away, (_, each) in zip(apart, cameras, strict=True) if away < NEAR]
     forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]
     lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)] + [{"brightness": 2}]
-    for changed in ([{name: each[name] for name in CAMERA} for each in near], lights):
+    frames = [{name: each[name] for name in CAMERA} for each in near]
+    for changed, times, more in ((frames, ALIKE_CAMERA, NEAR_CAMERA), (lights, ALIKE, NEAR_SCORE)):
         guesses = [guess, *(guess | changes for changes in changed)]
-        limit = case.score(guess)[0] * ALIKE + NEAR_SCORE
+        limit = case.score(guess)[0] * times + more
         alike = [each for each in guesses if case.score(each)[0] <= limit]
         odd = [case.score(each)[1] for each in alike]  # a name is preferred to a factor
         guess = min(zip(alike, odd, strict=True), key=lambda each: (differences(each[0]) + each[1], each[1]))[0]
