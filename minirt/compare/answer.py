@@ -17,6 +17,7 @@ from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.001  # of inner pixels that a cause explains
+MOST_LEFT = 0.5  # of the pixels that a cause changes may remain unexplained
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
 LEAST_SEEN = 0.005  # share of pixels of a shape that tells the camera
@@ -99,7 +100,11 @@ class Judge:
         return max(float(off[mask].mean()) if mask.any() else 1.0 for mask in (self.counted, self.lit))
 
     def gain(self, without: Fit) -> float:
-        """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
+        """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it, or
+        if most of those that it changes are not explained: something like it is true then."""
+        moved = self.counted & (np.abs(self.fit.shown - without.shown).max(axis=-1) > self.tolerance)
+        if moved.any() and (self.fit.error[moved] > self.tolerance).mean() > MOST_LEFT:
+            return 0.0
         return gain(*(fit.error[self.counted] <= self.tolerance for fit in (self.fit, without)))
 
 

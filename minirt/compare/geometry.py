@@ -111,8 +111,8 @@ def rotation(axis: Floats, onto: Floats) -> Floats:
 def slopes(camera: Camera, aspect: float, guess: Guess) -> tuple[float, float]:
     """Return the slopes, to the side and up, of the rays through the edges of the picture."""
     angle = camera.fov if guess["fov"] == "full angle" else camera.fov / 2
-    half = 1.0 if guess["fov"] == "ignored" else tan(radians(min(max(angle, 1e-6), 89.99)))
-    half *= guess["scale"]
+    angle = radians(min(max(angle, 1e-6), 89.99))
+    half = {"ignored": 1.0, "sine": sin(angle)}.get(guess["fov"], tan(angle)) * guess["scale"]
     level = max(hypot(camera.direction[0], camera.direction[2]), 1e-6)  # cosine of the tilt
     half *= {"not normalised": level, "too near": 1 / level}.get(guess["fov"], 1.0)
     if guess["fov"] == "vertical":

@@ -20,8 +20,8 @@ from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
 UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
-FOVS = "horizontal", "vertical", "square", "full angle", "ignored", "not normalised", "too near"
-SCALES = tuple(np.geomspace(0.35, 2.8, 19))
+FOVS = "horizontal", "vertical", "square", "full angle", "sine", "ignored", "not normalised", "too near"
+SCALES = tuple(np.geomspace(0.35, 4.0, 22))
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
 EVEN = 0.001  # unevenness of a camera and of sizes that may be right

@@ -77,6 +77,7 @@ GEOMETRY = rows(
      "the field of view is taken as vertical: your rays use tan(fov/2) for y; the subject's is horizontal"),
     ("fov", "square", "the field of view is used for x and y alike: multiply y by height/width"),
     ("fov", "full angle", "tan(fov) is used in place of tan(fov/2): the field of view is the whole angle"),
+    ("fov", "sine", "sin(fov/2) is used in place of tan(fov/2)"),
     ("fov", "ignored", "the field of view of the scene is not used: your rays always see 90 degrees across"),
     ("fov", "not normalised",
      "right and up are too short where the camera looks up or down: normalise the product direction x up"),
