@@ -146,7 +146,7 @@ def cameras(case: Case) -> dict[tuple[float, ...], Guess]:
     found: dict[tuple[float, ...], Guess] = {}
     views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
     names = "direction", "flipped", "mirrored", "up"  # of two that draw the same, the mirrored one is likelier
-    values = product(("as given", "reversed"), (False, True), (False, True), UPS)
+    values = product(("as given", "reversed", "angles"), (False, True), (False, True), UPS)
     frames = [OURS | dict(zip(names, each, strict=True)) for each in values]
     for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
         for fov, scale in views if each["direction"] == "as given" else views[:2]:
