@@ -65,7 +65,9 @@ def student_scene(seed: int) -> Scene:
     for _ in range(random.integers(1, 3)):
         axis = random.normal(size=3)
         axis *= np.copysign(1 / np.linalg.norm(axis), axis[1])
-        items.append(minirt.Cylinder(place(0, 2), tuple(axis), between(0.8, 2), between(1.5, 4), colour(40)))
+        written = "cy 0,0,0 {},{},{}".format(*axis / np.abs(axis).max())  # longer than 1, which the reader takes
+        sizes = between(0.8, 2), between(1.5, 4)
+        items.append(minirt.Cylinder(place(0, 2), tuple(axis), *sizes, colour(40), source=written))
     if random.random() < 0.5:
         items.append(minirt.Cone(place(2, 3), (0, -1, 0), between(1, 2), between(1, 3), colour(40)))
     return Scene(items)

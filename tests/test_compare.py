@@ -84,6 +84,12 @@ def test_what_an_edited_scene_shows_is_named(cause: tuple[str, object], tmp_path
         (6, ["cylinder doubled", "shadows none"]),
         (8, ["reflections True", "cylinder turned"]),
         (9, ["fading linear", "mirrored True"]),
+        (0, ["cone both halves"]),
+        (1, ["cone whole angle"]),
+        (1, ["axis not normalised"]),
+        (0, ["axis in the formula"]),
+        (0, ["diffuse brightness squared"]),
+        (1, ["direction angles"]),
     ],
 )
 def test_planted_causes_are_named_alone_and_in_pairs(seed: int, names: list[str], tmp_path: Path) -> None:

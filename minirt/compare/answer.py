@@ -17,11 +17,12 @@ from minirt.compare.table import FREE, OURS, TABLE, Guess
 
 PIXELS = 40_000  # of the sample by which causes are judged
 LEAST_GAIN = 0.001  # of inner pixels that a cause explains
+MOST_LEFT = 0.5  # of the pixels that a cause changes may remain unexplained
 CLEARLY = 4  # times as many pixels are explained only with a cause as only without it
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
 LEAST_SEEN = 0.005  # share of pixels of a shape that tells the camera
 LEAST_EDGES = 50  # pixels of the sample
-EDGE_GAIN = 0.5  # of the unexplained pixels at edges are left by a cause that only moves edges
+EDGE_GAIN, EDGES_LEFT = 0.5, 0.3  # of the unexplained pixels at edges, and of all, a cause that moves edges may leave
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
 LEAST_REST = 0.001  # share of pixels of a part that is worth a line
 MOST_REST = 6  # parts
@@ -99,7 +100,11 @@ class Judge:
         return max(float(off[mask].mean()) if mask.any() else 1.0 for mask in (self.counted, self.lit))
 
     def gain(self, without: Fit) -> float:
-        """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it."""
+        """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it, or
+        if most of those that it changes are not explained: something like it is true then."""
+        moved = self.counted & (np.abs(self.fit.shown - without.shown).max(axis=-1) > self.tolerance)
+        if moved.any() and (self.fit.error[moved] > self.tolerance).mean() > MOST_LEFT:
+            return 0.0
         return gain(*(fit.error[self.counted] <= self.tolerance for fit in (self.fit, without)))
 
 
@@ -155,7 +160,7 @@ def at_edges(judge: Judge) -> Judge:
 
     tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
     best = min((guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts), key=left)
-    return Judge(case, best, judge.tolerance) if left(best) < EDGE_GAIN * left(guess) else judge
+    return Judge(case, best, judge.tolerance) if left(best) < min(EDGE_GAIN * left(guess), EDGES_LEFT) else judge
 
 
 def causes(judge: Judge, guess: Guess) -> list[Cause]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import lru_cache
-from math import cos, hypot, radians, sin, tan
+from math import cos, hypot, radians, sin, sqrt, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,12 +15,21 @@ from numpy.typing import NDArray
 from minirt.compare.table import OURS, Guess
 from minirt.rendering.queries.rays import trace
 from minirt.scene import Camera, Scene
-from minirt.shapes import Cone, Cylinder, Sphere
+from minirt.scene.dialect_tables import CAMERAS, CONES, Meanings
+from minirt.shapes import Cone, Cylinder, Hyperboloid, Sphere
 from minirt.shapes.shape import Capped
 
 Floats = NDArray[np.float64]
 AXES = {"y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1), "x": (1, 0, 0), "-x": (-1, 0, 0)}
 SHAPES = "radius", "cylinder", "axis", "cone"  # parameters that change the shapes of the scene
+LONG = "not normalised", "in the formula"  # of axes, whose length is not 1 then
+WIDEST = 178.0  # degrees from side to side of a cone
+CONE_CHANGES: Meanings = {
+    "base": CONES["base"],
+    "reversed": lambda cone, axis: {"axis": tuple(-np.array(axis))},
+    "angle": lambda cone, axis: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST / 2)), axis),
+    "whole angle": lambda cone, axis: CONES["angle"](cone.replace(diameter=min(cone.diameter, WIDEST) / 2), axis),
+}
 MOST_LAYERS = 4  # of caps or inner sides that a ray passes
 ON_CAP = 0.999  # cosine between the normal of a cap and the axis
 
@@ -51,26 +63,41 @@ def dots(one: Floats, other: Floats) -> Floats:
 
 def frame(camera: Camera, guess: Guess) -> Floats:
     """Return right, up and forward of a picture, (3, 3)."""
-    forward = np.array(camera.direction)
-    if guess["direction"] == "reversed":
-        forward = -forward
-    if guess["up"].startswith("from the "):
-        axis = np.array(AXES[guess["up"].removeprefix("from the ")], float)
-        turned = rotation(axis, forward)
-        right, up = turned @ np.cross(axis, (0.0, 1.0, 0.0)), turned @ np.array([0.0, 1.0, 0.0])
-    elif guess["up"] == "x first":
+    way = camera.direction
+    if guess["direction"] in CAMERAS:
+        way = CAMERAS[guess["direction"]](camera, as_written(camera))["direction"]
+    right, over, forward = looking(way, guess["up"], camera.roll + guess["roll"])
+    if guess["mirrored"] != camera.left_handed:
+        right = -right
+    return np.array([right, -over if guess["flipped"] else over, forward])
+
+
+@lru_cache(256)
+def looking(direction: tuple[float, float, float], way_up: str, roll: float) -> Floats:
+    """Return right, up and forward of a camera, (3, 3), whose up is made in one of the ways."""
+    forward = np.array(direction)
+    if way_up.startswith("from the "):
+        axis = np.array(AXES[way_up.removeprefix("from the ")], float)
+        matrix = rotation(axis, forward)
+        right, up = matrix @ np.cross(axis, (0.0, 1.0, 0.0)), matrix @ np.array([0.0, 1.0, 0.0])
+    elif way_up == "x first":
         up = unit(np.cross((-1.0, 0.0, 0.0), forward))
         up = up if up.any() else np.array([0.0, 0.0, 1.0])
         right = np.cross(forward, up)
     else:
-        right = np.cross(forward, AXES[guess["up"]])
+        right = np.cross(forward, AXES[way_up])
         right = unit(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0.0, 0.0])
         up = np.cross(right, forward)
-    turn = radians(camera.roll + guess["roll"])
-    right, up = cos(turn) * right - sin(turn) * up, sin(turn) * right + cos(turn) * up
-    if guess["mirrored"] != camera.left_handed:
-        right = -right
-    return np.array([right, -up if guess["flipped"] else up, forward])
+    turn = radians(roll)
+    return np.array([cos(turn) * right - sin(turn) * up, sin(turn) * right + cos(turn) * up, forward])
+
+
+def as_written(element: Camera | Cone | Cylinder) -> tuple[float, float, float]:
+    """Return the direction of an element as its line in the file has it, where it need not be of length 1."""
+    with suppress(IndexError, ValueError):
+        x, y, z = map(float, re.findall(r"\S+,\S+,\S+", element.source)[1].split(","))
+        return x, y, z
+    return element.direction if isinstance(element, Camera) else element.axis
 
 
 def rotation(axis: Floats, onto: Floats) -> Floats:
@@ -84,7 +111,8 @@ def rotation(axis: Floats, onto: Floats) -> Floats:
 def slopes(camera: Camera, aspect: float, guess: Guess) -> tuple[float, float]:
     """Return the slopes, to the side and up, of the rays through the edges of the picture."""
     angle = camera.fov if guess["fov"] == "full angle" else camera.fov / 2
-    half = tan(radians(min(max(angle, 1e-6), 89.99))) * guess["scale"]
+    angle = radians(min(max(angle, 1e-6), 89.99))
+    half = {"ignored": 1.0, "sine": sin(angle)}.get(guess["fov"], tan(angle)) * guess["scale"]
     level = max(hypot(camera.direction[0], camera.direction[2]), 1e-6)  # cosine of the tilt
     half *= {"not normalised": level, "too near": 1 / level}.get(guess["fov"], 1.0)
     if guess["fov"] == "vertical":
@@ -114,28 +142,43 @@ def changed_scene(scene: Scene, guess: Guess) -> Scene:
 def edited(scene: Scene, radius: str, cylinder: str, axis: str, cone: str) -> Scene:
     """Return the scene with changed spheres, cylinders and cones."""
     for shape in scene.shapes:
-        changes: dict[str, Any] = {}
+        new: Any = shape
         if isinstance(shape, Sphere) and radius in ("spheres", "all"):
-            changes["diameter"] = shape.diameter * 2
+            new = shape.replace(diameter=shape.diameter * 2)
+        if isinstance(shape, Cone | Cylinder) and axis in LONG:
+            new = lengthened(shape, hypot(*as_written(shape)), axis)
         if isinstance(shape, Cylinder):
-            changes = cylinder_changes(shape, radius, cylinder, axis)
-        if isinstance(shape, Cone) and cone != "apex":
-            apex, way = np.array(shape.apex), np.array(shape.axis)
-            changes["axis"] = tuple(-way)
-            if cone == "base":
-                changes["apex"] = tuple(apex + way * shape.height)
-        if changes:
-            scene = scene.replace(shape, **changes)
+            new = new.replace(**cylinder_changes(new, radius, cylinder, axis))
+        if isinstance(shape, Cone) and cone in CONE_CHANGES:
+            new = new.replace(**CONE_CHANGES[cone](new, new.axis))
+        if new != shape:
+            scene = scene.replace(shape, new)
+        if isinstance(shape, Cone) and cone == "both halves":
+            scene = scene.add(new.replace(axis=tuple(-np.array(new.axis))))
     return scene
 
 
-def cylinder_changes(shape: Cylinder, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
+def lengthened(shape: Cone | Cylinder, length: float, axis: str) -> Cone | Cylinder | Hyperboloid:
+    """Return a shape as a formula draws it into which the axis goes with a length other than 1."""
+    if axis == "not normalised":
+        return shape.replace(height=shape.height * length)
+    height = shape.height / length
+    if isinstance(shape, Cone):  # (p . axis)^2 = p . p / (1 + slope^2)
+        steepness = length**2 * (1 + (shape.diameter / 2 / shape.height) ** 2) - 1
+        return shape.replace(height=height, diameter=2 * height * sqrt(steepness)) if steepness > 0 else shape
+    if length < 1:
+        return shape
+    across = sqrt(shape.diameter**2 + (length**2 - 1) * height**2)  # p . p - (p . axis)^2 = radius^2
+    return Hyperboloid(shape.centre, shape.axis, shape.diameter, across, height, shape.colour)
+
+
+def cylinder_changes(shape: Cylinder | Hyperboloid, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
     """Return the changed fields of a cylinder."""
     changes: dict[str, Any] = {}
     x, y, z = shape.axis
     ways = {"upright": (0.0, 1.0, 0.0), "-x": (-x, y, z), "-z": (x, y, -z), "swapped": (z, y, x)}
     way = np.array(ways.get(axis, shape.axis))
-    if axis != "as given":
+    if axis in ways:
         changes["axis"] = tuple(way)
     if radius in ("cylinders", "all"):
         changes["diameter"] = shape.diameter * 2
@@ -179,19 +222,33 @@ def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any
 
 def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Seen:
     """Trace pixels of a picture, from what they show to all lamps, and the same of what mirrors show."""
-    scene = changed_scene(scene, guess)
-    ways = directions(scene, size, x, y, guess)
-    seen = met(scene, np.broadcast_to(np.array(scene.camera.position), ways.shape), ways, guess)
+    (seen,) = see_each(scene, size, x, y, [guess])
     if not guess["reflections"]:
         return seen
     there, normal = (seen.owner >= 0)[:, None], np.nan_to_num(seen.normal)
-    mirrored = ways - 2 * dots(ways, normal)[:, None] * normal
-    return seen._replace(mirror=met(scene, np.where(there, seen.point, scene.camera.position), mirrored, guess))
+    mirrored = seen.direction - 2 * dots(seen.direction, normal)[:, None] * normal
+    origins = np.where(there, seen.point, scene.camera.position)
+    return seen._replace(mirror=met(changed_scene(scene, guess), origins, mirrored, guess))
+
+
+def see_each(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guesses: Sequence[Guess]) -> Iterator[Seen]:
+    """Trace the same pixels under guesses that differ in the camera alone, all at once; without mirrors."""
+    ways = np.concatenate([directions(scene, size, x, y, guess) for guess in guesses])
+    origins = np.broadcast_to(np.array(scene.camera.position), ways.shape)
+    seen = met(changed_scene(scene, guesses[0]), origins, ways, guesses[0])
+    for start in range(0, len(ways), len(x)):
+        part = slice(start, start + len(x))
+        parts: list[Any] = [*(each[part] for each in seen[:4]), *(each[:, part] for each in seen[4:9])]
+        yield Seen(*parts)
 
 
 def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:
-    """Trace rays, and from what they meet to all lamps."""
+    """Trace rays, and from what they meet to all lamps. Second halves of cones, the last shapes, count as the first."""
     _, owner, point, normal = hits(scene, origins, ways, guess)
+    if guess["cone"] == "both halves":
+        first = len(scene.shapes) - len(scene.cones) // 2
+        cones = [scene.shapes.index(cone) for cone in scene.cones[: len(scene.cones) // 2]]
+        owner = np.array([*range(first), *cones, -1])[owner]
     lamps, count = scene.lights, len(owner)
     to_light, distance = np.zeros((len(lamps), count, 3)), np.full((len(lamps), count), np.inf)
     strength, open_to, open_beyond = np.ones((len(lamps), count)), *np.zeros((2, len(lamps), count), bool)

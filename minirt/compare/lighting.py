@@ -89,10 +89,11 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     mirrors show are added up by `factors`."""
     shapes, lamps = scene.shapes, scene.lights
     colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
-    if guess["colours"] == "object ignored":
-        colours = np.ones_like(colours)
+    colours = colours ** {"object ignored": 0, "object squared": 2}.get(guess["colours"], 1)
     is_white = guess["colours"] == "light ignored"
-    bright = [numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness for lamp in lamps]
+    bright = [
+        numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness ** guess["brightness"] for lamp in lamps
+    ]
     normal, cosine = cosines(seen, guess)
     arrived = arriving(seen, guess)
     light = cosine * arrived
@@ -100,9 +101,10 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     light = light / np.maximum(distance, 1e-3) ** exponent(guess)
     tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
-    plain = np.ones_like(colours)
+    plain, lamps_light = np.ones_like(colours), np.sum([0 * tint, *bright], axis=0)
     forms = {"object x light": colours * tint, "light alone": plain * tint, "light plus object": plain * tint,
-             "object alone": colours * grey, "of the lamps": colours * np.sum([0 * tint, *bright], axis=0)}  # fmt: skip
+             "object alone": colours * grey, "of the lamps": colours * lamps_light,
+             "in light of the lamps": colours * tint * lamps_light}  # fmt: skip
     lit = guess["ambient_in_shadow"] | (light > 0).any(axis=0)
     terms = np.zeros((*colours.shape, LAMPS + len(lamps)))
     terms[..., AMBIENT] = forms.get(guess["ambient"], 0 * colours) * lit[:, None]
@@ -122,8 +124,13 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
             own = material.share * highlights(seen, normal, form, material.exponent) * shining * (seen.owner == number)
             terms[..., SPECULAR] += np.einsum("ln,lc->nc", own, bright)
     if seen.mirror is not None:
-        terms[..., MIRROR] = columns(scene, seen.mirror, guess, factors) @ factors
+        terms[..., MIRROR] = added(columns(scene, seen.mirror, guess, factors), factors)
     return terms
+
+
+def added(terms: Floats, factors: Floats) -> Floats:
+    """Return the sums of terms, (n, 3, k), with factors; in one product of a matrix, which is several times faster."""
+    return (terms.reshape(-1, len(factors)) @ factors).reshape(terms.shape[:-1])
 
 
 def exponent(guess: Guess) -> int:
@@ -199,21 +206,27 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
     terms_of: dict[str, Any] = {"ambient": AMBIENT, "diffuse": slice(LAMPS, None), "specular": SPECULAR}
     held = terms_of.get(fixed, slice(0))
     weight[held, held] *= HELD
-    factors, kept = usual, np.ones(len(values), bool)
+    factors, kept, before = usual, np.ones(len(values), bool), np.zeros(len(values), bool)
     for _ in range(ROUNDS):
+        if (kept == before).all():
+            break
+        before = kept
         chosen, aims = rows[kept], values[kept]
         found = np.linalg.solve(chosen.T @ chosen + weight, chosen.T @ aims + weight @ usual)
         factors = np.maximum(found, 0).astype(np.float64)
         off = np.abs(rows @ factors - values)
         is_lit = rows[:, FADED:] @ factors[FADED:] >= 0  # as far as lamps reach that fade
-        kept = (off < max(2 * np.median(off[is_lit]), 3 * LEVEL)) & is_lit if is_lit.any() else kept
+        if lit := np.count_nonzero(is_lit):
+            kept = (off < max(2 * np.partition(off[is_lit], lit // 2)[lit // 2], 3 * LEVEL)) & is_lit
     return factors
 
 
 def drawn(terms: Floats, seen: Seen, guess: Guess, factors: Floats, sky: Floats) -> Floats:
     """Return the levels of pixels, (n, 3) from 0 to 1, in the order of the scene's colours."""
-    direct = terms[..., FADED:] @ factors[FADED:]  # of lamps; no less than 0 where light fades
-    shown = shown_levels(terms @ factors - np.minimum(direct, 0), guess)
+    shown = added(terms, factors)
+    if guess["fading"] == "linear":  # to no less than 0
+        shown -= np.minimum(added(terms, factors * (np.arange(len(factors)) >= FADED)), 0)
+    shown = shown_levels(shown, guess)
     shown[seen.owner < 0] = sky
     return shown
 

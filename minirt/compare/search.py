@@ -6,33 +6,34 @@ they are; then the light; then all rows of the table in turn, from the best few 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Floats, Seen, frame, see, slopes
+from minirt.compare.geometry import SHAPES, Floats, Seen, changed_scene, frame, see, see_each, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
 UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
-FOVS = "horizontal", "vertical", "square", "full angle", "not normalised", "too near"
-SCALES = tuple(np.geomspace(0.35, 2.8, 19))
+FOVS = "horizontal", "vertical", "square", "full angle", "sine", "ignored", "not normalised", "too near"
+SCALES = tuple(np.geomspace(0.35, 4.0, 22))
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
 EVEN = 0.001  # unevenness of a camera and of sizes that may be right
 NAMED, FREE = 7, 3  # cameras of the table, and those with another field of view, from which shapes are tried
 BEGINNINGS, FINALISTS = 8, 3
-ALIKE = 1.05  # scores up to this times another are as good
-NEAR_SCORE = 0.0004  # as are those that differ by a tenth of a level
+AT_ONCE = 32  # cameras that are traced in one call
+ALIKE, ALIKE_CAMERA = 1.05, 1.03  # scores up to this times another are as good
+NEAR_SCORE, NEAR_CAMERA = 0.0004, 0.00004  # as are those that differ by a tenth, for cameras a hundredth of a level
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
-FIRST_EXPONENTS, STEPS = (8, 50, 200), 2  # of highlights: those that are tried first, and how far others are from them
+FIRST_EXPONENTS, STEPS = (16, 64, 512), 2  # of highlights: those that are tried first, and how far others are from them
 
 
 class Case:
@@ -43,11 +44,17 @@ class Case:
         self.height, self.width = picture.shape[:2]
         self.judged = lighting.plain_shapes(scene)
         has_specks = speck_share(picture) > SPECKLED
-        self.table = [row for row in TABLE if row.name != "acne" or has_specks]
+        self.table = [row for row in TABLE if self.tells(row) and (row.name != "acne" or has_specks)]
         self.light = [row for row in self.table if row in LIGHT]
-        self.cameras = tuple(cameras(self))
+        self.cameras = cameras(self)
         self.kept: dict[Any, Seen] = {}
         self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self.scores: dict[Any, tuple[float, int]] = {}
+        self.unevenness: dict[Any, float] = {}
+
+    def tells(self, row: Hypothesis) -> bool:
+        """Whether a row changes this scene, if it is about shapes."""
+        return not set(row.changes) <= set(SHAPES) or changed_scene(self.scene, OURS | row.changes) is not self.scene
 
     def sample(self, count: int) -> tuple[Floats, Floats, Floats]:
         """Return x, y and colours of about that many pixels, on a slanted grid."""
@@ -77,11 +84,30 @@ class Case:
         seen = self.see(guess, count)
         return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
 
-    def unevenness(self, guess: Guess) -> float:
-        """Return how far the regions of a guess are from being one colour in one light each."""
-        seen = self.see(guess, COARSE)
-        residual = lighting.unevenness(seen, self.sample(COARSE)[2], guess)
-        return float(np.minimum(residual, lighting.STEADY**2).mean())
+    def score(self, guess: Guess, count: int = FINE) -> tuple[float, int]:
+        """Return the score of a guess on a sample, and the number of its odd factors; all of them are kept."""
+        key = count, *guess.values()
+        if key not in self.scores:
+            fit = self.fit(guess, count)
+            self.scores[key] = fit.score, fit.odd
+        return self.scores[key]
+
+    def evenest(self, guesses: Iterable[Guess]) -> list[Guess]:
+        """Sort guesses by how far their regions are from being one colour in one light each; first the evenest.
+
+        Cameras that look at the same shapes are traced at once: the rays of one take less time than a call.
+        """
+        x, y, colours = self.sample(COARSE)
+        groups: dict[Any, list[Guess]] = {}
+        for each in guesses:
+            groups.setdefault(tuple(each[name] for name in SHAPES), []).append(each)
+        for group in groups.values():
+            for start in range(0, len(group), AT_ONCE):
+                some = group[start : start + AT_ONCE]
+                for each, seen in zip(some, see_each(self.scene, (self.width, self.height), x, y, some), strict=True):
+                    residual = np.minimum(lighting.unevenness(seen, colours, each), lighting.STEADY**2)
+                    self.unevenness[tuple(each.values())] = float(residual.mean())
+        return sorted(guesses, key=lambda each: self.unevenness[tuple(each.values())])
 
 
 CAMERA = "direction", "flipped", "mirrored", "up", "fov", "scale", "roll"
@@ -90,25 +116,22 @@ GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "s
 
 def search(case: Case) -> Guess:
     """Find the guess that explains the picture best."""
-    seen_from = sorted(case.cameras, key=case.unevenness)
-    if case.unevenness(seen_from[0]) > EVEN:  # sizes may hide the camera
-        radii = [row.changes for row in GEOMETRY if row.name == "radius"]
+    seen_from = case.evenest(case.cameras.values())
+    if case.unevenness[tuple(seen_from[0].values())] > EVEN:  # sizes may hide the camera
+        radii = [row.changes for row in case.table if row.name == "radius"]
         named = [each for each in seen_from if each["scale"] == 1.0]
-        seen_from += [each | changes for each in named for changes in radii]
-        seen_from.sort(key=case.unevenness)
+        seen_from = case.evenest([*seen_from, *(each | changes for each in named for changes in radii)])
     free = [each for each in seen_from if each["scale"] != 1.0]
     seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
-    cylinders, cones, spheres = case.scene.cylinders, case.scene.cones, case.scene.spheres
-    there = {"cylinder": cylinders, "radius": spheres + cylinders, "cone": cones}
-    names = [name for name, shapes in there.items() if shapes]
-    shaped = [[OURS[name], *(row.changes[name] for row in GEOMETRY if name in row.changes)] for name in names]
-    variants = [each | dict(zip(names, values, strict=True)) for values in product(*shaped) for each in seen_from]
-    variants.sort(key=case.unevenness)
+    names = "cylinder", "radius", "cone"
+    shaped = [[OURS[name], *(row.changes[name] for row in case.table if name in row.changes)] for name in names]
+    combined = [dict(zip(names, values, strict=True)) for values in product(*shaped)]
+    variants = case.evenest([each | changes for changes in combined for each in seen_from])
     matt = [row for row in case.light if row.name not in ("specular", "reflections")]
     lit = [descend(case, each, by_gain(case, each, matt), 1) for each in [OURS, *variants[:BEGINNINGS]]]
-    best = sorted(lit, key=lambda each: case.fit(each).score)[:FINALISTS]
+    best = sorted(lit, key=case.score)[:FINALISTS]
     found = [simplest(case, descend(case, each, case.table, 3)) for each in best]
-    return descend(case, min(found, key=lambda each: case.fit(each).score), case.light, 1, LARGE)
+    return descend(case, min(found, key=case.score), case.light, 1, LARGE)
 
 
 def speck_share(picture: Floats) -> float:
@@ -118,19 +141,18 @@ def speck_share(picture: Floats) -> float:
     return float((beside - light[:, 1:-1] > SPECK).mean())
 
 
-def cameras(case: Case) -> Iterator[Guess]:
-    """Yield guesses about the camera, simple ones first; of those that draw the same only the first."""
-    drawn = set()
+def cameras(case: Case) -> dict[tuple[float, ...], Guess]:
+    """Return guesses about the camera by what they draw, simple ones first; of those that draw the same the first."""
+    found: dict[tuple[float, ...], Guess] = {}
     views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
     names = "direction", "flipped", "mirrored", "up"  # of two that draw the same, the mirrored one is likelier
-    values = product(("as given", "reversed"), (False, True), (False, True), UPS)
+    values = product(("as given", "reversed", "angles"), (False, True), (False, True), UPS)
     frames = [OURS | dict(zip(names, each, strict=True)) for each in values]
     for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
         for fov, scale in views if each["direction"] == "as given" else views[:2]:
             guess = each | {"fov": fov, "scale": scale}
-            if (key := drawn_by(case, guess)) not in drawn:
-                drawn.add(key)
-                yield guess
+            found.setdefault(drawn_by(case, guess), guess)
+    return found
 
 
 def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
@@ -145,20 +167,24 @@ def differences(guess: Guess) -> int:
     return [*(guess[name] != value for name, value in OURS.items()), *costly].count(True)
 
 
-def steps(guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
+def steps(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
     """Return the neighbours of a guess by the parameter in which they differ."""
     found: dict[str, list[Guess]] = {}
     for row in rows:
         (name, value), *_ = row.changes.items()
         if guess[name] != value and (name != "specular" or is_near(guess[name], value)):
             found.setdefault(name, []).append(guess | row.changes)
+            if name in SHAPES:  # one size may hide another
+                found[name].append(guess | {each: OURS[each] for each in SHAPES} | row.changes)
     for name, near in found.items():
         if guess[name] != OURS[name]:
             near.append(guess | {name: OURS[name]})
     if "fov" in found:  # rows of the camera
-        scales = [guess["scale"] * factor for factor in FINER] + [1.0]
-        found["fov"] += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS if guess["scale"] != 1.0]
-        found["scale"] = [guess | {"scale": scale} for scale in scales]
+        plain = guess | {"fov": "square" if guess["fov"] == "square" else "horizontal"}  # the others are factors, too
+        across = [slopes(case.scene.camera, case.width / case.height, each)[0] for each in (guess, plain)]
+        scales = [guess["scale"] * across[0] / across[1] * factor for factor in FINER]
+        found["fov"] = [each | {"scale": 1.0} for each in found["fov"]]
+        found["scale"] = [plain | {"scale": scale} for scale in (*scales, 1.0)]
         found["roll"] = [guess | {"roll": guess["roll"] + sign * turn} for turn in ROLLS for sign in (1, -1)]
         found["roll"].append(guess | {"roll": 0.0})
     return found
@@ -173,17 +199,17 @@ def is_near(highlight: Any, other: tuple[str, int, str]) -> bool:
 
 def by_gain(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> list[Hypothesis]:
     """Sort rows by how well a guess explains the picture with each of them."""
-    return sorted(rows, key=lambda row: case.fit(guess | row.changes).score)
+    return sorted(rows, key=lambda row: case.score(guess | row.changes))
 
 
 def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, count: int = FINE) -> Guess:
     """Improve a guess, one parameter after the other, until no step explains the picture clearly better."""
-    best = case.fit(guess, count).score
+    best, _ = case.score(guess, count)
     for _ in range(rounds):
         before = best
-        for name in steps(guess, rows):
-            for each in steps(guess, rows).get(name, ()):
-                score = case.fit(each, count).score
+        for name in steps(case, guess, rows):
+            for each in steps(case, guess, rows).get(name, ()):
+                score, _ = case.score(each, count)
                 if score < best * (BETTER if count == FINE else BETTER_YET):
                     guess, best = each, score
         if best == before:
@@ -195,14 +221,17 @@ def simplest(case: Case, guess: Guess) -> Guess:
     """Return the guess of fewest differences that explains the picture as well: with a camera of the table that draws
     nearly the same in place of free numbers, and with plainer light."""
     key = drawn_by(case, guess)
-    cameras = [guess | {name: each[name] for name in CAMERA} for each in case.cameras]
-    cameras += [guess | {"fov": fov, "scale": 1.0} for fov in FOVS] + [guess | {"roll": 0.0}]
-    near = [each for each in cameras if np.abs(np.subtract(drawn_by(case, each), key)).max() < NEAR]
+    others = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS] + [guess | {"roll": 0.0}]
+    cameras = [*case.cameras.items(), *((drawn_by(case, each), each) for each in others)]
+    apart = np.abs(np.array([drawn for drawn, _ in cameras]) - key).max(axis=1)
+    near = [each for away, (_, each) in zip(apart, cameras, strict=True) if away < NEAR]
     forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]
-    lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)]
-    for others in ([{name: each[name] for name in CAMERA} for each in near], lights):
-        fits = [(each, case.fit(each)) for each in [guess, *(guess | changes for changes in others)]]
-        limit = fits[0][1].score * ALIKE + NEAR_SCORE
-        alike = [(differences(each) + fit.odd, number) for number, (each, fit) in enumerate(fits) if fit.score <= limit]
-        guess = fits[min(alike)[1]][0]
+    lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)] + [{"brightness": 2}]
+    frames = [{name: each[name] for name in CAMERA} for each in near]
+    for changed, times, more in ((frames, ALIKE_CAMERA, NEAR_CAMERA), (lights, ALIKE, NEAR_SCORE)):
+        guesses = [guess, *(guess | changes for changes in changed)]
+        limit = case.score(guess)[0] * times + more
+        alike = [each for each in guesses if case.score(each)[0] <= limit]
+        odd = [case.score(each)[1] for each in alike]  # a name is preferred to a factor
+        guess = min(zip(alike, odd, strict=True), key=lambda each: (differences(each[0]) + each[1], each[1]))[0]
     return guess

@@ -26,6 +26,7 @@ OURS: Guess = {
     "cone": "apex",
     "caps": True,
     "inside": True,
+    "brightness": 1,  # the power in which that of lamps counts
     "ambient": "object x light",
     "ambient_in_shadow": True,
     "shadows": "to the lamp",
@@ -65,6 +66,8 @@ GEOMETRY = rows(
     ("mirrored", True, "left and right are swapped: negate the camera's right vector (right = direction x up)"),
     ("flipped", True, "the picture is upside down: row 0 is the upper one, y grows downwards in pictures"),
     ("direction", "reversed", "the camera looks backwards: negate the viewing direction"),
+    ("direction", "angles",
+     "the camera's direction is taken as angles by which it is turned: it is a vector, the way that the camera looks"),
     *(("up", up, f"the camera's up is {up}: the reference builds right = direction x (0,1,0)")
       for up in ("z", "-z", "x", "-x", "-y")),
     *(("up", up, f"the camera is turned by the shortest rotation {up} axis onto its direction, {SHORTEST}")
@@ -74,6 +77,8 @@ GEOMETRY = rows(
      "the field of view is taken as vertical: your rays use tan(fov/2) for y; the subject's is horizontal"),
     ("fov", "square", "the field of view is used for x and y alike: multiply y by height/width"),
     ("fov", "full angle", "tan(fov) is used in place of tan(fov/2): the field of view is the whole angle"),
+    ("fov", "sine", "sin(fov/2) is used in place of tan(fov/2)"),
+    ("fov", "ignored", "the field of view of the scene is not used: your rays always see 90 degrees across"),
     ("fov", "not normalised",
      "right and up are too short where the camera looks up or down: normalise the product direction x up"),
     ("fov", "too near", "the picture plane is too near where the camera looks up or down: normalise the product "
@@ -91,25 +96,36 @@ GEOMETRY = rows(
     ("axis", "-x", "the x of cylinders' axes is negated: they lean to the other side"),
     ("axis", "-z", "the z of cylinders' axes is negated: they lean to the other side"),
     ("axis", "swapped", "x and z of cylinders' axes are swapped"),
+    ("axis", "not normalised", "the ends of cylinders and cones lie further off where their axis is longer: "
+     "scale the axis to length 1"),
+    ("axis", "in the formula", "an axis that is not of length 1 bends or shortens cylinders and cones: "
+     "scale it to length 1 before it enters the formula"),
     ("cone", "base", "the point of a cone is taken as the centre of its base: here it is the apex"),
     ("cone", "reversed", "cones open against their axis: here the axis runs from the apex to the base"),
+    ("cone", "both halves", "cones go on beyond their apex, with a second half: leave out hits at negative heights"),
+    ("cone", "whole angle", "the diameter of cones is taken as their angle in degrees, from side to side"),
+    ("cone", "angle", "the diameter of cones is taken as the angle in degrees from their axis to their side"),
     ("caps", False, "cylinders and cones have no caps: one looks into them"),
     ("inside", False,
      "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
 )  # fmt: skip
 
-EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 512, 1000
+EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 360, 512, 1000
 LIGHT = rows(
     ("ambient", "light alone", "the ambient light is added as it is: multiply it by the colour of the object"),
     ("ambient", "light plus object",
      "the ambient light and a share of the object's colour are added: multiply one by the other instead"),
     ("ambient", "object alone",
      "the colour of the ambient light is ignored: multiply it by the colour of the object"),
+    ("ambient", "in light of the lamps",
+     "the ambient light is multiplied by that of the lamps, too: it does not depend on them"),
     ("ambient", "of the lamps",
      "the ambient light is a share of the lamps': use brightness and colour of the line A instead"),
     ("ambient", "none", "there is no ambient light"),
     ("ambient", "not in shadow", "shadows are without ambient light: it reaches all surfaces",
      {"ambient_in_shadow": False}),
+    ("diffuse", "brightness squared",
+     "the brightness of lamps counts twice: multiply by it once", {"brightness": 2}),
     ("shadows", "none", "there are no shadows: send a ray from the point to the lamp"),
     ("shadows", "behind the lamp",
      "things behind the lamp cast shadows, too: only hits nearer than the lamp count"),
@@ -120,6 +136,7 @@ LIGHT = rows(
     ("fading", "linear", "light fades in proportion to the distance from the lamp: here it does not fade"),
     ("colours", "light ignored", "the colours of the lamps are ignored"),
     ("colours", "object ignored", "the colours of the objects are ignored"),
+    ("colours", "object squared", "the colours of the objects count twice: multiply the sum of the light by them once"),
     ("colours", "swapped", "red and blue are swapped: pixels are blue, green, red"),
     ("gamma", 2.2, "levels are light^(1/2.2): the reference writes light without a curve"),
     ("gamma", 2.0, "levels are the square root of light: the reference writes light without a curve"),
