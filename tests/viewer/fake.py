@@ -155,8 +155,7 @@ def played(
 ) -> Session:
     """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`.
 
-    Its pictures of one colour are not judged, which would take most of the time: the tests of sessions do that.
-    """
+    Its pictures of one colour are not judged, which would take most of the time: the tests of sessions do that."""
     with patch.object(PictureJudge, "judge"):
         return play(
             parse(text, path).scene, lines, renderer=FakeRenderer(), size=size, path=path, keys=keys, watch=watch

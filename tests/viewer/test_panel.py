@@ -151,8 +151,7 @@ def user_of(kind: type[Element], path: Path, attributes: bool = True) -> User:  
     state = holding(kind, path)
     while attributes and (added := next(choices(state, ATTRIBUTE), ("", None))[1]):
         state = added
-    state = tilted(state)
-    user = User(state.scene, select=state.selected)
+    user = User(tilted(state).scene, select=state.selected)
     user.unfold(*FOLDED)
     return user
 

@@ -117,10 +117,7 @@ def test_the_most_specialised_kernel_comes_first() -> None:
 
 
 def test_generalising_copies_nothing() -> None:
-    for scene in (
-        SPECIAL["a mesh and parallel light"],
-        SPECIAL["parallel light, a BVH, mirrors and a background"],
-    ):
+    for scene in (SPECIAL[name] for name in SPECIAL if name != "no lights, planes only"):
         arrays = packed(scene)
         generic = generalised(arrays, empty_arrays(fitting(arrays)[-1]))
         for name in ("slots", "cones", "light_cones", "colours_and_extents", "tile_shapes", "light_shapes", "lights"):

@@ -48,10 +48,7 @@ raise SystemExit(run(scene(), path="scene.rt", renderer=renderer, mlx=Mlx(memory
 
 @pytest.fixture(autouse=True)
 def without_time_limit(monkeypatch) -> None:
-    """Give the painter as long as it needs to end; if it does not end, fail the test instead of ending the process.
-
-    Pictures of one colour are not judged, which would take most of the time.
-    """
+    """Give the painter as long as it needs to end, or fail the test; judge no picture, which would take longest."""
     monkeypatch.setattr(PictureJudge, "judge", lambda _: None)
 
     def fail(_status: int) -> None:
