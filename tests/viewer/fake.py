@@ -6,6 +6,7 @@ import threading
 import zlib
 from collections.abc import Callable
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, dump, parse
+from minirt.viewer.app.judging import PictureJudge
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from tests.waiting import HANG_LIMIT, until
@@ -151,8 +153,13 @@ def played(
     size: tuple[int, int] = (64, 48),
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
-    return play(parse(text, path).scene, lines, renderer=FakeRenderer(), size=size, path=path, keys=keys, watch=watch)
+    """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`.
+
+    Its pictures of one colour are not judged, which would take most of the time: the tests of sessions do that."""
+    with patch.object(PictureJudge, "judge"):
+        return play(
+            parse(text, path).scene, lines, renderer=FakeRenderer(), size=size, path=path, keys=keys, watch=watch
+        )
 
 
 def write(path: Path, text: str) -> None:

@@ -49,54 +49,46 @@ def words_of(recording: str) -> list[list[str]]:
     return [words for words in lines if words]
 
 
+def assert_snowman(built: Scene, within: float = 1e-3) -> None:
+    """White balls rest on each other and on the ground, a hat on them; black eyes and a nose stick out of the head."""
+    balls = sorted((each for each in built.spheres if each.diameter >= 1), key=lambda ball: ball.centre[1])
+    head = balls[-1]
+    assert len(balls) > 2
+    assert all(min(each.colour) >= 200 for each in balls)
+    assert balls[0].centre[1] == pytest.approx(balls[0].diameter / 2)
+    for lower, upper in pairwise(balls):
+        assert dist(lower.centre, upper.centre) == pytest.approx((lower.diameter + upper.diameter) / 2, abs=within)
+    top = head.centre[1] + head.diameter / 2
+    assert built.cylinders
+    for part in sorted(built.cylinders, key=lambda part: part.centre[1]):
+        assert part.centre == pytest.approx((head.centre[0], top + part.height / 2, head.centre[2]), abs=within)
+        top += part.height
+    eyes = [each for each in built.spheres if each.diameter < 1]
+    assert [each.colour for each in eyes] == [(0, 0, 0)] * 2
+    assert all(abs(dist(each.centre, head.centre) - head.diameter / 2) < 0.15 for each in eyes)
+    (nose,) = built.cones
+    outward = [a - b for a, b in zip(nose.apex, head.centre, strict=True)]
+    assert nose.axis == pytest.approx([-part / hypot(*outward) for part in outward], abs=0.05)
+    assert hypot(*outward) == pytest.approx(head.diameter / 2 + nose.height, abs=10 * within)
+
+
 def test_a_snowman_is_built_with_the_pointer_alone(tmp_path: Path) -> None:
-    """Three white balls rest on each other, the hat on them; eyes and nose stick out; lists need a few letters."""
+    """Lists need a few letters."""
     words = words_of("snowman-pointer")
     uses = sum(each[0] in ("click", "drag", "wheel") for each in words)
     assert uses + any(each[0] == "press" for each in words) == USES
     assert {each[1] for each in words if each[0] == "press"} == {*"orange"[:4], "Return"}
-    built = built_by("snowman-pointer", "", tmp_path)
-    balls = [each for each in built.spheres if each.colour == (255, 255, 255)]
-    assert balls[0].centre[1] == balls[0].diameter / 2
-    for lower, upper in pairwise(balls):
-        assert upper.centre[1] - lower.centre[1] == pytest.approx((lower.diameter + upper.diameter) / 2)
-        assert upper.centre[::2] == lower.centre[::2]
-    head, (nose,), (hat,) = balls[-1], built.cones, built.cylinders
-    eyes = [each for each in built.spheres if each.colour == (0, 0, 0)]
-    assert [dist(each.centre, head.centre) > head.diameter / 2 for each in eyes] == [True, True]
-    assert hat.centre[1] - hat.height / 2 == pytest.approx(head.centre[1] + head.diameter / 2)
-    assert hat.colour == (0, 0, 0)
-    assert dist(nose.apex, head.centre) == pytest.approx(head.diameter / 2 + nose.height, abs=1e-3)
+    assert_snowman(built_by("snowman-pointer", "", tmp_path))
 
 
 def test_a_snowman_is_built_from_nothing_in_few_presses(tmp_path: Path) -> None:
-    """Three balls rest on each other, the hat on them, all on the ground and in the light; eyes and nose stick out."""
     words = words_of("snowman-keyboard")
     assert {each[0] for each in words} <= {"wait", "press", "text", "hold", "down", "up"}
     assert sum(each[0] in ("press", "text", "hold", "down") for each in words) <= KEYS
     assert all(len(each[1]) == 1 for each in words if each[0] == "text")
     built = built_by("snowman-keyboard", (ROOT / "assets/blank.rt").read_text(), tmp_path)
-    assert (len(built.planes), len(built.lights)) == (1, 1)
-    balls = sorted(built.spheres, key=lambda ball: ball.centre[1])
-    balls = [ball for ball in balls if ball.diameter >= 1]
-    head = balls[-1]
-    assert balls[0].centre[1] == pytest.approx(balls[0].diameter / 2)
-    for lower, upper in pairwise(balls):
-        assert dist(lower.centre, upper.centre) == pytest.approx((lower.diameter + upper.diameter) / 2, abs=1e-3)
-        assert upper.centre[::2] == lower.centre[::2]
-    brim, crown = sorted(built.cylinders, key=lambda part: part.centre[1])
-    assert brim.centre[1] - brim.height / 2 == pytest.approx(head.centre[1] + head.diameter / 2, abs=1e-3)
-    assert crown.centre[1] - crown.height / 2 == pytest.approx(brim.centre[1] + brim.height / 2, abs=1e-3)
-    assert brim.colour == crown.colour == (0, 0, 0)
-    assert brim.centre[::2] == crown.centre[::2] == head.centre[::2]
-    eyes = [ball for ball in built.spheres if ball.diameter == 0.2]
-    assert [each.colour for each in eyes] == [(0, 0, 0)] * 2
-    assert all(0.5 < dist(each.centre, head.centre) < 0.65 for each in eyes)
-    assert eyes[0].centre[1:] == eyes[1].centre[1:]
-    (nose,) = built.cones
-    outward = [a - b for a, b in zip(nose.apex, head.centre, strict=True)]
-    assert nose.axis == pytest.approx([-part / hypot(*outward) for part in outward], abs=0.01)
-    assert hypot(*outward) == pytest.approx(head.diameter / 2 + nose.height, abs=1e-3)
+    assert (len(built.planes), len(built.lights), len(built.cylinders)) == (1, 1, 2)
+    assert_snowman(built)
 
 
 def test_the_first_shape_brings_a_lamp_which_is_undone_with_it() -> None:

@@ -20,7 +20,8 @@ from tests.viewer.fake import TEXT, FakeRenderer, played, scene
 
 WIDTH, HEIGHT = 64, 48
 SKY = "sp 0,0,0 9000 9,9,9\n"  # around everything
-SELECTIONS = ((), ("press Tab",), ("click 33,23",), ("click 10,40",), ("press C",))
+SELECTED = (("press Tab",), ("click 33,23",), ("click 10,40",), ("press C",))
+PLACES = ((33, 23), (40, 24), (10, 40), (60, 45))
 BACK = 1 / (1 - APPROACH)
 TILTED = TEXT.replace("C 0,0,10 0,0,-1 90", "C 0,4,10 0.2,-0.3,-1 90")
 
@@ -37,8 +38,7 @@ def camera_of(session: Session) -> Triple:
     return position
 
 
-@pytest.mark.parametrize("selection", SELECTIONS)
-@pytest.mark.parametrize("at", [(33, 23), (40, 24), (10, 40), (60, 45)])
+@pytest.mark.parametrize(("at", "selection"), [*((at, ()) for at in PLACES), *((PLACES[0], each) for each in SELECTED)])
 @pytest.mark.parametrize(
     ("wheel", "left"), [("up 1", 1 - APPROACH), ("up 5", (1 - APPROACH) ** 5), ("down 2", BACK**2)]
 )
@@ -106,19 +106,26 @@ LOOKING = (
 )
 
 
-@pytest.mark.parametrize("end", ["quit", "home", "undo"])
+ENDS = {
+    "quit": ["press Escape"],
+    "home": ["press Home", "press Ctrl+S"],
+    "undo": [*["press Ctrl+Z"] * len(LOOKING), "press Ctrl+S"],
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
 def test_looking_around_leaves_every_byte_of_the_file(end: str, tmp_path: Path) -> None:
-    """Nothing is unsaved, and a view that is saved changes the camera's position and direction alone."""
     path = tmp_path / "scene.rt"
     path.write_text(TEXT)
+    played(*LOOKING, *ENDS[end], path=path)
+    assert path.read_text() == TEXT
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_after_looking_around_nothing_is_unsaved_and_a_view_that_is_saved_changes_the_camera_alone(path: Path) -> None:
     session = played(*LOOKING, path=path)
     assert not contents_differ(session.state.scene, session.saved)
     assert session.state.scene.camera.edited == ()
-    ends = {"quit": ["press Escape"], "home": ["press Home"], "undo": ["press Ctrl+Z"] * len(LOOKING)}
-    saving = [] if end == "quit" else ["press Ctrl+S"]
-    played(*LOOKING, *ends[end], *saving, path=path)
-    assert path.read_text() == TEXT
-    assert list(tmp_path.iterdir()) == [path]
     played(*LOOKING, "press Ctrl+S", path=path)
     changed = [
         (old.split(), new.split())

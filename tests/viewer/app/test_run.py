@@ -14,6 +14,7 @@ from minirt.mlx.memory import Memory
 from minirt.scene import parse
 from minirt.viewer.app import desktop
 from minirt.viewer.app.desktop import run
+from minirt.viewer.app.judging import PictureJudge
 from minirt.viewer.app.replay import replay
 from minirt.viewer.editing.editor import RATE
 from tests import processes
@@ -27,6 +28,7 @@ from threading import Event
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.viewer.app.desktop import run
+from minirt.viewer.app.judging import PictureJudge
 from tests.viewer.fake import FakeRenderer, scene
 from tests.waiting import HANG_LIMIT
 
@@ -46,7 +48,8 @@ raise SystemExit(run(scene(), path="scene.rt", renderer=renderer, mlx=Mlx(memory
 
 @pytest.fixture(autouse=True)
 def without_time_limit(monkeypatch) -> None:
-    """Give the painter as long as it needs to end; if it does not end, fail the test instead of ending the process."""
+    """Give the painter as long as it needs to end, or fail the test; judge no picture, which would take longest."""
+    monkeypatch.setattr(PictureJudge, "judge", lambda _: None)
 
     def fail(_status: int) -> None:
         raise AssertionError("the painter did not end")

@@ -12,7 +12,7 @@ from minirt.fields import Triple
 from minirt.rendering.packing.ray_casting import camera_ray, distances_of
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera
-from minirt.shapes import Shape, Torus
+from minirt.shapes import Mesh, Shape, Torus
 from minirt.shapes import torus as torus_formulas
 from minirt.viewer.display import outline
 from minirt.viewer.display.marks import (
@@ -35,7 +35,7 @@ from minirt.viewer.display.marks import (
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import MoveAxes
-from tests.meshes.examples import named
+from tests.meshes.examples import first_hits, named
 from tests.random_scenes import random_scene
 from tests.viewer.fake import TEXT, colour_of, played, scene
 
@@ -47,7 +47,14 @@ VIEW = projection_of(scene().camera, 320, 180)  # from 0,0,10 along -z, field of
 def edges(shape: Shape, camera: Camera, width: int = WIDTH, height: int = HEIGHT) -> tuple[np.ndarray, np.ndarray]:
     """Return masks of the pixels just outside and just inside a shape, from the distance at every pixel."""
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-    mask = np.isfinite(distances_of(shape, *camera_ray(camera, width, height, x, y)))
+    origin, direction = camera_ray(camera, width, height, x, y)
+    if isinstance(shape, Mesh):
+        directions = np.stack([direction.x, direction.y, direction.z], axis=-1).reshape(-1, 3)
+        corners = shape.rows()[:, :9].reshape(-1, 3, 3)
+        distances = first_hits(corners, np.broadcast_to(camera.position, directions.shape), directions)[0]
+        mask = np.isfinite(distances).reshape(height, width)
+    else:
+        mask = np.isfinite(distances_of(shape, origin, direction))
     framed = np.pad(mask, 1, mode="edge")
     around = framed[:-2, 1:-1], framed[2:, 1:-1], framed[1:-1, :-2], framed[1:-1, 2:]
     return np.logical_or.reduce(around) & ~mask, mask & ~np.logical_and.reduce(around)

@@ -113,8 +113,10 @@ def test_a_drag_with_alt_slides_along_surfaces_and_turns_to_them(chord):
 SKY = "sp 0,0,0 9000 9,9,9\n"  # around everything
 
 
-@pytest.mark.parametrize("lines", [(), ("click 33,23",), ("press Tab",), ("press Ctrl+D",)])
-@pytest.mark.parametrize("text", [TEXT, TEXT + SKY])
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [(TEXT, ()), (TEXT + SKY, ()), *((TEXT, (each,)) for each in ("click 33,23", "press Tab", "press Ctrl+D"))],
+)
 @pytest.mark.parametrize("start", [(40, 24), (10, 40), (10, 10)])
 def test_the_camera_orbits_what_is_under_the_pointer_or_in_the_middle(start, text, lines):
     """On the cylinder; on the plane and on the sky it is the sphere in the middle, whatever is selected."""

@@ -146,7 +146,7 @@ def test_the_last_of_many_elements_is_selected(many: Scene) -> None:
 WILD = "# by hand\nA 0.2 255,255,255\n\tC  0.123456789012345,0,10   0,0,-1 90  # eye\nL 5,5,5 0.5\n\n" + "\n".join(
     f"sp   {i}.000,{i / 3!r},-{i}e0 1.50\t{i},0,0   spc:.50,3e1   mir:0.250\t # no. {i}" for i in range(20)
 )
-WILDS = (WILD, WILD.replace("\n", "\r\n"), f"\ufeff{WILD}\n\n\n")
+WILDS = (WILD, WILD.replace("\n", "\r\n"), f"\ufeff{WILD}\n\n\n")  # LF, CRLF, with a byte order mark
 
 
 @given(st.floats(1e-11, 1e17))
@@ -183,9 +183,11 @@ def test_edited_numbers_have_at_most_nine_digits():
             assert len(number.strip("-").replace(".", "").strip("0")) <= 9, describe(state.element)
 
 
-@pytest.mark.parametrize("wild", WILDS, ids=["LF", "CRLF", "BOM"])
-@pytest.mark.parametrize("drag", ["press d", "hold e 0.31", "press +", "drag 32,30 40,20", "press V"])
-def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag, wild):
+@pytest.mark.parametrize(
+    ("drag", "number"), [("press d", 0), ("hold e 0.31", 1), ("press +", 2), ("drag 32,30 40,20", 1), ("press V", 0)]
+)
+def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag, number):
+    wild = WILDS[number]
     path = tmp_path / "wild.rt"
     path.write_bytes(wild.encode())
     session = played("press Tab", "press Tab", "press Tab", drag, "press Ctrl+S", text=wild, path=path)
