@@ -2,9 +2,9 @@
 
 At first some packets are probed (see `minirt.kernel.pixels.squared_error`), and the first sweep over the picture is a
 plain frame of one sample a pixel. Often that is enough. Otherwise `minirt.rendering.sampling.packets` plans numbers of
-samples by contrast. Where they are far from
-those of the probes, a pilot of few packets gets them and is probed, too. Its error corrects the plan, and all other
-packets are drawn: in portions where a time is given, since each tells how fast the next one is.
+samples by contrast. Where they are far from those of the probes, a pilot of few packets gets them and is probed, too.
+Its error corrects the plan, and all other packets are drawn: in portions where a time is given, since each tells how
+fast the next one is.
 
 What an estimate may be wrong by is added before it is compared with the goal. Probes take a tenth of the time, and no
 pixel takes more than `MOST_SAMPLES`. The picture depends on the error that is asked for alone, or on how fast the
