@@ -145,7 +145,7 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
     is_measured = options.verbose and not executor
     if is_measured:
         start = perf_counter()
-        job.settings.renderer.prepare(job.scene)
+        job.settings.renderer.prepare(job.scene, job.settings.samples)
         tell(f"kernel ready after {perf_counter() - start:.2f} s")
     with kept_work(job, options, share) as journal:
         how = encoding(job.scene, options.output, options)

@@ -108,7 +108,7 @@ class FrameRunner:
         counter = self.reset_counter()
         if not is_wanted():
             return False
-        arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop)
+        arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop, samples)
         rays = packing.view.rays if packing.view and samples == 1 else None
         memory = self.memories[0] if arrays is self.arrays else None
         frame = frame_arguments(arrays, pixels, samples, light, counter, crop, rays, memory)

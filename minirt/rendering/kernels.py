@@ -126,10 +126,11 @@ class Kernels:
         elif not self.specialised_after:  # so that edits need not wait for specialised ones
             self.background.compile(*(each for each in self.for_all_scenes if not LIBRARY.has(each)))
 
-    def is_ready(self, scene: Scene) -> bool:
-        """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
+    def is_ready(self, scene: Scene, samples: object = None) -> bool:
+        """Whether there are kernels that can draw a scene with so many samples, as of `features`; a scene without
+        shapes needs none."""
         self.all_are_ready |= not self.all_are_ready and all(map(LIBRARY.has, self.for_all_scenes))
-        return self.all_are_ready or not scene.runs or all(map(LIBRARY.has, self.specialised(scene)))
+        return self.all_are_ready or not scene.runs or all(map(LIBRARY.has, self.specialised(scene, samples)))
 
     @cached_property
     def for_all_scenes(self) -> list[str]:
@@ -138,19 +139,20 @@ class Kernels:
         full = [each for each in generic_kernels.GENERIC_KERNELS if each[:2] in wanted]
         return [*map(LIBRARY.identity, packing_calls()), *map(generic_identity, full)]
 
-    def specialised(self, scene: Scene) -> list[str]:
-        """Return the identities of the specialised kernels for a scene."""
-        key = features(scene), some_primitives(scene) > SMALL
+    def specialised(self, scene: Scene, samples: object = None) -> list[str]:
+        """Return the identities of the specialised kernels for a scene with so many samples."""
+        key = features(scene, samples), some_primitives(scene) > SMALL
         if key not in self.specialised_kernels:
-            calls = calls_for(scene, self.precision, self.depth)
+            calls = calls_for(scene, self.precision, self.depth, samples)
             self.specialised_kernels[key] = list(map(LIBRARY.identity, calls))
         return self.specialised_kernels[key]
 
-    def compile(self, scene: Scene) -> None:
-        """Compile the missing specialised kernels for a scene, in two processes. RenderError where that fails."""
+    def compile(self, scene: Scene, samples: object = None) -> None:
+        """Compile the missing specialised kernels for a scene with so many samples, in two processes. RenderError
+        where that fails."""
         if not scene.runs:
             return
-        *packing, drawing = self.specialised(scene)
+        *packing, drawing = self.specialised(scene, samples)
         pool = ThreadPoolExecutor(1)
         try:
             first = pool.submit(LIBRARY.compile, packing, self.packing_process)
@@ -189,12 +191,12 @@ EXAMPLE = "A 1 255,255,255\nC 0,0,-9 0,0,1 60\ndl 0,-1,0 1 255,255,255\n" + "sp 
 PIXEL = np.zeros((1, 1, 4), np.uint8)
 
 
-def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
+def calls_for(scene: Scene, precision: str, depth: int, samples: object = None) -> list[Call]:
     """Return calls of the kernels for a scene: of those that pack it, that find contrast and that copy levels, and of
     the specialised one that draws it."""
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
-        arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
+        arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1, samples=samples)
     _, counter, *lists = recorder.calls["pack_frame"][1]
     binning = functions.project_shapes.call(counter, lists[0]), functions.move_shape.call(0, *lists[:3])
     others = *binning, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])

@@ -42,8 +42,9 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
                 yield f"{shape_name(scene, index)} hides nothing from {name}"
 
 
-def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -> Iterator[str]:
-    """Describe the kernel that drew a scene: what it leaves out; `generic` is None for the specialised one."""
+def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool, samples: object = None) -> Iterator[str]:
+    """Describe the kernel that drew a scene with so many samples as of `features`: what it leaves out; `generic` is
+    None for the specialised one."""
     used = {type(shape) for shape in scene.shapes}
     if generic:
         yield f"generic kernel for all kinds of shapes and {'all' if generic.name == 'full' else 'no'} features"
@@ -53,7 +54,7 @@ def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -
     yield f"kernel for {plurals(used)}"
     if unused := {kind.element for kind in ALL_KINDS} - used:
         yield f"kernel without {plurals(unused)}"
-    used_features = features(scene)
+    used_features = features(scene, samples)
     yield f"kernel without {', '.join(words for feature, words in WORDS.items() if feature not in used_features)}"
 
 

@@ -85,22 +85,22 @@ class Renderer:
         if not choice or not last:
             return []
         missing = [] if LIBRARY.has(self.kernels.for_all_scenes[-1]) else [NO_GENERIC_KERNEL]
-        sentences = kernel_notes(last[0], choice.generic, self.kernels.background.busy)
+        sentences = kernel_notes(last[0], choice.generic, self.kernels.background.busy, self.packing.samples)
         return [*sentences, *missing, *self.packing.notes]
 
-    def is_ready(self, scene: Scene) -> bool:
-        """Whether there is a kernel, specialised or generic, that can draw this scene."""
-        return self.kernels.is_ready(scene)
+    def is_ready(self, scene: Scene, samples: object = 1) -> bool:
+        """Whether there is a kernel, specialised or generic, that can draw this scene with so many samples a pixel."""
+        return self.kernels.is_ready(scene, samples)
 
-    def prepare(self, scene: Scene) -> None:
-        """Load a kernel that can draw this scene; where there is none, have the specialised one compiled, which takes
-        seconds. RenderError where that fails."""
-        self.render(scene, np.zeros((1, 1, 4), np.uint8))
+    def prepare(self, scene: Scene, samples: object = 1) -> None:
+        """Load a kernel that can draw this scene with so many samples a pixel, 1 or others; where there is none, have
+        the specialised one compiled, which takes seconds. RenderError where that fails."""
+        self.render(scene, np.zeros((1, 1, 4), np.uint8), 1 if samples == 1 else 2)
 
-    def specialise(self, scene: Scene) -> None:
+    def specialise(self, scene: Scene, samples: object = 1) -> None:
         """Load or compile the specialised kernel for this scene, to measure it alone. RenderError where that fails."""
-        self.kernels.compile(scene)
-        self.prepare(scene)
+        self.kernels.compile(scene, samples)
+        self.prepare(scene, samples)
 
     def specialise_early(self) -> None:
         """Have specialised kernels compiled as soon as a generic one has drawn a picture: for windows."""
@@ -144,22 +144,22 @@ class Renderer:
         """Render a picture with a number of samples. The caller holds `busy`."""
         need = SAMPLE * check_whole("samples", samples, 1)
         check_memory(need, f"{samples} samples a pixel need", "fewer need less")
-        request, is_done = self._begin(request, edges_only)
+        request, is_done = self._begin(request, samples, edges_only)
         if not is_done:
             is_done = self.runner.render_samples(self.packing, request, samples, is_wanted, edges_only)
         if is_done:
             self.tone_mapper.apply(request, is_wanted)
         return is_done and is_wanted()
 
-    def _begin(self, request: Request, edges_only: bool = False) -> tuple[Request, bool]:
+    def _begin(self, request: Request, samples: object = None, edges_only: bool = False) -> tuple[Request, bool]:
         """Return the request with an array for its light, and whether it is done, as it shows the background alone.
 
         Otherwise there is a kernel that can draw it."""
         for memory, _ in self.runner.memories:
             memory[-1, 1] = 0.0
         has_shapes = bool(request.scene.runs and request.pixels.size)
-        if has_shapes and not self.kernels.is_ready(request.scene):
-            self.kernels.compile(request.scene)
+        if has_shapes and not self.kernels.is_ready(request.scene, samples):
+            self.kernels.compile(request.scene, samples)
         request = request._replace(linear=self.tone_mapper.light_for(request, edges_only))
         if has_shapes:
             return request, False

@@ -21,7 +21,7 @@ from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, lights, materials, visibility
 from minirt.rendering.packing.bvh import build_bvh, pack_trees, place_meshes
 from minirt.rendering.packing.camera import Crop, Place
-from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
+from minirt.rendering.packing.features import APERTURES, DEPTH, SECONDARY, SPREAD, features
 from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.view import View
@@ -61,6 +61,7 @@ class Packing:
         self.bvh: Tree | None = None  # of the last shapes, once it was needed
         self.last: tuple[Scene, Place, SceneArrays] | None = None
         self.view: View | None = None  # of the last scene
+        self.samples: object = None  # as of `features`, for which the last scene was packed
         self.spare: dict[int, Bins] = {}  # of the first lights, after a change of shapes
 
     def shape_arrays_for(self, *runs: Sequence[Shape]) -> ShapeArrays:
@@ -79,15 +80,20 @@ class Packing:
             self.bvh = build_bvh(arrays, self.kernel, inf if BOXES in self.without else MARGIN, self.run)
         return self.bvh
 
-    def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:
-        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one.
+    def pack(
+        self, scene: Scene, width: int, height: int, crop: Crop | None = None, samples: object = None
+    ) -> SceneArrays:
+        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one,
+        with so many samples as of `features`.
 
         Until the next call: where nothing but the camera moves they are the same arrays, with other contents.
         """
         place = width, height, crop or Crop(width, height)
         self.shape_arrays_for(*scene.runs)
         last, self.last = self.last, None  # an error leaves none
-        if not (last and last[1] == place and self.follows(scene, last[0], last[2])):
+        is_other = (samples == 1) != (self.samples == 1) and not APERTURES.isdisjoint(features(scene))
+        self.samples = samples
+        if not (last and last[1] == place and not is_other and self.follows(scene, last[0], last[2])):
             last = scene, place, self.pack_anew(scene, place)
         self.last = scene, place, last[2]
         return last[2]
@@ -111,7 +117,10 @@ class Packing:
             return self.cache[key]
 
         numbers, sources = camera.camera_numbers(scene.camera, crop.width, crop.height), lights.emitting_lights(scene)
-        used, colours = features(scene) - (set() if self.depth else SECONDARY), lights.colours_of(scene.camera)
+        used = features(scene, self.samples) - (set() if self.depth else SECONDARY)
+        colours = lights.colours_of(scene.camera)
+        if "soft" not in used:
+            sources = [each.replace(size=None) if each.size else each for each in sources]
         lens = None
         if "lens" in used:
             key, middle = ("middle", numbers.tobytes()), (Vec(*numbers[:3]), Vec(*numbers[9:12]))

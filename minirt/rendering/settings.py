@@ -172,7 +172,7 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
         default = DEFAULT_ERROR if settings.time is None else 0.0
         goal = settings.error or default, inf if settings.time is None else settings.time
         if settings.time is not None:
-            chosen.prepare(scene)
+            chosen.prepare(scene, settings.samples)
         with in_notebooks(lambda: WorkState("sampling")):
             reached = chosen.reach(scene, pixels, *goal, light, crop)
         is_done = reached is not None

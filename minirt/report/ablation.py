@@ -121,7 +121,7 @@ def change(base: Run, other: Run) -> float:
 def compile_seconds(scene: Scene) -> float:
     """Compile the specialised kernel that draws a scene, even if it is there, and keep it in memory; return the
     processor time of the compiler."""
-    identity = LIBRARY.identity(calls_for(scene, "double", DEPTH)[-1])
+    identity = LIBRARY.identity(calls_for(scene, "double", DEPTH, 1)[-1])
     start, before = perf_counter(), os.times()
     (code,) = CompileProcess().compile([identity])
     after = os.times()

@@ -17,9 +17,9 @@ from minirt.fields import Direction, Length, Lengths, MeshField, Picture, Point
 from minirt.materials import Attributes, Clouds, Compound, Glass
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import ATTRIBUTES, NEEDS, PLAIN, WORDS, features, material_features
+from minirt.rendering.packing.features import APERTURES, ATTRIBUTES, NEEDS, PLAIN, WORDS, features, material_features
 from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
-from minirt.scene import Background, Camera, FurtherLight, Scene, SpotLight
+from minirt.scene import Background, Scene, SpotLight
 from minirt.shapes import ALL_KINDS, Shape
 
 SIZE = 1e-3  # of an added shape, as a share of the distance to it
@@ -47,8 +47,9 @@ def without_lists(scene: Scene) -> Iterator[Variant]:
 
 
 def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
-    """Yield the scene with each feature, then with each kind of shape, that it lacks; files are put into a folder."""
-    used, invisible = features(scene), InvisibleElements(scene, folder)
+    """Yield the scene with each feature, then with each kind of shape, that it lacks; files are put into a folder.
+    Features that one sample does not need, with which parts are measured, cost it nothing."""
+    used, invisible = features(scene) | APERTURES, InvisibleElements(scene, folder)
     plain = invisible.record(type(scene.shapes[0]))
     for feature, added in invisible.features(plain).items():
         if feature not in used:
@@ -60,9 +61,7 @@ def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
 
 
 def with_element(scene: Scene, added: Any) -> Scene:
-    """Return a scene with an element more; a background and a camera replace those of the scene."""
-    if isinstance(added, Camera):
-        return scene.replace(scene.camera, added)
+    """Return a scene with an element more; a background replaces that of the scene."""
     return scene.remove(*scene.of(Background) if isinstance(added, Background) else ()).add(added)
 
 
@@ -76,7 +75,7 @@ class InvisibleElements:
         behind = max([1.0, *(-2 * float(offset @ forward) for offset in lights)])
         self.place, self.size = eye - behind * forward, SIZE * behind
         self.corners = cycle(np.vstack([np.zeros(3), np.eye(3)]) * self.size + self.place)
-        self.back, self.camera = (-forward).tolist(), scene.camera
+        self.back = (-forward).tolist()
         self.picture, self.mesh = str(folder / "grey.png"), str(folder / "tetrahedron.obj")
         Image(np.full((2, 2, 3), 128, np.uint8)).save(self.picture)
         Path(self.mesh).write_text(TETRAHEDRON)
@@ -89,12 +88,11 @@ class InvisibleElements:
             found.setdefault(field.features_of(value)[0], plain.replace(**{field.name: value}))
         glass = self.record(Glass)
         found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
+        found["placements"] = found["placements"].replace(checker=found["checks"].checker)
         found["raised_patterns"] = plain.replace(clouds=Clouds(self.size, height=0.1))
         found["spots"] = SpotLight(position=self.place, direction=self.back, angle=10.0, brightness=0.5)
-        found["soft"] = FurtherLight(self.place, 1e-12, size=self.size)  # so faint that no level changes
-        found["lens"] = self.camera.replace(lens=self.size, focus=1.0)
         found |= {"background": Background(DARK), "environment": Background(self.picture)}
-        return {feature: found[feature] for feature in WORDS}
+        return {feature: found[feature] for feature in WORDS if feature in found}
 
     def record(self, kind: type[Any]) -> Any:
         """Make a record of its required fields; its points are corners of a small tetrahedron."""

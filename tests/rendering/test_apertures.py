@@ -10,13 +10,18 @@ from numpy.testing import assert_allclose
 
 from minirt.kernel import frame, interpreted
 from minirt.kernel.pixels import TILE
+from minirt.materials import Placement
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
+from minirt.rendering.packing.features import features
+from minirt.rendering.renderer import PRECISIONS
 from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene, parse
-from tests.kernel.pictures import EVERY, linear
+from tests.kernel.pictures import EVERY, linear, picture
+from tests.random_scenes import random_scene
 from tests.reference import render_sampled
+from tests.seeds import seed_of
 
 RENDERER = Renderer(2)
 
@@ -101,9 +106,37 @@ def hard(scene: Scene) -> Scene:
     return scene
 
 
-def test_one_sample_is_that_from_the_centres() -> None:
-    sharp = hard(soft_scene())
-    assert_allclose(linear(soft_scene()), linear(sharp.replace(sharp.camera, lens=None)), atol=1e-9)
+def drawn(scene: Scene, renderer: Renderer) -> tuple[bytes, bytes, str]:
+    """Return the bits of a picture and of its light with one sample, and the kernel that such a picture asks for."""
+    pixels, light = picture(scene, 40, 24, 1, renderer)
+    chosen = renderer.runner.choice
+    assert chosen
+    assert chosen.specialised == renderer.kernels.specialised(scene, 1)[-1]
+    return pixels.tobytes(), light.tobytes(), chosen.specialised
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_one_sample_leaves_out_the_size_of_lights_the_lens_and_the_place_of_no_picture(precision: str) -> None:
+    renderer = Renderer(2, precision)
+    for seed in np.random.default_rng(seed_of("left out")).integers(1e6, size=20).tolist():
+        random, plain = np.random.default_rng(seed), random_scene(seed)
+        scene = plain.replace(plain.camera, lens=random.uniform(0.01, 1)) if random.random() < 0.7 else plain
+        for light in scene.lights[: random.integers(1 + len(scene.lights))]:
+            scene = scene.replace(light, size=random.uniform(0.1, 5))
+        for shape in scene.shapes[: random.integers(1 + len(scene.shapes))]:
+            scene = scene.replace(shape, uv=Placement(*random.uniform(0.1, 9, 4)))
+        assert drawn(scene, renderer) == drawn(plain, renderer), seed
+        several = renderer.kernels.specialised(scene)[-1]
+        has_apertures = features(scene) != features(plain)
+        assert (several != renderer.kernels.specialised(plain)[-1]) == has_apertures, seed
+
+
+def test_pictures_of_one_sample_and_of_more_take_turns() -> None:
+    """Each packs what it shows, whichever was packed before."""
+    renderer, scene = Renderer(2), soft_scene()
+    expected = {samples: linear(scene, 24, 16, samples, Renderer(2)) for samples in (1, 4)}
+    for samples in (1, 4, 4, 1, 1, 4):
+        assert np.array_equal(linear(scene, 24, 16, samples, renderer), expected[samples])
 
 
 def test_the_error_falls_faster_than_that_of_random_samples() -> None:

@@ -117,7 +117,7 @@ def test_specialising_compiles_the_specialised_kernel_though_a_generic_one_fits(
     library.compile = lambda identities, _process: compiled.extend(identities)
     monkeypatch.setattr(kernels, "LIBRARY", library)
     renderer = Renderer(1)
-    monkeypatch.setattr(renderer, "prepare", lambda _scene: None)
+    monkeypatch.setattr(renderer, "prepare", lambda *_: None)
     renderer.specialise(BALL)
     assert specialised_identity(BALL) in compiled
 

@@ -14,7 +14,7 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.rendering.kernels import packing_calls
-from minirt.rendering.packing.features import WORDS, features
+from minirt.rendering.packing.features import APERTURES, WORDS, features
 from minirt.rendering.scene_packing import BOXES, Packing
 from minirt.report import ablation
 from minirt.report.ablation import Ablation, Part
@@ -100,18 +100,18 @@ PARALLEL = ParallelLight((0, -1, 0), 0.5, (255, 255, 255))
     "scene", [ALL, Scene((*ALL.elements, BEHIND, PARALLEL)), Scene((AMBIENT, EYE, LAMP, SHAPES[0]))]
 )
 def test_each_feature_and_each_kind_is_added_once(scene: Scene, tmp_path: Path) -> None:
-    variants, used = list(with_more(scene, tmp_path)), features(scene)
+    variants, used = list(with_more(scene, tmp_path)), features(scene) | APERTURES
     kinds = {type(shape) for shape in scene.shapes}
     names = [words for key, words in WORDS.items() if key not in used]
     names += [kind.element.plural for kind in ALL_KINDS if kind.element not in kinds]
     assert [variant.name for variant in variants] == names
-    parts = {"tinted glass", "Fresnel's equations"}  # which show no effect without glass
+    glass = {"reflective", "transparent"}
+    needed = {"tinted glass": glass, "Fresnel's equations": glass, "scaled and turned maps": {"checks"}}
     keys = {words: key for key, words in WORDS.items()} | {kind.element.plural: kind.element for kind in ALL_KINDS}
     for variant in variants:
         extra = features(variant.scene) - used
         assert keys[variant.name] in extra
-        extra -= {"reflective", "transparent"} if variant.name in parts else set()
-        assert len(extra) == 1
+        assert len(extra - needed.get(variant.name, set())) == 1
 
 
 def test_the_picture_is_the_same(tmp_path: Path) -> None:

@@ -69,10 +69,10 @@ class FakeRenderer:
         self.started = threading.Event()
         self.cancel_requested = threading.Event()
 
-    def is_ready(self, _scene: Scene) -> bool:
+    def is_ready(self, _scene: Scene, _samples: object = 1) -> bool:
         return self.ready
 
-    def prepare(self, _scene: Scene) -> None:
+    def prepare(self, _scene: Scene, _samples: object = 1) -> None:
         self.started.set()
         self.gate.wait(HANG_LIMIT)
         if self.prepare_error:

@@ -63,6 +63,7 @@ NEEDS = {name: feature.needs for name, feature in FEATURES.items() if feature.ne
 SECONDARY = frozenset(name for name, feature in FEATURES.items() if feature.secondary)
 MAPS = tuple(name for name in SurfaceMaps._fields if name in FEATURES)
 COORDINATE_MAPS = frozenset(MAPS) - {"placements"}  # features that look up u and v
+APERTURES = frozenset({"soft", "lens"})  # features that one sample a pixel does not show
 SPREAD = frozenset({"parallel", "soft"})  # features of light sources that are not points: shadow rays share no end
 DEPTH = 8  # reflections and refractions of a ray, at most
 MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
@@ -70,14 +71,16 @@ ATTRIBUTES = attrgetter(*(name for name, _ in MATERIALS))
 PLAIN = (None,) * len(MATERIALS)
 
 
-def features(scene: Scene) -> frozenset[Hashable]:
-    """The kinds of shapes in a scene, and the keys of `FEATURES` that it uses.
+def features(scene: Scene, samples: object = None) -> frozenset[Hashable]:
+    """The kinds of shapes in a scene, and the keys of `FEATURES` that its picture with so many samples a pixel uses: 1,
+    which needs no `APERTURES`, or others.
 
     Of these "parallel", "transparent", "fades" and "smooth" are parts: parallel light, glass, fading reflections, and
     smooth meshes.
     """
     among = {page.cached(features_among) for page in scene.pages}
-    return frozenset({"lens"} if scene.camera.lens else ()).union(*among)
+    found = frozenset({"lens"} if scene.camera.lens else ()).union(*among)
+    return found - APERTURES if samples == 1 else found
 
 
 def examples(scene: Scene) -> dict[tuple[Any, ...], Shape]:
@@ -121,6 +124,8 @@ def material_features(shape: Shape) -> Iterable[str]:
         return ()
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
     found = {feature for (_, field), value in values if value is not None for feature in field.features_of(value)}
-    if not COORDINATE_MAPS.isdisjoint(found) and shape.map_frame():
+    if COORDINATE_MAPS.isdisjoint(found):
+        found.discard("placements")
+    elif shape.map_frame():
         found.add("placements")
     return [feature for feature in found if NEEDS.get(feature, feature) in found]

@@ -85,7 +85,7 @@ class Watch:
 
     def __init__(self, packing: Packing, scene: Scene, width: int, height: int) -> None:
         self.scene, self.across = scene, width
-        self.arrays, self.shapes = packing.pack(scene, width, height), packing.shape_arrays
+        self.arrays, self.shapes = packing.pack(scene, width, height, samples=1), packing.shape_arrays
         self.memory = thread_memory(self.arrays)[0]
         self.waiting: dict[int, RayNode] = {}  # rays by their numbers on the kernel's stack
         self.lights: tuple[LightPart, ...] = ()  # of the surface that is being shaded

@@ -40,8 +40,7 @@ def render_interpreted(scene: Scene, width: int, height: int, crop: Crop | None 
     """Return the picture of a scene in that size, or a rectangle of that size of a larger picture, and its light,
     (h, w, 3)."""
     with np.errstate(all="ignore"):
-        arrays = Packing(interpreted, depth=0, without=(TILES, LIGHT_BUFFERS, BVH)).pack(scene, width, height, crop)
-        arrays = arrays._replace(soft=None, lens=None)
+        arrays = Packing(interpreted, depth=0, without=(TILES, LIGHT_BUFFERS, BVH)).pack(scene, width, height, crop, 1)
         y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
         direction = unit(ray_direction(arrays.camera, x + arrays.camera[12], y + arrays.camera[13]))
         colour = incoming_radiance(arrays, thread_memory(arrays)[0], 0, Vec(*arrays.camera[:3]), direction)

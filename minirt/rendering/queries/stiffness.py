@@ -87,7 +87,7 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
 def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
     """Yield the shapes that look wrong in a picture that was rendered in float32, and the pairs of surfaces that only
     float32 takes for one."""
-    if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
+    if scene.shapes and packing.pack(scene, width, height, samples=packing.samples).camera.dtype == np.float32:
         for each in stiff_shapes(scene, packing.shape_arrays, width, height):
             if each.figures.get("single", 0.0) > VISIBLE:
                 yield each

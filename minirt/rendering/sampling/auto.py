@@ -1,10 +1,10 @@
 """Automatic sampling: renders until an estimated error is reached or a time has passed.
 
-At first some packets are probed (see `minirt.kernel.pixels.squared_error`). Unless they tell that as many samples for
-all cost least, the first sweep over the picture is a plain frame of one sample a pixel. Often that is enough. Otherwise
-`minirt.rendering.sampling.packets` plans numbers of samples, the same for all or by contrast. Where they are far from
-those of the probes, a pilot of few packets gets them and is probed, too. Its error corrects the plan, and all other
-packets are drawn: in portions where a time is given, since each tells how fast the next one is.
+At first some packets are probed (see `minirt.kernel.pixels.squared_error`), and the first sweep over the picture is a
+plain frame of one sample a pixel. Often that is enough. Otherwise `minirt.rendering.sampling.packets` plans numbers of
+samples by contrast. Where they are far from those of the probes, a pilot of few packets gets them and is probed, too.
+Its error corrects the plan, and all other packets are drawn: in portions where a time is given, since each tells how
+fast the next one is.
 
 What an estimate may be wrong by is added before it is compared with the goal. Probes take a tenth of the time, and no
 pixel takes more than `MOST_SAMPLES`. The picture depends on the error that is asked for alone, or on how fast the
@@ -27,7 +27,7 @@ from minirt.rendering.outcome import Outcome
 from minirt.rendering.sampling.packets import Packets, cost
 
 PROBES = 0.1  # share of samples that probes take
-LEAST_PROBES, MOST_PROBES = 4, 400  # in a sweep; half of the most in the first
+LEAST_PROBES = 4  # in a sweep
 REFERENCES = 2  # samples of a probe beside those that are drawn, as a multiple of them
 FAR = 2.0  # ratio of planned samples to those of the last probes from which on there is another pilot
 PILOTS = 4  # at most
@@ -57,21 +57,16 @@ class AutoSampler:
     positions: np.ndarray = field(init=False)  # of the samples of the last sweep
     speed: float = inf  # samples of packets a second, in the last sweep
     probed: float = 0.0  # samples of packets that probes took
-    is_begun: bool = False  # whether all packets are drawn with a sample at least
 
     def reach(self, error: float, seconds: float) -> Outcome:
         """Render until the estimated error is at most `error` or `seconds` have passed, at least the first sweep."""
         start = perf_counter()
         goal = error * error * self.numbers  # infinite for a huge error
         packets = self.packets
-        probes = packets.choose(min(max(PROBES / (1 + REFERENCES) * packets.count, LEAST_PROBES), MOST_PROBES / 2))
+        probes = packets.choose(max(PROBES / (1 + REFERENCES) * packets.count, LEAST_PROBES))
         errors = self.sweep(probes, np.zeros(len(probes), np.uint8), is_probed=True)
-        uniform = packets.learn_evenly(errors, goal) if seconds == inf else 0
-        self.is_begun = uniform <= 1
-        if self.is_begun:
-            self.carry_out(self.positions[:1], ALL_PACKETS, NO_ERRORS, packets.count)
-        if not uniform:
-            packets.learn(self.classify(), probes, errors)
+        self.carry_out(self.positions[:1], ALL_PACKETS, NO_ERRORS, packets.count)
+        packets.learn(self.classify(), probes, errors)
         if (samples := packets.plan(goal)).max() > 1 and perf_counter() < start + seconds:
             self.refine(samples, goal, start + seconds)
         mean, most, total = packets.outcome()
@@ -90,7 +85,7 @@ class AutoSampler:
             self.draw_pilot(known)
             samples = packets.plan(goal, self.budget(end))
         if end == inf:
-            self.draw_more(np.arange(packets.count), samples if self.is_begun else np.maximum(samples, 2.0))
+            self.draw_more(np.arange(packets.count), samples)
             return
         is_enough, order = packets.bound(samples) <= goal, packets.random.argsort()
         for number in range(PORTIONS):
@@ -107,9 +102,9 @@ class AutoSampler:
         """Draw and probe some packets with as many samples as those of their class are to have."""
         packets = self.packets
         chances = packets.chances(samples)
-        wanted = packets.count + cost(samples, packets.work)
-        each = REFERENCES * float(packets.work * chances @ samples)
-        number = min(max(float(PROBES * wanted - self.probed) / each, LEAST_PROBES), MOST_PROBES)
+        wanted = packets.count + cost(samples, packets.sizes)
+        each = REFERENCES * float(packets.sizes * chances @ samples)
+        number = max(float(PROBES * wanted - self.probed) / each, LEAST_PROBES)
         pilot = packets.choose(number, chances)
         packets.correct(samples, pilot, self.sweep(pilot, packets.wanted(samples)[pilot], is_probed=True))
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from math import ceil, inf, sqrt
+from math import inf, sqrt
 
 import numpy as np
 
@@ -96,43 +96,33 @@ def estimated_error(
     return sqrt(total / (before.size * 3 / 4) / (1 + ratio) + rounding) / 255
 
 
-# Measured on scenes drawn at random: c grows about threefold from class to class, and the time of a sample by a fifth,
-# since mirrors, glass and many shapes make contrast.
+# Measured on scenes drawn at random: c grows about threefold from class to class.
 EXPECTED = 3.0 ** np.arange(1 - CLASSES, 1)  # ratios of c, to that of the highest class
 EDGE_ERROR = 0.04  # c of the highest class, for each pixel of a packet; about the upper quartile
-SECONDS = 2.0 ** (np.arange(CLASSES) / 4)  # ratios of the time of a sample
 PRIOR = 4.0  # probes that what is expected counts as: c of a class, or the sum of the errors of a pilot
 SPREAD = 4.0  # standard deviation of the error of a packet by what is expected of it, at least
-CERTAINTY = 3.0  # standard errors of the estimate that are added to it
+CERTAINTY = 2.0  # standard errors of the estimate that are added to it
 EVENLY = 0.6  # share of the pilot that is chosen evenly
-LEAST_SHARE = 1 / 16  # of what uniform samples would be, for each packet
-WORTH = 0.8  # time of samples by class, as a share of that of uniform ones, from which on they are not worth it
-PILOT = 900  # samples of packets, whose time the classes and the pilot of contrast take
-LOSS = 1.5  # samples by contrast, as a multiple of those that ideal numbers for each packet take
-GAIN = 0.75  # least time of numbers by contrast, as a share of that of uniform ones
-MOST_CHANGE = 4.0  # factor by which a pilot changes c of one class beside the others
+LEAST_SHARE = 1 / 4  # of what uniform samples would be, for each packet
 LEAST = 1e-12  # of a class as a share of the greatest
 NEAR = 2  # classes by which a packet may be below its neighbours
 SEARCHES, PRICES = 2, 64  # for the price of an error: so many times among so many prices
 
 
-def allocate(
-    c: np.ndarray, sizes: np.ndarray, error: float, budget: float, least: float, work: np.ndarray
-) -> np.ndarray:
+def allocate(c: np.ndarray, sizes: np.ndarray, error: float, budget: float, least: float) -> np.ndarray:
     """The numbers of samples, not whole, for the packets of each class, at least so many, which leave a sum of squared
     errors; or, if those cost more than the budget, the most that the budget pays for.
 
-    `sizes` count the packets of the classes, and `work` is the time that one sample of all of them takes. All have a
-    sample, so that a class that gets no more costs nothing.
+    `sizes` count the packets of the classes. All have a sample, so that a class that gets no more costs nothing.
     """
-    value = c * sizes / np.maximum(work, LEAST)
+    value = c * (sizes > 0)
     # At the lowest price the class with the most error gets one sample, at the highest that with the least gets all.
     most = float(np.log2(COUNTS[-1]) * (ERROR_EXPONENT + 1))
     low, high = float(-np.log2(value.max())), most - float(np.log2(np.maximum(value, LEAST * value.max()).min()))
     for _ in range(SEARCHES):
         prices = np.linspace(low, high, PRICES)
         new = at_price(prices[:, None], value, least)
-        is_too_much = cost(new, work) > budget
+        is_too_much = cost(new, sizes) > budget
         is_enough = is_too_much | (new**-ERROR_EXPONENT @ (sizes * c) <= error)
         first = int(is_enough.argmax()) if is_enough.any() else PRICES - 1
         low, high = prices[max(first - 1, 0)], prices[first]
@@ -140,15 +130,15 @@ def allocate(
 
 
 def at_price(price: np.ndarray, value: np.ndarray, least: float) -> np.ndarray:
-    """The numbers of samples for classes at the logarithm of the price of error; `value` is c by a sample's time."""
+    """The numbers of samples for classes at the logarithm of the price of error; `value` is c, 0 for no packets."""
     ideal = 2.0 ** ((price + np.log2(np.maximum(value, LEAST * value.max()))) / (ERROR_EXPONENT + 1))
     return np.clip(ideal, least, COUNTS[-1])
 
 
-def cost(samples: np.ndarray, work: np.ndarray) -> np.ndarray:
-    """The time of the samples of classes beyond the first sweep, in that of a sample of a packet on average. Of 1 to 2
-    samples some packets get 2, others none."""
-    return np.where(samples < 2, 2 * np.log2(samples), samples) @ work
+def cost(samples: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """The number of the samples of classes with so many packets beyond the first sweep. Of 1 to 2 samples some packets
+    get 2, others none."""
+    return np.where(samples < 2, 2 * np.log2(samples), samples) @ sizes
 
 
 def with_neighbours(classes: np.ndarray) -> np.ndarray:
@@ -174,7 +164,6 @@ class Packets:
         self.random = random_numbers(self.count)
         self.levels, self.classes = np.zeros((2, self.count), np.uint8)
         self.sizes = np.zeros(CLASSES, np.int64)  # of the classes
-        self.work = np.zeros(CLASSES)  # time of a sample of all packets of each class, whose sum is that of all packets
         self.c = EDGE_ERROR * PACKET_HEIGHT * packet_width * EXPECTED
         self.doubt = 0.0  # standard error of the estimated sum of squared errors, as a share of it
 
@@ -188,31 +177,11 @@ class Packets:
         ends = np.cumsum(chances[self.classes])
         return np.unique(np.searchsorted(ends, places * ends[-1], "right"))
 
-    def learn_evenly(self, errors: np.ndarray, goal: float) -> int:
-        """Return how many samples all packets get, judged by probes with one sample: one where that suffices, more
-        where they are likely to cost less than samples by contrast, and all packets are one class; else 0."""
-        number, mean = len(errors), max(float(errors.mean()), LEAST)
-        deviation, share = float(errors.std()) / sqrt(number), goal / self.count
-        each = (number * mean + PRIOR * self.c[-1]) / (number + PRIOR)  # as if some more probes had met edges
-        doubt, uniform = max(SPREAD / sqrt(number + PRIOR), deviation / each), 1
-        if each * (1 + CERTAINTY * doubt) > share:
-            each, doubt = mean, max(SPREAD / sqrt(number + PRIOR), deviation / mean)
-            needed = (each * (1 + CERTAINTY * doubt) / share) ** (1 / ERROR_EXPONENT)
-            ideal = float((np.maximum(errors / each, 0.0) ** (1 / (ERROR_EXPONENT + 1))).mean())
-            ideal **= 1 + 1 / ERROR_EXPONENT
-            uniform, by_contrast = ceil(needed), 1 + PILOT / self.count + LOSS * ideal * needed
-            if uniform <= 2 or by_contrast < GAIN * uniform:
-                return 0
-        self.sizes = np.bincount(self.classes, minlength=CLASSES)
-        self.work, self.c, self.doubt = self.sizes.astype(float), np.full(CLASSES, each), doubt
-        return uniform
-
     def learn(self, contrasts: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
         """Sort the packets, of which all have one sample, into classes by their contrasts (rows, columns) and those of
         their neighbours; estimate c of the classes from probes."""
         self.classes = with_neighbours(contrasts).ravel()
         sizes = self.sizes = np.bincount(self.classes, minlength=CLASSES)
-        self.work = sizes * SECONDS * (self.count / (sizes @ SECONDS))
         number = np.bincount(self.classes[probes], minlength=CLASSES) + PRIOR
         found = np.bincount(self.classes[probes], errors, CLASSES) + PRIOR * self.c
         self.c = np.maximum(found / number, self.c / number)  # products of differences may be negative
@@ -220,20 +189,13 @@ class Packets:
 
     def plan(self, goal: float, budget: float = inf) -> np.ndarray:
         """The numbers of samples of the classes that leave the squared error `goal`, in doubt included, or cost no more
-        than a budget: the same for all, unless numbers by class leave as little error for less."""
+        than a budget."""
         goal, whole = goal / (1 + CERTAINTY * self.doubt), float(self.sizes @ self.c)
-        needed = (whole / goal) ** (1 / ERROR_EXPONENT) if goal else inf
-        if needed <= 1:
+        uniform = (whole / goal) ** (1 / ERROR_EXPONENT) if goal else inf  # what all packets would need
+        if uniform <= 1:
             return np.ones(CLASSES)
-        uniform = max(min(needed, COUNTS[-1], budget / self.count), 1.0)
-        even = np.full(CLASSES, uniform if budget < inf else ceil(uniform))
-        if self.sizes.max() == self.count:
-            return even
-        least = max(LEAST_SHARE * uniform, 1.0)
-        samples = allocate(self.c, self.sizes, whole * uniform**-ERROR_EXPONENT, inf, least, self.work)
-        if cost(samples, self.work) > WORTH * uniform * self.count:
-            return even
-        return samples if needed <= uniform else allocate(self.c, self.sizes, goal, budget, least, self.work)
+        least = max(LEAST_SHARE * min(uniform, COUNTS[-1], budget / self.count), 1.0)
+        return allocate(self.c, self.sizes, goal, budget, least)
 
     def bound(self, samples: np.ndarray) -> float:
         """The most that the sum of squared errors may be with so many samples for each class."""
@@ -245,8 +207,8 @@ class Packets:
         return (1 - EVENLY) * expected / (self.sizes @ expected) + EVENLY / self.count
 
     def correct(self, samples: np.ndarray, probes: np.ndarray, errors: np.ndarray) -> None:
-        """Multiply c by what a pilot with so many samples for each class found, as a multiple of what was expected:
-        c of all classes, and that of each beside the others."""
+        """Multiply c of all classes by what a pilot with so many samples for each class found, as a multiple of what
+        was expected."""
         classes = self.classes[probes]
         weights = 1 / self.chances(samples)[classes]
         found = weights * errors
@@ -255,11 +217,7 @@ class Packets:
         number = total**2 / float(expected @ expected)  # of probes that would tell as much by equal weights (Kish 1965)
         ratio = max((number * float(found.sum()) / total + PRIOR) / (number + PRIOR), 1 / PRIOR)
         self.doubt = max(SPREAD / sqrt(number + PRIOR), float(np.linalg.norm(found / ratio - expected)) / total)
-        each = total / number
-        by_class = [np.bincount(classes, values, CLASSES) + PRIOR * each for values in (found / ratio, expected)]
-        c = self.c * np.clip(by_class[0] / by_class[1], 1 / MOST_CHANGE, MOST_CHANGE)
-        left = self.sizes * samples**-ERROR_EXPONENT
-        self.c = c * (ratio * (left @ self.c) / (left @ c))
+        self.c = self.c * ratio
 
     def wanted(self, samples: np.ndarray) -> np.ndarray:
         """The levels of all packets that have so many samples for each class on average."""

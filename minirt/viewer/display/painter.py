@@ -202,10 +202,11 @@ class BackgroundPainter(Painter):
                 self._precision.judge(job.scene, *job.shape[1::-1])
 
     def _render(self, job: PaintJob) -> Painted | None:
-        """Render a job, or its preview while its kernel is missing; None if it has neither."""
+        """Render a job, or its preview while its kernel is missing, unless there is a picture with fewer samples; None
+        if it has neither."""
         try:
-            if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
-                pixels = self.renderer.preview(job.scene, job.width, job.height)
+            if not self.renderer.is_ready(job.scene, job.samples) and not self._is_soon_prepared(job):
+                pixels = None if job.base is not None else self.renderer.preview(job.scene, job.width, job.height)
                 return None if pixels is None else Painted(job, pixels, preview=True)
         except Exception as error:  # the file of a texture may be gone meanwhile
             return Painted(job, error=error)
@@ -226,7 +227,7 @@ class BackgroundPainter(Painter):
                 self._threads[1].start()
                 self._changed.wait_for(lambda: not self._preparing or self._closed, PREVIEW_DELAY)
             if not self._preparing:
-                return self.renderer.is_ready(job.scene)
+                return self.renderer.is_ready(job.scene, job.samples)
             self._previewed = None if self._waiting else job
         return False
 
@@ -234,7 +235,7 @@ class BackgroundPainter(Painter):
         """Prepare the kernel, then request the picture that was only previewed: the body of the second thread."""
         error = None
         try:
-            self.renderer.prepare(job.scene)
+            self.renderer.prepare(job.scene, job.samples)
         except Exception as reason:
             error = reason
         with self._changed:

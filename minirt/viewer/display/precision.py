@@ -44,6 +44,7 @@ class MovingPrecision:
         few, packing = len(self.double.packing.shape_arrays.slots) <= MOST_SHAPES, self.single.packing
         self.allowed = False
         with suppress(Exception):  # of any kind: what is in the window is drawn in double
-            known = all(FEATURES[each].single for each in FEATURES.keys() & features(scene))
-            if few and known and self.single.is_ready(scene) and fits_single(packing.pack(scene, width, height)):
+            known = all(FEATURES[each].single for each in FEATURES.keys() & features(scene, 1))
+            known = few and known and self.single.is_ready(scene)
+            if known and fits_single(packing.pack(scene, width, height, samples=1)):
                 self.allowed = not any(lost_in_single(scene, packing, width, height))

@@ -234,24 +234,20 @@ def test_the_wanted_error_is_kept_where_classes_are_misjudged(monkeypatch: pytes
     assert (excesses(seed) <= 1).mean() < 0.85, seed
 
 
-@pytest.mark.parametrize(("spread", "goal", "sweeps"), [(0.2, 0.01, 0), (12.0, 0.01, 1), (0.2, 3.0, 1)])
-def test_packets_that_are_all_alike_need_no_first_sweep(spread: float, goal: float, sweeps: int) -> None:
-    """A picture whose packets all need several samples is drawn at once, and so is one whose packets need one."""
+@pytest.mark.parametrize(("share", "frames"), [(2.0, 1), (0.1, 2)])
+def test_a_first_sweep_that_is_enough_is_the_only_one(share: float, frames: int) -> None:
+    """The others are of probes, and one more of packets that get more samples."""
     grid, plans = Packets(80, 200, 4), []
-    c = np.random.default_rng(1).lognormal(0, spread, grid.count)
 
     def draw(_: object, plan: Array, errors: Array) -> None:
         plans.append(plan)
-        errors[:] = c[plan[:, 1] * grid.columns + plan[:, 0]] * plan[:, 3] ** -1.5
+        errors[:] = grid.c[-1] * plan[:, 3] ** -1.5
 
-    def classify() -> np.ndarray:
-        plans.append(c)
-        return np.full((20, 50), 8)
-
-    reached = AutoSampler(draw, classify, grid, grid.count, 16).reach(goal, np.inf)
-    assert sum(not len(plan) for plan in plans) == sweeps
-    assert any(plan is c for plan in plans) == (spread > 1), "only contrast needs classes"
-    assert sweeps or reached.most <= 1.5 * reached.samples
+    classes = np.full((20, 50), CLASSES - 1)
+    reached = AutoSampler(draw, lambda: classes, grid, grid.count, 16).reach(sqrt(2 * share * grid.c[-1]), np.inf)
+    assert sum(not len(plan) for plan in plans) == 1
+    assert sum(not plan[:, 4].any() for plan in plans) == frames
+    assert (reached.most == 1) == (frames == 1)
 
 
 # Outcomes of automatic sampling: whether the goal was reached, and what is said about it.

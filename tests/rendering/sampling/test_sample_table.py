@@ -101,7 +101,6 @@ def test_independent_references_have_the_squared_error_as_the_mean_of_their_prod
 RANDOM = np.random.default_rng(3)
 COEFFICIENTS = RANDOM.lognormal(-8, 3, CLASSES)
 SIZES = RANDOM.integers(10, 5000, CLASSES)
-WORK = SIZES * RANDOM.uniform(0.3, 3, CLASSES)  # time of a sample
 WHOLE = float(SIZES @ COEFFICIENTS)
 
 
@@ -111,20 +110,20 @@ def error(samples: Array) -> float:
 
 @pytest.mark.parametrize("share", [0.9, 0.5, 0.01, 1e-4])
 def test_the_requested_error_is_left_at_the_least_cost(share: float) -> None:
-    """The optimum by Lagrange multipliers: n in proportion to (c / time)^0.4 but at least 1."""
-    allocated = allocate(COEFFICIENTS, SIZES, share * WHOLE, inf, 1.0, WORK)
+    """The optimum by Lagrange multipliers: n in proportion to c^0.4 but at least 1."""
+    allocated = allocate(COEFFICIENTS, SIZES, share * WHOLE, inf, 1.0)
     assert 0.97 * share < error(allocated) / WHOLE <= share
     low, high = 0.0, 1e9
     for _ in range(100):
         middle = (low + high) / 2
-        best = np.maximum(middle * (COEFFICIENTS * SIZES / WORK) ** 0.4, 1)
+        best = np.maximum(middle * COEFFICIENTS**0.4, 1)
         low, high = (middle, high) if error(best) > share * WHOLE else (low, middle)
     assert allocated == pytest.approx(best, rel=0.03)
 
 
 @pytest.mark.parametrize("budget", [100.0, 3000.0, 1e6])
 def test_a_budget_is_kept_and_used(budget: float) -> None:
-    assert 0.9 * budget < cost(allocate(COEFFICIENTS, SIZES, 0.0, budget, 1.0, SIZES), SIZES) <= budget
+    assert 0.9 * budget < cost(allocate(COEFFICIENTS, SIZES, 0.0, budget, 1.0), SIZES) <= budget
 
 
 def learned(classes: Array, errors: Array) -> Packets:
@@ -137,8 +136,8 @@ def learned(classes: Array, errors: Array) -> Packets:
 def test_equal_classes_get_uniform_samples_and_others_what_is_cheaper() -> None:
     classes = np.repeat(np.arange(CLASSES), 900)
     even, steep = (learned(classes, c) for c in (np.full(len(classes), 0.01), 1e-3 * 4.0 ** (classes - 4.0)))
-    assert np.ptp(even.plan(9.0)) == 0
-    assert np.ptp(steep.plan(9.0)) > 0
+    assert np.ptp(even.plan(9.0)) < 0.15 * even.plan(9.0).mean()  # what is expected weighs a little
+    assert np.ptp(steep.plan(9.0)) > steep.plan(9.0).mean()
     for packets in (even, steep):
         assert packets.bound(packets.plan(9.0)) <= 9.0 * (1 + 1e-9)
         assert packets.plan(9.0).max() <= 20 * packets.plan(9.0).mean()

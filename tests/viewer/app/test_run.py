@@ -33,9 +33,9 @@ from tests.viewer.fake import FakeRenderer, scene
 from tests.waiting import HANG_LIMIT
 
 class Stuck(FakeRenderer):
-    def is_ready(self, scene):
+    def is_ready(self, scene, samples):
         return False
-    def prepare(self, scene):
+    def prepare(self, scene, samples):
         self.started.set()
         ThreadPoolExecutor().submit(Event().wait).result()  # the interpreter would wait for this thread for ever
 

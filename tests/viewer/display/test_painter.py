@@ -104,7 +104,7 @@ def test_an_exception_is_an_outcome_and_the_painter_goes_on(harness):
 def test_an_error_before_the_picture_is_an_outcome_and_the_next_one_is_rendered(harness, monkeypatch):
     """A texture may be gone when the kernels for the scene are looked for."""
 
-    def fail(_):
+    def fail(*_):
         raise RenderError("dots.png: cannot be read: no such file or directory")
 
     with monkeypatch.context() as patch:
@@ -164,6 +164,19 @@ class TestWithoutAKernel:
         assert previewed.wait(HANG_LIMIT)
         harness.renderer.gate.set()
         assert not harness.outcomes(1)[0].preview
+
+    def test_a_picture_with_fewer_samples_stays_until_the_kernel_for_more_is_there(self, harness):
+        """One sample has a kernel of its own where the scene has a lens."""
+        harness.renderer.is_ready = lambda _scene, samples: samples == 1 or harness.renderer.ready
+        harness.start(REFINED)
+        edited = replace(JOB, scene=scene(f"{TEXT}sp 1,0,0 2 255,0,0\n"))
+        harness.painter.request(edited)
+        harness.renderer.gate.set()
+        (outcome,) = harness.outcomes(1)
+        assert (outcome.job, outcome.preview) == (edited, False)
+        harness.painter.request(REFINED)
+        assert harness.outcomes(1)[0].job is REFINED
+        assert (harness.renderer.samples, harness.renderer.refined) == ([1], [16])
 
     def test_an_error_of_prepare_is_an_outcome(self, harness, monkeypatch):
         monkeypatch.setattr(painter_module, "PREVIEW_DELAY", HANG_LIMIT)
