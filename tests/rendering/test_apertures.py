@@ -10,9 +10,9 @@ from numpy.testing import assert_allclose
 
 from minirt.kernel import frame, interpreted
 from minirt.kernel.pixels import TILE
-from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene, parse
 from tests.kernel.pictures import EVERY, linear

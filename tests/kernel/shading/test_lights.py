@@ -9,7 +9,6 @@ import pytest
 
 from minirt.kernel.shading.lights import LightGrid, incident_light, sources_in_reach
 from minirt.lanes import Vec
-from minirt.rendering import Renderer
 from minirt.rendering.packing import lights, visibility
 from minirt.rendering.packing.lights import (
     Colours,
@@ -17,6 +16,7 @@ from minirt.rendering.packing.lights import (
     positions_and_intensities,
     spot_parameters,
 )
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, ParallelLight, Scene, SpotLight
 from minirt.shapes import Plane, Sphere
 from tests.seeds import seed_of
