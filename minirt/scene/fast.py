@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from minirt.element import Element, fields_by_key, positional_fields
-from minirt.errors import FieldError
+from minirt.element import Element, positional_fields
 from minirt.kernel.plain_lines import BEHIND_COMMA, MOST, NAME, NOTHING, NUMBER, OTHER, WHOLE
-from minirt.scene.element_reader import lacked_by, split_key
+from minirt.scene.element_reader import attribute_slots, parse_slots, split_line, tell_useless
 from minirt.scene.elements import FurtherCamera
+from minirt.scene.lines import Log, line_from
 from minirt.scene.pages import Crowd, Item
 from minirt.scene.registry import SPELLINGS
 
@@ -103,21 +103,15 @@ def attributes_of(sources: list[str]) -> dict[int, str]:
 def values_of(kind: type[Element], attributes: str) -> dict[str, Any] | None:
     """Return the values of the attributes of a line, by the names of their fields; None where the diagnosing reader has
     to say something about them, or has to try a file."""
-    values: dict[str, Any] = {}
-    for word in filter(None, attributes.replace("\t", " ").split(" ")):
-        key, start = split_key(word)
-        field = fields_by_key(kind).get(key)
-        if not start or not field or field.name in values or not word.startswith(key):
-            return None
-        try:
-            value = field.parse(word[start:])
-            values[field.name] = field.check(value)
-        except FieldError:
-            return None
-        if field.remark(value) or any(field.pictures(value)):
-            return None
+    log = Log("", lenient=False)
+    line = line_from(0, f"{kind.code} 0 {attributes}")
+    slots = attribute_slots(kind, (split_line(line, log) or [])[2:], line, log)
+    values = parse_slots(slots, line, log)
     (element,) = kind.checked(1, {name: [value] for name, value in values.items()})
-    return None if any(lacked_by(element, name) for name in values) else values
+    tell_useless(element, slots, line, log)
+    is_told = log.errors or log.notices or log.changes
+    has_files = any(any(slot.field.pictures(values[slot.field.name])) for slot in slots if not is_told)
+    return None if is_told or has_files else values
 
 
 def read_kind(
