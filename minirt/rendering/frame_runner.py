@@ -66,13 +66,10 @@ class FrameRunner:
         choice = self.choose(frame)
         work, is_planned = len(frame.rays) * frame.pixels.size, len(frame.plan) > 0
         height, across = frame.pixels.shape
+        few_rows = FEW_ROWS * self.threads if len(frame.scene.lights) <= TOGETHER else 0  # more lights need whole tiles
         if is_planned:
             work = int(frame.plan[:, 3] @ np.where(frame.plan[:, 4], 3, 1)) * width(frame.scene.camera)
-        elif (
-            work == frame.pixels.size
-            and height < TILE * FEW_ROWS * self.threads
-            and len(frame.scene.lights) <= TOGETHER  # of more, all packets of a tile meet one part after the other
-        ):
+        elif work == frame.pixels.size and height < TILE * few_rows:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
         start, rays = perf_counter(), frame[3:6]
