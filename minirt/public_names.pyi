@@ -32,7 +32,6 @@ from minirt.materials.maps import Placement as Placement
 from minirt.materials.maps import Wood as Wood
 from minirt.movie import save_movie as save_movie
 from minirt.notebook import view as view
-from minirt.rendering import Renderer as Renderer
 from minirt.rendering.buffers import Buffers as Buffers
 from minirt.rendering.buffers import buffers as buffers
 from minirt.rendering.image import Image as Image
@@ -43,6 +42,7 @@ from minirt.rendering.queries.explanation import Explanation as Explanation
 from minirt.rendering.queries.rays import Hits as Hits
 from minirt.rendering.queries.rays import camera_rays as camera_rays
 from minirt.rendering.queries.rays import trace as trace
+from minirt.rendering.renderer import Renderer as Renderer
 from minirt.rendering.renderer import renderer as renderer
 from minirt.rendering.settings import DEFAULT_ERROR as DEFAULT_ERROR
 from minirt.rendering.settings import render as render

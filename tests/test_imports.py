@@ -123,11 +123,10 @@ def test_the_compiler_is_imported_where_it_is_attached_and_nowhere_else() -> Non
 
 
 def imported(*command: str, folder: Path) -> set[str]:
-    """The top-level modules that a run of Python imports."""
+    """The modules that a run of Python imports."""
     ended = run([sys.executable, "-X", "importtime", *command], cwd=folder, env=environment(), text=True)
     assert ended.returncode == 0, ended.stderr
-    names = [line.rpartition("|")[2].strip() for line in ended.stderr.splitlines() if line.startswith("import time:")]
-    return {each.split(".")[0] for each in names}
+    return {line.rpartition("|")[2].strip() for line in ended.stderr.splitlines() if line.startswith("import time:")}
 
 
 def test_a_picture_whose_kernels_are_on_disk_is_rendered_without_the_compiler(tmp_path: Path) -> None:
@@ -143,6 +142,14 @@ def test_a_picture_whose_kernels_are_on_disk_is_rendered_without_the_compiler(tm
         assert "numba" not in found
     assert (tmp_path / "ball.png").stat().st_size
     assert "numba" in imported("-c", "import minirt.kernel.compiler.pipeline", folder=tmp_path)
+
+
+def test_checking_a_scene_imports_no_renderer(tmp_path: Path) -> None:
+    (tmp_path / "ball.rt").write_text(SCENE)
+    found = imported("-m", "minirt", "ball.rt", "--check", folder=tmp_path)
+    assert "minirt.rendering.notices" in found
+    slow = "minirt.rendering.renderer", "minirt.rendering.scene_packing", "minirt.kernel.machine_code", "numpy.ma"
+    assert not found.intersection(slow)
 
 
 def graph(files: dict[str, str]) -> dict[str, set[str]]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, fetch_add, store_estimate, store_packet
 from minirt.kernel.scene_arrays import SceneArrays, vector
-from minirt.kernel.shading.lights import remember_sample, sampled_eye
+from minirt.kernel.shading.lights import parts_of_lights, remember_part, remember_sample, sampled_eye
 from minirt.kernel.shading.patterns import remember_spacing
 from minirt.kernel.shading.texturing import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
@@ -76,6 +76,7 @@ def frame(
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
     is_planned = rarely(plan.shape[0] > 0)
+    parts = parts_of_lights(scene)
     has_parts = scene.square < TILE
     end = plan.shape[0] if is_planned else height
     while True:
@@ -88,15 +89,17 @@ def frame(
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
             # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, each in
             # any tile, take all of their samples one after the other.
-            for outer in range(min(TILE, end - top) if is_planned else rays.shape[0]):
+            for outer in range(min(TILE, end - top) if is_planned else rays.shape[0] * parts):
                 item = top + outer if is_planned else -1
-                inners = planned_rays(plan, item) if is_planned else packets
+                inners = planned_rays(plan, item) * parts if is_planned else packets
                 for inner in range(inners):
                     y, x = top + inner // columns * PACKET_HEIGHT, left + inner % columns * packet_width
-                    estimate, row, sample, samples, place = 0, outer, outer, rays.shape[0], 3 * inner * width(rays)
+                    turn, part = outer // parts, outer % parts
+                    estimate, row, sample, samples, place = 0, turn, turn, rays.shape[0], 3 * inner * width(rays)
                     if is_planned:
                         y, x = plan[item, 1] * PACKET_HEIGHT, plan[item, 0] * packet_width
-                        estimate, row, sample, samples = planned(plan, item, inner)
+                        part = inner % parts
+                        estimate, row, sample, samples = planned(plan, item, inner // parts)
                         place = estimate * ESTIMATE
                     if y >= height or x >= across:
                         continue
@@ -110,6 +113,8 @@ def frame(
                         store_packet(pixels, linear, sums, place, x, y, radiance)
                         continue
                     remember_spacing(scene, memory, samples, estimate)
+                    remember_part(scene, memory, part, parts)
+                    sample, samples = sample * parts + part, samples * parts
                     radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
                     if rarely(samples > 1):
                         radiance = accumulate(radiance, sums, place, sample) / samples

@@ -14,6 +14,7 @@ from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.shading.lights import TOGETHER
 from minirt.lanes import width
 from minirt.rendering.frame import Frame, frame_arguments, plan_of, plan_of_variants, thread_memory
 from minirt.rendering.kernels import KernelChoice, Kernels
@@ -65,9 +66,10 @@ class FrameRunner:
         choice = self.choose(frame)
         work, is_planned = len(frame.rays) * frame.pixels.size, len(frame.plan) > 0
         height, across = frame.pixels.shape
+        few_rows = FEW_ROWS * self.threads if len(frame.scene.lights) <= TOGETHER else 0  # more lights need whole tiles
         if is_planned:
             work = int(frame.plan[:, 3] @ np.where(frame.plan[:, 4], 3, 1)) * width(frame.scene.camera)
-        elif work == frame.pixels.size and height < TILE * FEW_ROWS * self.threads:
+        elif work == frame.pixels.size and height < TILE * few_rows:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
         start, rays = perf_counter(), frame[3:6]

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.packing.features import WORDS, features
-from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.lights import never_occludes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp, Scene
 from minirt.scene.names import element_name
 from minirt.shapes import ALL_KINDS, Shape
+
+if TYPE_CHECKING:
+    from minirt.kernel.scene_arrays import SceneArrays
+    from minirt.rendering.packing.generic_kernels import GenericKernel
 
 MOST_NAMED = 3  # shapes in a notice
 NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for these sources and this processor"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,10 +11,12 @@ from minirt.errors import counted
 from minirt.rendering.packing.features import features
 from minirt.rendering.queries.no_effect import without_effect
 from minirt.rendering.queries.unseen import notice_about
-from minirt.rendering.scene_packing import Packing
-from minirt.rendering.settings import RenderSettings, rendered
 from minirt.rendering.tone_mapping import clipped_pixels
 from minirt.scene import Scene
+
+if TYPE_CHECKING:  # a command that only checks a scene imports no renderer
+    from minirt.rendering.scene_packing import Packing
+    from minirt.rendering.settings import RenderSettings
 
 NOT_COMPUTED = "a notice about the picture cannot be computed"
 
@@ -46,6 +49,8 @@ def measurements(
 ) -> Iterator[str]:
     """Yield lines about a picture that was rendered in this process: its time, how its scene was packed, and how many
     pixels are brighter than the picture can show, by their light with one sample each."""
+    from minirt.rendering.settings import rendered
+
     renderer = settings.renderer
     place = f"region {','.join(map(str, settings.region))}, " if settings.region else ""
     sampling = "" if settings.samples == "auto" else f"{counted(settings.samples, 'sample')} a pixel, "

@@ -15,9 +15,9 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY, load
-from minirt.rendering import Renderer
 from minirt.rendering.kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.renderer import Renderer
 from minirt.report.bench import Run, take_turns, timed
 from minirt.report.metrics import Interval, of_median
 from minirt.report.pictures import Step

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.rendering import Renderer
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene, load, size_of
 
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0  # of each of both measurements

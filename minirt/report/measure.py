@@ -15,10 +15,10 @@ from minirt.errors import RenderError, counted
 from minirt.helpers import file_io
 from minirt.helpers.progress import WorkState, in_words, progress
 from minirt.helpers.signals import held_signals
-from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.queries.stiffness import coincident, stiff_shapes
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.threads import usable_cores
 from minirt.report.ablation import PAIRS, Ablation
 from minirt.report.against import read

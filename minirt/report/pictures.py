@@ -16,10 +16,10 @@ from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width as lanes_of
-from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.kernels import ray_query
 from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
+from minirt.rendering.renderer import Renderer
 from minirt.report import metrics
 from minirt.report.bench import Run, is_disturbed, take_turns, timed
 from minirt.report.crops import Crops, representative

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.rendering import Renderer
 from minirt.rendering.packing.features import DEPTH, features
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Scene
 

@@ -23,11 +23,20 @@ from minirt.materials.compound import Compound
 from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
 from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_word
+from minirt.shapes import Mesh
 
 SLASHES = re.compile(r"(?<![^ \t])//")
 KEY = re.compile(r"(?![A-Za-z]:[\\/])(?:(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):)")  # which no drive of Windows is
 LEAST_LIKE = 4  # letters of a word for which a similar one is proposed that begins with another
 HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
+
+# Attributes, by the fields of which they need one.
+NEEDS = {
+    "tint": ("glass",),
+    "fresnel": ("glass", "mirror"),
+    "uv": ("checker", "texture", "bump", "normal_map"),
+    "focus": ("lens",),
+}
 
 
 class Slot(NamedTuple):
@@ -225,6 +234,23 @@ def unknown_key_message(kind: type[Element], key: str) -> str:
     if len(key) < LEAST_LIKE and key[:1] != guess[:1]:
         guess = ""
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
+
+
+def lacked_by(element: Element, name: str) -> tuple[str, ...]:
+    """Names of the fields without which an attribute has no effect, if the element has none of them.
+
+    Meshes may have them in a file.
+    """
+    needs = NEEDS.get(name, ())
+    return () if isinstance(element, Mesh) or any(getattr(element, each) for each in needs) else needs
+
+
+def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> None:
+    """Add a notice for each attribute of a line that has no effect without another."""
+    for slot in slots:
+        if lacked := lacked_by(element, slot.field.name):
+            keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in lacked)
+            log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
 
 
 def parse_slots(slots: list[Slot], line: Line, log: Log) -> dict[str, Any]:

@@ -15,13 +15,12 @@ from minirt.errors import FileError, Problem, SceneError, nearest
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
-from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
+from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line, tell_useless
 from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
 from minirt.scene.pages import PAGE_LENGTH, Crowd, Item, kinds_of, pages_of
 from minirt.scene.registry import nearest_element
 from minirt.scene.required import check_required
 from minirt.scene.scene import MISSING, Scene
-from minirt.shapes import Mesh
 
 # A new scene: elements like any others, which one may change and delete.
 NEW = b"""A 0.4 255,255,255
@@ -210,32 +209,6 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     slot = next(slot for slot in slots if slot.field.name == name)
     log.error(line, f"{kind.title} {name} {message}", *slot.span(None))
     return None
-
-
-# Attributes, by the fields of which they need one.
-NEEDS = {
-    "tint": ("glass",),
-    "fresnel": ("glass", "mirror"),
-    "uv": ("checker", "texture", "bump", "normal_map"),
-    "focus": ("lens",),
-}
-
-
-def lacked_by(element: Element, name: str) -> tuple[str, ...]:
-    """Names of the fields without which an attribute has no effect, if the element has none of them.
-
-    Meshes may have them in a file.
-    """
-    needs = NEEDS.get(name, ())
-    return () if isinstance(element, Mesh) or any(getattr(element, each) for each in needs) else needs
-
-
-def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> None:
-    """Add a notice for each attribute of a line that has no effect without another."""
-    for slot in slots:
-        if lacked := lacked_by(element, slot.field.name):
-            keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in lacked)
-            log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
 
 
 # Example scenes, which are installed with the library: `minirt.example("demo")`.

@@ -15,7 +15,7 @@ from minirt.element import fields_of
 from minirt.errors import RenderError
 from minirt.fields import Point
 from minirt.kernel.machine_code.fingerprint import processor
-from minirt.rendering import Renderer
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.threads import usable_cores
 from minirt.report.bench import STEP, moved, runs
 from minirt.scene import Scene

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 import minirt
-from minirt.rendering import Renderer
+from minirt.rendering.renderer import Renderer
 from minirt.report.bench import runs
 from tests.paths import SCENES
 from tests.test_random_materials import material_scene

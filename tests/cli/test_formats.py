@@ -9,7 +9,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from minirt.rendering import Renderer
+from minirt.rendering.renderer import Renderer
 from tests.cli.program import SCENE, Run
 from tests.cli.test_output import pixels
 

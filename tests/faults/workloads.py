@@ -31,7 +31,8 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.mlx.recording import add_recording
-from minirt.rendering import Renderer, settings
+from minirt.rendering import settings
+from minirt.rendering.renderer import Renderer
 from minirt.scene import load
 from minirt.viewer import recovery
 from minirt.viewer.app import desktop

@@ -17,7 +17,7 @@ from functools import partial
 
 import numpy as np
 
-from minirt.rendering import Renderer
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from tests import environment
 from tests.fuzz.mutations import seeded

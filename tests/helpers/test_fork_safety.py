@@ -19,8 +19,8 @@ import pytest
 from minirt.helpers import system
 from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code.library import Library
-from minirt.rendering import Renderer
 from minirt.rendering import renderer as renderers
+from minirt.rendering.renderer import Renderer
 from tests.cli.program import SCENE, environment
 from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library
 from tests.processes import in_child, run

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from minirt.kernel import frame
 from minirt.kernel import interpreted as interpreted_functions
-from minirt.rendering import Renderer
 from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, sample_positions, thread_memory
 from minirt.rendering.packing.camera import packet_rays
 from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.box import Box

@@ -15,8 +15,8 @@ from minirt.kernel.frame import CANCELLED
 from minirt.kernel.pixels import TILE
 from minirt.lanes import Vec
 from minirt.materials import Bump, Checker, Glass, Mirror, Specular, Tint
-from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Cylinder, Plane, Sphere

@@ -11,8 +11,8 @@ import pytest
 from minirt.fields import unit
 from minirt.kernel import frame, trace
 from minirt.lanes import Vec
-from minirt.rendering import Renderer
 from minirt.rendering.packing import lights
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Cylinder, Plane, Shape, Sphere, plane
 from tests import reference

@@ -11,11 +11,10 @@ from numpy.testing import assert_allclose
 from minirt.kernel import frame, interpreted
 from minirt.kernel.pixels import TILE
 from minirt.materials import Placement
-from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
 from minirt.rendering.packing.features import features
-from minirt.rendering.renderer import PRECISIONS
+from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import BVH, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene, parse
 from tests.kernel.pictures import EVERY, linear, picture

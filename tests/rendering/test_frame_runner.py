@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.pixels import PACKET_HEIGHT
-from minirt.rendering import Renderer, frame_runner, threads
+from minirt.rendering import frame_runner, threads
 from minirt.rendering.frame import sample_positions
 from minirt.rendering.image import rgb_of
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.threads import ThreadPool, usable_cores
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture

@@ -19,7 +19,7 @@ from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
 from minirt.kernel.machine_code.library import Library, identity_of
 from minirt.materials import Checker
-from minirt.rendering import Renderer, ahead_of_time, kernels
+from minirt.rendering import ahead_of_time, kernels
 from minirt.rendering import renderer as renderers
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.kernels import (
@@ -35,6 +35,7 @@ from minirt.rendering.notes import NO_GENERIC_KERNEL
 from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
 from minirt.rendering.packing.visibility import SMALL
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Light, ParallelLight, Scene, parse
 from minirt.shapes import Cylinder, Mesh, Sphere

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.rendering import Renderer
 from minirt.rendering.outcome import ROUNDING, Outcome
 from minirt.rendering.queries.preview import render_interpreted
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.sampling.packets import estimated_error
 from minirt.rendering.tone_mapping import NOISE, blue_noise, clipped_pixels, map_tones, rounding_error, tone_named
 from minirt.scene import Background, Scene, parse

@@ -12,9 +12,9 @@ import pytest
 from minirt.kernel.bvh_nodes import NODE, REFERENCES
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Specular
-from minirt.rendering import Renderer
 from minirt.rendering.kernels import packing_calls
 from minirt.rendering.packing.features import APERTURES, WORDS, features
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import BOXES, Packing
 from minirt.report import ablation
 from minirt.report.ablation import Ablation, Part

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from minirt import load
-from minirt.rendering import Renderer
 from minirt.rendering.packing.visibility import Bins
+from minirt.rendering.renderer import Renderer
 from minirt.report import bench
 from minirt.report.bench import Run, is_disturbed, runs, take_turns, waiting_time
 from minirt.scene import Scene

@@ -58,6 +58,8 @@ COMPONENTS += ["0" * LONGEST]
             "sp +1,-.5,1e3 1.e-2 007,-0,+255",
             "pl 0,0,0 0,0.9995,0 1,2,3",
         ),
+        *(f"{SPHERE} mirror:0.25", f"{SPHERE} \tspecular:0.5,30\t mirror:0.1 \r", f"{SPHERE} glow:1# a: b \r"),
+        *(f"{SPHERE} glass:1.5 tint:9,9,9,2 fresnel:1", "l 0,0,0 0.5 1,2,3 size:2", f"{SPHERE} # mirror:2"),
     ],
 )
 def test_the_fast_path_reads_plain_lines(line: str) -> None:
@@ -101,14 +103,42 @@ def test_both_readers_agree_on_mixed_good_and_bad_fields(lines: list[str], lenie
         parse(scene_with(*lines), lenient=lenient)
 
 
+WORDS = ["mirror:0.5", "mirror:0", "mirror:2", "mirror:", "mirror", "tint:1,2,3", "fresnel", "glass:1.5", "uv:2,2", "#"]
+WORDS += [
+    "mir:0.5",
+    "specular:0.5,30,",
+    ",9",
+    "\r",
+    "x:1",
+    "roll:9",
+    "texture:a.png",
+    "pattern:wood,1,2,3,4",
+    "//",
+    "a#b",
+]
+WORDS += ["\x0b", "\xa0glow:1", "glow:1", "fresnel:1", "size:1", "checker:1,2,3,0.5", 'mirror:"0.5"', "mirror=0.5"]
+
+
+START = st.sampled_from([SPHERE, PLANE, CYLINDER, "", "l 0,0,0 1 9,9,9"])
+END = st.lists(st.tuples(st.sampled_from([" ", "\t", "  ", ""]), st.sampled_from(WORDS)).map("".join), max_size=4)
+
+
+@given(st.lists(st.tuples(START, END), max_size=4), st.booleans())
+@example([("", [" ", "mirror:0.5"])], False)
+@settings(max_examples=500, deadline=None)
+def test_both_readers_agree_on_attributes(lines: list[tuple[str, list[str]]], lenient: bool) -> None:
+    with suppress(SceneError):
+        parse(scene_with(*("".join([start, *end]) for start, end in lines)), lenient=lenient)
+
+
 @given(st.lists(st.one_of(ANY), max_size=30))
 @settings(max_examples=100, deadline=None)
-def test_the_description_of_an_element_without_attributes_is_plain(elements: list[Any]) -> None:
+def test_the_description_of_an_element_is_plain(elements: list[Any]) -> None:
+    """With attributes too, but for words without a value, and files, which somebody has to try."""
     lines = [describe(element) for element in elements]
-    assert list(fast.read(lines, MANY)) == [
-        each if type(each) in fast.forms()[0] and ":" not in line else None
-        for line, each in zip(lines, elements, strict=True)
-    ]
+    for line, read, each in zip(lines, fast.read(lines, MANY), elements, strict=True):
+        is_plain = type(each) in fast.forms()[0]
+        assert read == each if is_plain and ":" not in line else read in (None, is_plain and each)
 
 
 TEXT = st.text("+-.0123456789eE", min_size=1) | st.floats().map(repr) | st.from_regex(NUMBER, fullmatch=True)
@@ -150,6 +180,7 @@ def test_a_disagreement_of_the_readers_is_found(cls: type[Field], name: str, wro
 
 def test_plain_lines_skip_the_diagnosing_reader() -> None:
     lines = [f"sp {index},0,20 1 255,0,{index % 256}" for index in range(10_000)]
+    lines[1000:2000] = [f"{line} mirror:0.{index}" for index, line in enumerate(lines[1000:2000])]
     lines[7000] = "sp 0,0,20 -1 1,2,3"
     sources = scene_with(*lines).split("\n")
     seen: list[int] = []

@@ -9,7 +9,7 @@ import pytest
 
 import minirt
 from minirt.materials import Specular
-from minirt.rendering import Renderer
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Plane, Sphere
 from tests import reference

@@ -22,7 +22,7 @@ from minirt.fields import Choice, Direction, Field, Flag, Length, Lengths, MeshF
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.scene import Scene, dump, load, parse
-from minirt.scene.parser import lacked_by
+from minirt.scene.element_reader import lacked_by
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session

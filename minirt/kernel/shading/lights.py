@@ -109,6 +109,34 @@ def smoothstep(x: Number) -> Number:
     return x * x * (3.0 - 2.0 * x)
 
 
+# What a packet reads of many light sources does not fit a processor's cache. So all packets of a tile meet one part of
+# them after the other, as if these were samples: each part shines so much brighter that the mean is the light of all.
+TOGETHER = 128  # light sources of a part, at most
+PART, FURTHER = 0, 3  # columns of the last row of `memory`: the number of the part, and how many parts there are beside
+
+
+def parts_of_lights(scene: SceneArrays) -> int:
+    """Return the number of parts, a power of two; one where grids list the few light sources that reach a point."""
+    parts = 1
+    if scene.light_grid is None or not has_rows(scene.light_grid.grids):
+        while parts * TOGETHER < scene.lights.shape[0]:
+            parts *= 2
+    return parts
+
+
+def remember_part(scene: SceneArrays, memory: Any, part: int, parts: int) -> None:
+    """Keep the number of a part in `memory`, where the shading of all hits finds it."""
+    memory[scene.lights.shape[0], PART] = part
+    memory[scene.lights.shape[0], FURTHER] = parts - 1
+
+
+def remembered_part(scene: SceneArrays, memory: Any) -> tuple[int, int, float]:
+    """Return the range of the light sources of the part that shines, and how much brighter it does."""
+    count = scene.lights.shape[0]
+    part, parts = int(memory[count, PART]), int(memory[count, FURTHER]) + 1
+    return part * count // parts, (part + 1) * count // parts, 1.0 * parts
+
+
 # In scenes with a lens or with light sources that have a size, each ray of a packet has an eye and points of lights of
 # its own: a row of `rays` of `minirt.kernel.frame` has eight numbers for each ray, its direction, the offset of its eye
 # in the scene, and x and y of a point in the unit disc, which serves all lights. Each light turns the disc about its

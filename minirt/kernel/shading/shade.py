@@ -17,7 +17,7 @@ from typing import Any
 
 from minirt.kernel import bvh_traversal
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, smooth_point, vector
-from minirt.kernel.shading.lights import aim, is_spread, sources_in_reach, specular
+from minirt.kernel.shading.lights import aim, is_spread, remembered_part, sources_in_reach, specular
 from minirt.kernel.shading.surfaces import (
     FILTER,
     MIN_WEIGHT,
@@ -52,14 +52,14 @@ def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface:
     zero = splat(0.0, rounding)
     total = splat(vector(scene.ambient, 0), zero)
     highlight = Vec(zero, zero, zero)
-    first_source, end = 0, scene.lights.shape[0]
+    first_source, end, brightness = remembered_part(scene, memory)
     if scene.light_grid is not None and has_rows(scene.light_grid.grids):
         first_source, end = sources_in_reach(scene.light_grid, surface.point, rounding, hit)
     for number in range(first_source, end):
         i = number
         if scene.light_grid is not None and has_rows(scene.light_grid.grids):
             i = int(scene.light_grid.sources[number])
-        intensity = vector(scene.lights[i], 3)
+        intensity = brightness * vector(scene.lights[i], 3)
         rays, strength = aim(scene, memory, i, start, rounding, found[1], normal)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):

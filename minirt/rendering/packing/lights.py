@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.projection import MARGIN
+from minirt.kernel.projection import MARGIN, signed_height
 from minirt.kernel.shading.lights import FARTHER, LightGrid
+from minirt.lanes import Vec
 from minirt.materials import pictures
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import signed_heights
 from minirt.rendering.tone_mapping import decode_srgb, tone_named
 from minirt.scene import Camera, Lamp, Scene
 
@@ -178,3 +178,9 @@ def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radi
     owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
     glass = [shape_arrays.shape(owner).glass for owner in owners]
     return harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
+
+
+def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
+    """Lower bounds of the heights of a ball about a point above planes, (p, 5), as of `signed_height`."""
+    heights: np.ndarray = signed_height(planes.T, Vec(*point), MARGIN * np.abs(point).max() + radius)
+    return heights

@@ -17,9 +17,8 @@ from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import TILE
-from minirt.kernel.projection import MARGIN, Grid, signed_height
+from minirt.kernel.projection import Grid
 from minirt.kernel.shadow_rays import CIRCLE
-from minirt.lanes import Vec
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
@@ -257,9 +256,3 @@ def in_all_cells(
     lists = [np.tile(members[first:last], cells) for first, last in ends]
     starts = cells * ends[:, :1] + np.diff(ends) * np.arange(cells + 1)
     return BinnedShapes(starts.astype(np.int32), np.concatenate([members[:0], *lists]), cones)
-
-
-def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
-    """Lower bounds of the heights of a ball about a point above planes, (p, 5), as of `signed_height`."""
-    heights: np.ndarray = signed_height(planes.T, Vec(*point), MARGIN * np.abs(point).max() + radius)
-    return heights

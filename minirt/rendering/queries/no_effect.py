@@ -14,7 +14,6 @@ from minirt.rendering.packing.lights import emitting_lights
 from minirt.rendering.packing.materials import encloses
 from minirt.rendering.packing.ray_casting import camera_ray, nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.preview import render_interpreted
 from minirt.rendering.queries.unseen import SOME, arrays_of, rectangles, visible_shapes
 from minirt.scene import Camera, Lamp, Light, Scene
 from minirt.shapes import Box, Cone, Cylinder, Ellipsoid, Mesh, Paraboloid, Shape, Sphere
@@ -103,6 +102,8 @@ def idle_lights(scene: Scene) -> Iterator[str]:
     for number, light in enumerate(scene.lights):
         if light not in lights or light.size or lights_a_solid(arrays, scene.camera, light):
             continue
+        from minirt.rendering.queries.preview import render_interpreted
+
         if without is None:
             _, without = render_interpreted(Scene(others, scene.file), *COARSE)
         _, alone = render_interpreted(Scene([*others, light], scene.file), *COARSE)
@@ -125,5 +126,5 @@ def lights_a_solid(arrays: ShapeArrays, camera: Camera, light: Lamp) -> bool:
     way = eye + to * rays - lamp
     reached, found = nearest_hits(arrays, lamp, unit(way))
     is_first = (found == primitives[places]) & (reached >= (1 - CERTAIN) * np.sqrt(dot(way, way)))
-    lit = np.unique(arrays.owner[found[is_first]]).tolist()
+    lit = {*arrays.owner[found[is_first]].tolist()}
     return any(not encloses(arrays.shapes[index], np.array(light.position)) for index in lit)

@@ -13,7 +13,7 @@ from minirt.element import Element, fields_of
 from minirt.errors import ElementError
 from minirt.fields import Angle, Colour, Direction, Field, Point
 from minirt.scene import Camera, Scene
-from minirt.scene.parser import lacked_by
+from minirt.scene.element_reader import lacked_by
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import seen_fields

@@ -7,9 +7,8 @@ from math import inf
 import numpy as np
 import pytest
 
-from minirt.kernel.shading.lights import LightGrid, incident_light, sources_in_reach
+from minirt.kernel.shading.lights import TOGETHER, LightGrid, incident_light, sources_in_reach
 from minirt.lanes import Vec
-from minirt.rendering import Renderer
 from minirt.rendering.packing import lights, visibility
 from minirt.rendering.packing.lights import (
     Colours,
@@ -17,7 +16,8 @@ from minirt.rendering.packing.lights import (
     positions_and_intensities,
     spot_parameters,
 )
-from minirt.scene import Ambient, Camera, FurtherLight, Lamp, ParallelLight, Scene, SpotLight
+from minirt.rendering.renderer import Renderer
+from minirt.scene import Ambient, Background, Camera, FurtherLight, Lamp, ParallelLight, Scene, SpotLight
 from minirt.shapes import Plane, Sphere
 from tests.seeds import seed_of
 
@@ -121,3 +121,23 @@ def test_light_that_fades_is_culled_without_changing_a_bit(precision: str, monke
     assert np.array_equal(picture(), culled)
     reaching(0.3)
     assert (picture() != culled).any(axis=-1).mean() > 0.01
+
+
+def test_the_light_of_many_sources_is_the_sum_of_the_light_of_each() -> None:
+    """More than `TOGETHER` of them shine part by part, whether packets are drawn tile by tile or by a plan."""
+    others = [Background((20, 40, 60)), *(each for each in STAGE if not isinstance(each, Lamp))]
+    spread = np.random.default_rng(1).uniform(-6, 6, (5 * TOGETHER // 2, 2)).tolist()
+    lamps = [FurtherLight((x, 3.0 + 0.1 * z, z), 0.02, (255, 200, 220)) for x, z in spread]
+
+    def light_of(lamps: list[FurtherLight]) -> np.ndarray:
+        scene, pixels, linear = Scene([*others, *lamps]), np.zeros((45, 80, 4), np.uint8), np.zeros((45, 80, 3))
+        stage.render(scene, pixels, 2, linear)
+        again = linear.copy()
+        stage.render(scene, pixels, 2, again, edges_only=True)
+        assert np.array_equal(again, linear)
+        return linear
+
+    stage, parts = Renderer(1), [lamps[start : start + 40] for start in range(0, len(lamps), 40)]
+    expected = sum(map(light_of, parts)) - (len(parts) - 1) * light_of([])
+    np.testing.assert_allclose(light_of(lamps), expected, rtol=1e-12, atol=1e-13)
+    assert (np.abs(light_of(lamps[1:]) - expected) > 1e-6).mean() > 0.1

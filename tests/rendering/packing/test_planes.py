@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from minirt.kernel.pixels import TILE
-from minirt.rendering import Renderer
 from minirt.rendering.packing import lights
+from minirt.rendering.packing.lights import signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import signed_heights
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes import Plane, Sphere

@@ -7,9 +7,9 @@ import threading
 import numpy as np
 import pytest
 
-from minirt.rendering import Renderer
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import pick
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Plane, Shape, Sphere
 from tests.kernel.pictures import ALL, picture

@@ -12,7 +12,6 @@ import minirt
 from minirt.kernel import trace
 from minirt.kernel.scene_arrays import intersect
 from minirt.lanes import Vec
-from minirt.rendering import Renderer
 from minirt.rendering.packing.features import features
 from minirt.rendering.queries.preview import (
     BUDGET,
@@ -22,6 +21,7 @@ from minirt.rendering.queries.preview import (
     preview,
     render_interpreted,
 )
+from minirt.rendering.renderer import Renderer
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.sphere import Sphere
 from tests.kernel import pictures

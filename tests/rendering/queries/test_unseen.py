@@ -10,7 +10,7 @@ import pytest
 
 from minirt.materials import Checker
 from minirt.rendering.notices import NOT_COMPUTED, notices_about
-from minirt.rendering.queries import no_effect
+from minirt.rendering.queries import no_effect, preview
 from minirt.rendering.queries import unseen as module
 from minirt.rendering.queries.no_effect import AMBIENT_ALONE, covers, idle_lights, without_effect
 from minirt.rendering.queries.pick import pick
@@ -253,7 +253,7 @@ def test_the_quick_look_at_solids_spares_pictures_and_changes_no_answer(monkeypa
     scenes += [parse(f"{GREY}{BALL}\npl 0,-2,0 0,1,0 9,9,9\n{lines}\n").scene for lines in LAMPS]
     answers = [[*idle_lights(each)] for each in scenes]
     drawn: list[Scene] = []
-    monkeypatch.setattr(no_effect, "render_interpreted", lambda *_: drawn.append(scenes[0]))
+    monkeypatch.setattr(preview, "render_interpreted", lambda *_: drawn.append(scenes[0]))
     assert not [*idle_lights(scenes[0])]
     assert not drawn
     monkeypatch.undo()

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 import minirt
 from minirt.cli.arguments import OPTIONS
-from minirt.rendering import Renderer
 from minirt.rendering.frame import COUNTS
 from minirt.rendering.outcome import MOST_SAMPLES, Outcome
+from minirt.rendering.renderer import Renderer
 from minirt.rendering.sampling import packets as sampling
 from minirt.rendering.sampling.auto import LEAST_PROBES, PROBES, REFERENCES, AutoSampler
 from minirt.rendering.sampling.packets import CLASSES, Packets
