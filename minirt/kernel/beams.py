@@ -124,15 +124,16 @@ def fold_over_mesh(
 ) -> Any:
     """Fold `state = visit(group, row, index, within, state, data)` over the triangles of a mesh that rays may meet.
 
-    The first triangle of the mesh is in this row. The `active` of some `rays` leave their apexes, which are alike or
-    close together, along their ways, of any length. Those within a beam around some of them traverse the tree together,
-    the nearest triangles first. They need none beyond `reach(state, data)` times their way, and none that has the index
-    which comes with them. `within` are those that may meet the triangle.
+    `row` is that of the first triangle of the mesh. `rays` are their apexes, which are alike or close together, their
+    ways, of any length, and for each the index of a triangle that it does not meet; only the `active` ones count. Those
+    within a beam around the first of them traverse the tree together, the nearest triangles first, and then the rest.
+    No triangle beyond `reach(state, data)` times its way matters to a ray. `visit` is called with the row of a
+    triangle, its index in the scene, and the rays that may meet it. Returns the last state.
     """
     apexes, way, own = rays
     length = fabs(way.x) + fabs(way.y) + fabs(way.z)
-    remaining = active & (length > TINY) & (4.0 * length < inf)
-    while any(remaining):
+    remaining = active & (length > TINY) & (4.0 * length < inf)  # no product of beams overflows
+    while any(remaining):  # the first of them is in its own beam: so this ends
         beam = beam_of(group.trees.places[group.trees.numbers[row]], apexes, way, remaining)
         state = walk(visit, reach, group, row, beam, own, state, data)
         remaining = remaining & ~beam.within

@@ -165,3 +165,8 @@ def packet_memory() -> Any:
 def put_integer(memory: Any, at: int, n: int) -> None:
     """Store an integer in the packet's memory, in the place of a float64."""
     memory[at : at + 1].view(np.int64)[0] = n
+
+
+def integer_at(memory: Any, at: int) -> int:
+    """Return the integer that `put_integer` stored: the low bits of a float64, as references are, too."""
+    return reference_of(memory[at])

@@ -24,6 +24,7 @@ from minirt.kernel.bvh_nodes import (
     WIDTH,
     LeafGroup,
     Tree,
+    integer_at,
     intersect_boxes,
     leaf_number,
     least_lane,
@@ -79,7 +80,7 @@ def descend(nodes: Any, memory: Any, ray: int) -> int:
     node = reference_of(memory[NEXT + ray])
     planes = near_planes(vec_at(memory, INVERSE, ray))
     hit, near = intersect_boxes(nodes, node, memory, ray, planes, search_limit(memory[HIT + ray]))
-    top = reference_of(memory[TOP + ray]) + STACK_LEVEL
+    top = integer_at(memory, TOP + ray) + STACK_LEVEL
     save(where(hit, tag(near, load(nodes, node + REFERENCES)), inf), memory, top)
     pushed = int(any(hit))
     put_integer(memory, TOP + ray, top - STACK_LEVEL * (1 - pushed))
@@ -89,11 +90,14 @@ def descend(nodes: Any, memory: Any, ray: int) -> int:
 def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     """Pop the nearest child from the top row of a ray's stack, and make it the next to visit.
 
+    Distances in rows are tagged with references, see `minirt.kernel.bvh_nodes`; a row in which nothing else is within
+    reach is dropped.
+
     Returns three flags, 1 or 0: whether the child is a node to visit, whether it is a leaf to visit, and whether the
     stack is now empty.
     """
     limit = search_limit(memory[HIT + ray])
-    top = reference_of(memory[TOP + ray])
+    top = integer_at(memory, TOP + ray)
     tags = load(memory, top)
     nearest = least_lane(tags)
     others = where(tags == nearest, inf, tags)

@@ -66,7 +66,11 @@ def squared_error(sums: Any, height: int, across: int, count: int) -> float:
 
 
 def store_packet(pixels: Any, linear: Any, sums: Any, place: int, x: int, y: int, radiance: Vec) -> None:
-    """Store the radiance of a packet, except for pixels beyond the edges. Overwrites its `place` in `sums`."""
+    """Store the radiance of a packet whose upper left pixel is (x, y), except for pixels beyond the edges.
+
+    `pixels` (h, w) are 0xAARRGGBB, `linear` is (h, w, 3), or has no rows where no light is wanted. The numbers of
+    `sums` from `place` on may be overwritten.
+    """
     height, across = pixels.shape
     has_linear = linear.shape[0] > 0
     count = width(radiance.x)

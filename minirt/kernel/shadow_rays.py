@@ -105,17 +105,17 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
     start, end = range_in_cell(group, rays.light, cell)
     for i in range(start, end):
         cone, listed = scene.light_cones[rays.light, scene.light_shapes[i]], scene.listed[scene.light_shapes[i]]
-        row, index = listed[1], listed[2]
-        if not any(visible & in_cell & (rays.distance > cone[4])):
+        axis, cosine, least_distance = vector(cone, 0), cone[3], cone[4]
+        row, index = listed[1], listed[2]  # of the first primitive of the shape
+        if not any(visible & in_cell & (rays.distance > least_distance)):
             break
-        towards = dot(vector(cone, 0), rays.towards)  # minus the cosine of the angle from the axis
-        if may_count(scene, index, glass) and (cone[3] <= -1.0 or rarely(in_cell & (towards <= -cone[3]))):
+        towards = dot(axis, rays.towards)  # minus the cosine of the angle from the axis, as rays lead to the light
+        if may_count(scene, index, glass) and (cosine <= -1.0 or rarely(in_cell & (towards <= -cosine))):
             if group.trees is None:
                 visible = unoccluded_by_shape(group, row, index, in_cell, visible, arguments)
             else:
-                beams = rays_from_light(scene, rays)
-                step = unoccluded_by_shape
-                visible = fold_over_mesh(step, reach_of, group, row, beams, visible & in_cell, visible, arguments)
+                beams, active = rays_from_light(scene, rays), visible & in_cell
+                visible = fold_over_mesh(unoccluded_by_shape, reach_of, group, row, beams, active, visible, arguments)
     return visible
 
 

@@ -31,8 +31,8 @@ def arctan2(y: Number, x: Number) -> Number:
 def arctan(q: Number) -> Number:
     """Return the arctangent of q in [0, 1].
 
-    By the addition theorem it is the arctangent of c, the nearest of 0, 1/2 and 1, plus that of s in [-1/4, 1/4], which
-    is a Taylor series.
+    By the addition theorem it is the arctangent of c, the nearest of 0, 1/2 and 1, plus that of s = (q - c) / (1 + c q)
+    in [-1/4, 1/4], which is a Taylor series.
     """
     upper, middle = q > 0.75, q > 0.25
     c = where(upper, 1.0, where(middle, 0.5, splat(0.0, q)))

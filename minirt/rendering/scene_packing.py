@@ -108,8 +108,12 @@ class Packing:
         return self.view.follow(scene.camera, self.run)
 
     def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
-        """Return arrays that are made anew, except what the scene shares with the last one."""
-        crop, shapes = place[2], self.shape_arrays_for(*scene.runs)
+        """Return arrays that are made anew, except what the scene shares with the last one.
+
+        TooLargeError where even the coarsest light buffers have no room.
+        """
+        width, height, crop = place
+        shapes = self.shape_arrays_for(*scene.runs)
         before, self.cache = self.cache, {}
 
         def cached(key: Hashable, compute: Callable[..., Any], *arguments: Any) -> Any:
@@ -127,35 +131,28 @@ class Packing:
             focus = scene.camera.focus or cached(key, nearest_hits, shapes, *middle)[0]
             lens = camera.lens_numbers(scene.camera, float(focus))
         radius, _ = camera.radius_and_focus(lens)
-        usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(shapes))
-        cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
-        while True:
-            try:
-                binned, keys = self.seen_by_lights(sources, numbers[:3], cells, cached, radius)
-                break
-            except TooLargeError:
-                if cells <= visibility.COARSEST:
-                    raise
-                cells //= 2
-                self.cells_that_fit[len(sources)] = cells
+        cells, binned, keys = self.light_buffers_that_fit(sources, numbers[:3], cached, radius)
         light_starts, light_buffers = cached(keys, joined_light_buffers, binned, shapes)
-        look = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
-        packed = cached(look, materials.pack_materials, scene, shapes, used)
-        if TILES in self.without:
-            square, eye = TILE, visibility.in_all_cells(shapes, tile_count(place[0]) * tile_count(place[1]))
+        # How files spell colours matters to all materials, the exposure only to what glows.
+        materials_key = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
+        packed = cached(materials_key, materials.pack_materials, scene, shapes, used)
+        if TILES in self.without:  # `square`: pixels along the edge of the squares of the picture that have lists
+            square, in_tiles = TILE, visibility.in_all_cells(shapes, tile_count(width) * tile_count(height))
         else:
             self.view = View(self.kernel, shapes, scene.camera, place, lens, self.precision, self.view)
-            square, eye = self.view.square, self.view.look(scene.camera, self.run)
+            square, in_tiles = self.view.square, self.view.look(scene.camera, self.run)
         spots = lights.spot_parameters(sources) if "spots" in used else None
         emitted = lights.positions_and_intensities(sources, colours)
-        shining = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
+        grid_key = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
         needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
         trees = cached("trees", pack_trees, shapes, self.kernel, self.run)
         triangles = cached("triangles", place_meshes, shapes, self.kernel, self.run)
         of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
         paint: Any = scene.background and scene.background.paint
-        sky = "environment", paint, colours
-        environment = cached(sky, materials.pack_environment, scene, paint) if "environment" in used else None
+        environment_key = "environment", paint, colours
+        environment = (
+            cached(environment_key, materials.pack_environment, scene, paint) if "environment" in used else None
+        )
         arrays = SceneArrays(
             camera=np.append(camera.pixel_rays(scene.camera, crop.width, crop.height), (crop.left, crop.top)),
             ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
@@ -165,14 +162,14 @@ class Packing:
             ),
             slots=shapes.slots,
             listed=shapes.listed,
-            tile_shapes=eye.members,
-            cones=eye.cones,
+            tile_shapes=in_tiles.members,
+            cones=in_tiles.cones,
             square=square,
             light_buffer_cells=cells,
             **light_buffers,
-            groups=tuple(map(Group, shapes.tables, eye.starts, light_starts, count(), trees, of_kinds)),
+            groups=tuple(map(Group, shapes.tables, in_tiles.starts, light_starts, count(), trees, of_kinds)),
             spots=spots,
-            light_grid=cached(shining, lights.light_grid, emitted, spots),
+            light_grid=cached(grid_key, lights.light_grid, emitted, spots),
             soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,
             eye_medium=materials.medium_at(numbers[:3], shapes.shapes, colours) if "media" in used else None,
@@ -185,6 +182,24 @@ class Packing:
         )
         is_single = self.precision == "single" and fits_single(arrays)
         return self.view.complete(arrays, is_single) if self.view else arrays
+
+    def light_buffers_that_fit(
+        self, sources: list[Lamp], eye: np.ndarray, cached: Callable[..., Any], radius: float
+    ) -> tuple[int, Any, Any]:
+        """Return how many cells a side of a cube has, so that there is room, and the results of `seen_by_lights`.
+
+        TooLargeError where even the coarsest have no room.
+        """
+        usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(self.shape_arrays))
+        cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
+        while True:
+            try:
+                return cells, *self.seen_by_lights(sources, eye, cells, cached, radius)
+            except TooLargeError:
+                if cells <= visibility.COARSEST:
+                    raise
+                cells //= 2
+                self.cells_that_fit[len(sources)] = cells
 
     def seen_by_lights(
         self, sources: list[Lamp], eye: np.ndarray, cells: int, cached: Callable[..., Any], radius: float

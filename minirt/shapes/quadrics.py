@@ -162,8 +162,9 @@ def starts_close(
 def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs, bottom: Number, top: Number) -> Span:
     """Compute the span of a line through a packed solid of revolution, without any cancellation.
 
-    On its `side` x^2 + y^2 = waist + 2 focal z + slope z^2 in its own frame; it lies between the heights `bottom` and
-    `top`. All numbers become lanes as those of the pairs are, so that kernels compile these operations once.
+    The `direction` has unit length. On its `side` x^2 + y^2 = waist + 2 focal z + slope z^2 in its own frame; the solid
+    lies between the heights `bottom` and `top`. All numbers become lanes as those of the pairs are, so that kernels
+    compile these operations once.
     """
     waist, focal, slope = side
     like = waist[0]
@@ -182,16 +183,16 @@ def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs,
     steepness = value(across) + bend * bend  # square of half of the gradient of the level
     over = maximum(bottom - value(height), value(height) - top)
     error = position_error(splat(origin, like), rounded(f))
-    within = error * error * (4.0 * steepness + error * error)  # square of the level at this height
-    error = where(((level <= 0.0) | (level * level <= within)) & (over <= error), error, 0.0)
-    on = (error > 0.0) & (level * level <= within)
-    turning = 1.0 - turn * turn + value(spread) * value(spread)
-    below, above, near = exact_ends(a, b, c, on, error * error * turning)
+    within = error * error * (4.0 * steepness + error * error)  # square of the level at this distance from the side
+    slack = where(((level <= 0.0) | (level * level <= within)) & (over <= error), error, 0.0)  # 0 off the surface
+    on = (slack > 0.0) & (level * level <= within)
+    turning = 1.0 - turn * turn + value(spread) * value(spread)  # square of the derivative of b by the start's place
+    below, above, near = exact_ends(a, b, c, on, slack * slack * turning)
     low, high, per_rise = (bottom - height[0]) - height[1], (top - height[0]) - height[1], 1.0 / turn
     first, last = minimum(low * per_rise, high * per_rise), maximum(low * per_rise, high * per_rise)
     # A line that starts above a side or an end, if only by rounding, and gets beyond its rim stays outside.
     below = where(on & (near > last), near, below)
-    starts = minimum(fabs(low), fabs(high)) <= error
+    starts = minimum(fabs(low), fabs(high)) <= slack
     first = where(starts & (fabs(first) <= fabs(last)) & ~(first > above), 0.0, first)
     last = where(starts & (fabs(last) < fabs(first)), 0.0, last)
     return Span(value(a), below, above, first, last, splat(1.0, like))

@@ -190,9 +190,10 @@ def light_through_glass(scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: 
 def follow_shadow_rays(
     scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, occluded: Mask, seen: Mask
 ) -> tuple[Vec, Vec, Number]:
-    """Follow `occluded` shadow rays from surface to surface, those that are not `seen` to the first one.
+    """Follow `occluded` shadow rays from surface to surface; to rays that are not `seen` all surfaces are opaque.
 
-    Returns the shares that are left behind the last one, and the medium and the distance to the light source there.
+    Returns the shares of the light that are left at the end, and there the medium and the distance that remains to the
+    light source. Rays still on their way after `MOST_SURFACES` end dark.
     """
     start, to_light, reach = rays.origin, rays.direction, rays.distance
     light = where(occluded, Vec(1.0, 1.0, 1.0), light)

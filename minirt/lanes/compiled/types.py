@@ -142,7 +142,11 @@ def vec_of(context: Any, builder: ir.IRBuilder, kind: VecType, parts: list[Any])
 def register(
     function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]] = ANYTHING
 ) -> Callable[..., Any]:
-    """Decorator: compile `function`, on arguments that match one of `patterns`, to the code that a generator emits."""
+    """Decorator of what emits the code of `function` for arguments whose types match one of `patterns`.
+
+    What is decorated is `generate(context, builder, signature, values)`, as numba's `lower_builtin` takes it; `result`
+    gives the type of the result for those of the arguments, None where there is none.
+    """
 
     def generic(self: Any, args: Any, kws: Any) -> Any:
         kind = None if kws else result(*args)

@@ -91,7 +91,8 @@ NARROWEST, WIDEST = 1e-6, 179.9999  # degrees; fields of view of 0 and 180 are d
 def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
     """Return the basis of a camera's picture in world space: the orthonormal vectors right, up and forward.
 
-    Without a roll the picture is upright. A roll turns right and up about forward, clockwise as the camera sees it.
+    Without a roll the picture is upright; `upright` says what that is in a view straight up or down. A roll turns right
+    and up about forward, clockwise as the camera sees it.
     A left-handed camera mirrors its picture: right is negated.
     """
     x, y, z = camera.direction
@@ -100,7 +101,7 @@ def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
         c, s = cos(radians(camera.roll)), sin(radians(camera.roll))
         right, up = linear_combination(c, right, -s, up), linear_combination(s, right, c, up)
     if camera.left_handed:
-        right = linear_combination(-1.0, right, 0.0, right)
+        right = (-right[0], -right[1], -right[2])
     return right, up, (x, y, z)
 
 
