@@ -445,7 +445,7 @@ def test_a_film_is_that_of_the_command_line_and_can_be_stopped(suffix: str, tmp_
 def test_the_panel_speaks_french(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANGUAGE", "fr")
     user = User(parse(TEXT, "scene.rt").scene, (640, 700), select=3)
-    assert list(user.panel._tabs) == ["Éléments", "Scène", "Historique", "Image"]
+    assert list(user.panel._tabs) == ["Éléments", "Scène", "Historique", "Image, film"]
     user.click("diameter")
     user.type("-3")
     assert user.rows.error[1:] == ("diameter", "sphere diameter must be > 0, got -3")

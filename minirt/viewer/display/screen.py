@@ -38,6 +38,7 @@ H: all keys    F1: panel    Ctrl+Z: undo    Ctrl+S: save    Esc: quit
 click on a value in the line on top: type it"""
 BEYOND = "outside of the saved picture"
 GRID_COLOUR = (84, 75, 68, 255)  # BGRA
+LEAST_LINES = 12  # sizes of text: in a lower window the line on top covers too much of the picture to take its clicks
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title
 
@@ -108,7 +109,7 @@ class Screen:
 
     def is_on_line(self, state: State, x: int, y: int) -> bool:
         """Whether a pixel is on the line on top."""
-        is_shown = self.level == HudLevel.LINE and not self.help
+        is_shown = self.level == HudLevel.LINE and not self.help and self.size[1] >= LEAST_LINES * self.text_size
         return is_shown and overlay.is_on_line(x, y, state, self.size[0], self.text_size)
 
     def field_at(self, state: State, x: int, y: int) -> Field | None:
