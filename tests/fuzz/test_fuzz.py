@@ -51,7 +51,9 @@ def refuse(path: Path, _: bytes) -> None:
     raise FileError(path, "broken data stream")
 
 
-LENS = "# --precision single -o out.png\n" + FRAME.replace("60", "60 lens:1 focus:1e-50") + "sp 0,0,5 1 1,2,3"
+LENS = (
+    "# --precision single --samples 4 -o out.png\n" + FRAME.replace("60", "60 lens:1 focus:1e-50") + "sp 0,0,5 1 1,2,3"
+)
 FAR = f"# -o out.png\n{FRAME}sp -1e15,0,-9e14 1e15 9,9,9"
 LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
 

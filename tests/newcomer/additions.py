@@ -58,7 +58,7 @@ SHAPE = "from minirt.shapes.{0} import {1} as {1}"
 MAPPED = 'MAPPED: dict[str, Any] = {"mapped": True} | SHARED'
 ARRAY = "    rough: Any = None  # (n,) squared slope of matt surfaces, see `minirt.kernel.shading.rough`"
 GLOW = "    glow = splat(scene.glow[index], point.x) if has_rows(scene.glow) else splat(0.0, point.x)"
-AIM = "from minirt.kernel.shading.lights import aim, is_spread, sources_in_reach, specular"
+AIM = "from minirt.kernel.shading.lights import aim, is_spread, remembered_part, sources_in_reach, specular"
 COSINE = "        cosine = dot(shading_normal, to_light) * strength"
 SHARE = """        if has_rows(scene.rough):
             cosine = cosine * rough_share(surface.rough, shading_normal, to_light, ray.direction)"""

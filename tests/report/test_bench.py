@@ -33,8 +33,8 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         log.append("lists")
         return lists(*arguments)
 
-    def logged_render(renderer: Renderer, scene: Scene, pixels: np.ndarray) -> None:
-        render(renderer, scene, pixels)
+    def logged_render(renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: int = 1) -> None:
+        render(renderer, scene, pixels, samples)
         if pixels.shape[:2] == SIZE[::-1]:  # not the pixel for which the kernel is prepared
             log.append("frame")
 
