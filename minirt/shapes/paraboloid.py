@@ -17,7 +17,7 @@ from minirt.lanes import Number, Vec, fabs, inverse_root, maximum, rarely, splat
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
-from minirt.shapes.compensated import divided, pair, square_of
+from minirt.shapes.compensated import divided, pair, position_error, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import Axial, Ball, Bounds, Hit, Position, bounds_of_disc, point_along, union_of_bounds
 
@@ -88,7 +88,8 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: 
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
     if limit is None:
         across = p.x * p.x + p.y * p.y
-        squared = across + paraboloid.focal * paraboloid.focal
+        shell = 8.0 * position_error(origin, p)  # as far as a start may be off, on the scale of a thin solid, too
+        squared = across + paraboloid.focal * paraboloid.focal + shell * shell
         level = across - 2.0 * paraboloid.focal * p.z
         half = 0.5 * paraboloid.height
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
