@@ -82,11 +82,10 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
     pace = fabs(d.z) + 1.0 / (1.0 + cone.slope)
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
     if limit is None:
-        shell = 8.0 * position_error(origin, p)
         squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
-        close = quadrics.starts_close(a, b, level, squared + shell * shell, over, size, (p.z - half) * d.z)
+        close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z, position_error(origin, p))
         if rarely(close):
             slope = divided(pair(cone.radius, 0.0, a), splat(cone.height, a))
             zero = pair(0.0, 0.0, a)

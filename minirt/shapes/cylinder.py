@@ -15,7 +15,7 @@ from minirt.lanes import Number, Vec, copysign, fabs, rarely, splat, sqrt, where
 from minirt.records import record
 from minirt.shapes import quadrics
 from minirt.shapes.boundary import Boundary, along_and_off_axis
-from minirt.shapes.compensated import pair, square_of
+from minirt.shapes.compensated import pair, position_error, square_of
 from minirt.shapes.frames import capped_mapping, in_scene, own_direction, own_point
 from minirt.shapes.shape import Ball, Capped, Hit, Position, point_along
 
@@ -71,7 +71,8 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec, limit: Numb
     if limit is None:
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - cylinder.half
-        close = quadrics.starts_close(a, b, level, squared, over, cylinder.radius + cylinder.half, p.z * d.z)
+        size = cylinder.radius + cylinder.half
+        close = quadrics.starts_close(a, b, level, squared, over, size, p.z * d.z, position_error(origin, p))
         if rarely(close):
             zero, half = pair(0.0, 0.0, a), cylinder.half
             side = square_of(cylinder.radius, a), zero, zero

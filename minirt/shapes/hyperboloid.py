@@ -88,12 +88,11 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit
     c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
     if limit is None:
-        shell = 8.0 * position_error(origin, p)
         squared = reach * reach + waist
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - hyperboloid.half
         size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
-        close = quadrics.starts_close(a, b, level, squared + shell * shell, over, size, p.z * d.z)
+        close = quadrics.starts_close(a, b, level, squared, over, size, p.z * d.z, position_error(origin, p))
         if rarely(close):
             narrow, half = square_of(hyperboloid.waist, a), splat(hyperboloid.half, a)
             widening = minus(square_of(hyperboloid.radius, a), narrow)

@@ -88,12 +88,11 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: 
     span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
     if limit is None:
         across = p.x * p.x + p.y * p.y
-        shell = 8.0 * position_error(origin, p)  # as far as a start may be off, on the scale of a thin solid, too
-        squared = across + paraboloid.focal * paraboloid.focal + shell * shell
+        squared = across + paraboloid.focal * paraboloid.focal
         level = across - 2.0 * paraboloid.focal * p.z
         half = 0.5 * paraboloid.height
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
-        close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
+        close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z, position_error(origin, p))
         if rarely(close):
             zero, height = pair(0.0, 0.0, a), paraboloid.height
             side = zero, divided(square_of(paraboloid.radius, a), splat(2.0 * height, a)), zero

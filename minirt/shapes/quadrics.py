@@ -51,6 +51,9 @@ CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of it
 PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a straight line of the surface differs
 SQUARED = 64.0  # squares of the unit roundoff by which a pair of about 1 may be off
 BESIDE = 4.0  # unit roundoffs of a distance, within which two intervals meet
+SHELL = (
+    1 / CLOSE + 1
+)  # CLOSE (r^2 + (SHELL e)^2) is at least (r + e)^2 - r^2 for every radius r: no start is overlooked
 ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
 
 
@@ -140,15 +143,16 @@ def first_overlap_of_steep(span: Span) -> tuple[Mask, Number]:
 
 
 def starts_close(
-    a: Number, b: Number, level: Number, squared: Number, over: Number, size: Number, outwards: Number
+    a: Number, b: Number, level: Number, squared: Number, over: Number, size: Number, outwards: Number, off: Number
 ) -> Mask:
     """Whether a ray starts in a solid of revolution or close above it, close to the surface, and may hit it there.
 
     `level` is by how much the square of its start's distance from the axis exceeds that of the side there, which is
     about `squared`; `over` is its height above the nearer cap. `a` and `b` are those of its quadratic equation; it goes
     away from the middle between the caps if `outwards` > 0. It may hit nothing if it starts clearly above the side or a
-    cap and goes away from it, as most mirrored rays do.
+    cap and goes away from it, as most mirrored rays do. The start may be `off` by the rounding of its coordinates.
     """
+    squared = squared + (SHELL * off) * (SHELL * off)
     within = (level <= CLOSE * squared) & (over <= CLOSE * size)
     if rarely(within):
         error = ROUNDING * unit_roundoff(a) * size
