@@ -85,7 +85,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
         squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
-        close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z, position_error(origin, p))
+        off = (1.0 + cone.slope) * position_error(origin, p)  # along the radius
+        close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z, off)
         if rarely(close):
             slope = divided(pair(cone.radius, 0.0, a), splat(cone.height, a))
             zero = pair(0.0, 0.0, a)

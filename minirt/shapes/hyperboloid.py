@@ -92,7 +92,8 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - hyperboloid.half
         size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
-        close = quadrics.starts_close(a, b, level, squared, over, size, p.z * d.z, position_error(origin, p))
+        off = (1.0 + hyperboloid.slope) * position_error(origin, p)  # along the radius
+        close = quadrics.starts_close(a, b, level, squared, over, size, p.z * d.z, off)
         if rarely(close):
             narrow, half = square_of(hyperboloid.waist, a), splat(hyperboloid.half, a)
             widening = minus(square_of(hyperboloid.radius, a), narrow)

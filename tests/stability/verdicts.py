@@ -69,6 +69,8 @@ def right(shape: Shape, origins: Array, directions: Array, t: Array, digits: boo
         slope, steepest = np.where(near, steep, 1.0).min(axis=0), np.where(near, steep, 0.0).max(axis=0)
         again = (np.abs(start.above) <= rounding / 4) & (start.beyond <= -2 * rounding) & hit
         again &= (slope > STEEP) & (t * slope <= 8 * rounding)
+        # Where the hit lies on a face on which the ray does not start, it is another crossing.
+        again &= ~((np.abs(start.faces) > rounding) & (np.abs(at.faces) <= band + blur)).any(axis=0)
         if again.any():
             crossings = rays.crossings()
             own = np.nanargmin(np.where(np.isnan(crossings), np.inf, np.abs(crossings)), axis=0)[None]
