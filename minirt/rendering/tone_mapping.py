@@ -79,7 +79,7 @@ def blue_noise() -> np.ndarray:
 
 NO_LINEAR = np.zeros((0, 0, 3))
 DITHERING = sqrt(2)  # ratio of the RMSE of dithering to that of rounding, where all fractions of a level are as likely
-STRIP = 2  # lines at once: arrays so small that malloc keeps their pages (0.35 of the time of 16 lines)
+STRIP = 4096  # pixels of the lines at once, about: arrays so small that malloc keeps their pages
 FRACTION = 15  # lowest bits of a float32 that `levels_below` leaves out
 CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
 
@@ -99,16 +99,17 @@ def map_tones(
     may be a part. `run` runs a job on all threads. They end early where `is_wanted`, which is asked every few
     milliseconds, says no.
     """
-    curve, strips = tone_named(tone), iter(range(0, len(light), STRIP))
+    curve, lines = tone_named(tone), max(1, STRIP // light.shape[1])
+    strips = iter(range(0, len(light), lines))
     left, above = (crop.left, crop.top) if crop else (0, 0)
 
     def map_strips() -> None:
         for top in strips:
             if not is_wanted():
                 return
-            strip = np.ascontiguousarray(light[top : top + STRIP])
+            strip = np.ascontiguousarray(light[top : top + lines])
             levels = dithered(strip, curve, left, above + top) if dither else rounded(strip, tone)
-            into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
+            into, known = pixels[top : top + lines], strip[..., 0] == strip[..., 0]
             if known.all():
                 into[..., 2::-1], into[..., 3] = levels, 255
             else:
@@ -159,8 +160,9 @@ def rounding_error(pixels: np.ndarray, tone: str, dither: bool) -> float:
     else:
         variances = np.diff(np.minimum(curve.halfway, 1.0), prepend=0.0, append=1.0) ** 2 / 12
     counts = np.zeros(LEVELS, np.int64)
-    for top in range(0, len(pixels), STRIP):  # as counting keeps the interpreter from all other threads
-        counts += np.bincount(pixels[top : top + STRIP, ..., :3].ravel(), minlength=LEVELS)
+    lines = max(1, STRIP // pixels.shape[1])
+    for top in range(0, len(pixels), lines):  # as counting keeps the interpreter from all other threads
+        counts += np.bincount(pixels[top : top + lines, ..., :3].ravel(), minlength=LEVELS)
     return sqrt(float(counts @ variances) / max(counts.sum(), 1))
 
 

@@ -26,7 +26,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
-from minirt.shapes.shape import UPRIGHT, Flat, Oriented
+from minirt.shapes.shape import UPRIGHT, Flat, Oriented, union_of_bounds
 from minirt.shapes.triangle import Triangle
 
 PictureReader = Callable[..., np.ndarray]  # of a path
@@ -206,6 +206,9 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
     """Whether a point is inside of a shape: the first surface that a ray from there hits faces away from it."""
     if not shape.solid:
         return False
+    at, bounds = (point[0], point[1], point[2]), shape.bounds()
+    if bounds and union_of_bounds(bounds, (at, at)) != bounds:
+        return False  # it is outside of the bounding box
     plane = shape.flat()
     if plane:
         return bool(np.dot(np.subtract(point, plane[0]), plane[1]) < 0.0)
