@@ -9,6 +9,7 @@ from minirt.fields import Colour, Direction, Field, Point
 from minirt.scene.writer import field_text
 from minirt.viewer.editing.colours import colour_word, own_colour
 from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import Value, values
 from minirt.viewer.language import translated
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
@@ -34,6 +35,15 @@ def values_in_words(state: State) -> dict[str, Field]:
     ]
     fields.sort(key=order)
     return {value_in_words(state, field): field for field in fields}
+
+
+def next_in_line(state: State, step: int) -> Value:
+    """Return the first value of the field that follows that of the active one in the line on top, after a step of 1, or
+    comes before it, after one of -1."""
+    every = values(state.element)
+    fields = [each for each in values_in_words(state).values() if any(value.field == each for value in every)]
+    following = fields[(fields.index(state.active.field) + step) % len(fields)]
+    return next(each for each in every if each.field == following)
 
 
 def order(field: Field) -> int:

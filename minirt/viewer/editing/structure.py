@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import cos, dist, pi, sin
+from math import copysign, cos, dist, pi, sin
 from typing import Any
 
 from minirt.element import Element, Record, fields_of
@@ -23,9 +23,10 @@ from minirt.scene.names import element_name, named_block, own_name, renamed
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
+from minirt.shapes.shape import union_of_bounds
 from minirt.viewer.editing.placing import aim_ahead, settled
 from minirt.viewer.editing.projection import UP, field_names
-from minirt.viewer.editing.rigid import clamp_point
+from minirt.viewer.editing.rigid import clamp_point, shifted
 from minirt.viewer.editing.state import Snapshot, State, can_edit, index_of
 from minirt.viewer.editing.values import RecordType, leading_decimal, nice_number, round_length, round_point, values
 from minirt.viewer.files import usable_files
@@ -33,27 +34,46 @@ from minirt.viewer.files import usable_files
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 STACKED = 1.5  # times the usual size on top of another shape: of a shape of the same kind
-LAMP_SHARE = 0.4  # of the distance to a surface: where a new lamp hangs in front of it
+APART = 1.2  # breadths of selected shapes from their middle to that of their copies
+LAMP_SHARE = 0.25  # of the distance to a surface: where a new lamp hangs in front of it
 SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """Insert a copy after each selected element, at the same position, and select the copies; what stands, stands on
-    there."""
-    scene, copies = state.scene, dict[int, Element]()
+    """Insert a copy after each selected element, and select the copies, which are beside the originals."""
+    scene, copies, way = state.scene, dict[int, Element](), way_beside(state)
     for index in sorted(state.chosen, reverse=True):
         element = state.scene.elements[index]
         # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
         repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
         if not repeatable:
             return state.with_message(f"a scene has one {element.title}")
-        copies[index] = element.as_kind(repeatable[0])
+        copies[index] = shifted(element.as_kind(repeatable[0]), way)
         scene = scene.edit(index, element, copies[index])
     what = names_of_chosen(state)
     others = frozenset(index_of(scene, copies[index]) for index in state.others)
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
-    return replace(state, others=others, value_index=0).with_message(f"a copy of {what}, at the same position")
+    state = replace(state, others=others, value_index=0)
+    message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
+    return state.with_message(message)
+
+
+def way_beside(state: State) -> Triple:
+    """Return the way that takes the selected shapes beside themselves: to the right in the picture, along x or z.
+
+    There is no way beside what has no bounds, such as a plane or a light.
+    """
+    chosen = [state.scene.elements[index] for index in state.chosen]
+    boxes = [box for each in chosen if isinstance(each, Shape) and (box := each.bounds())]
+    if not boxes:
+        return 0.0, 0.0, 0.0
+    least, greatest = union_of_bounds(*boxes)
+    right, _, _ = camera_frame(state.scene.camera)
+    axis = 0 if abs(right[0]) >= abs(right[2]) else 2
+    length = copysign(max(APART * (greatest[axis] - least[axis]), state.stride / 10), right[axis])
+    x, _, z = round_point((length, 0.0, length), state.stride)
+    return (x, 0.0, 0.0) if axis == 0 else (0.0, 0.0, z)
 
 
 def delete(state: State, _amount: float, now: float) -> State:
