@@ -8,13 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from minirt.element import Element
+from minirt.fields import Three
 from minirt.mlx import Key, Modifier
 from minirt.scene.names import LONGEST, element_name, own_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox
 from minirt.viewer.display.words import next_in_line
 from minirt.viewer.editing.structure import rename
-from minirt.viewer.editing.typed import CHARACTERS, set_typed, value_for
+from minirt.viewer.editing.typed import CHARACTERS, set_typed, three_words, value_for
+from minirt.viewer.editing.values import part_names
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
 SETTING = "Enter: set it    Tab: and the next    Esc: leave it"
@@ -69,7 +71,8 @@ class Typing:
             self.set(text)
             if key == Key.TAB and not session.state.message:
                 step = -1 if Modifier.SHIFT in session.modifiers else 1
-                session.show(session.state.with_active(next_in_line(session.state, step)))
+                following = next_in_line(session.state, step, whole=bool(three_words(text)))
+                session.show(session.state.with_active(following))
                 self.begin(EMPTY)
         return True
 
@@ -87,9 +90,12 @@ class Typing:
         session = self.session
         self.text = text
         active, element = value_for(session.state, text), session.state.element
-        also = "1 2 3: all three" if isinstance(active.get(element), tuple) else "+= -= *= /=: relative"
+        names = " ".join(part_names(active.leaf)[: Three.width])
+        also = f"or all three: {names}" if isinstance(active.get(element), tuple) else "+= -= *= /=: relative"
         present = active.current(element)
-        now = f", now {present:.6g}" if isinstance(present, int | float) and not isinstance(present, bool) else ""
+        parts = present if isinstance(present, tuple) else (present,)
+        are_numbers = all(isinstance(part, int | float) and not isinstance(part, bool) for part in parts)
+        now = ", now " + " ".join(f"{part:.6g}" for part in parts) if are_numbers else ""
         hint = f"{active.name}{now}: {'' if text == EMPTY else text}_    {SETTING}    {also}"
         if session.state.others:
             hint = f"{len(session.state.chosen)} elements selected    {hint}"

@@ -90,6 +90,7 @@ def value_at(state: State, x: int, y: int, width: int, size: int) -> Value | Non
         before, found, _ = line.partition(f", {words}")
         parts = words.split(",")
         ends = [MARGIN + measure(f"{before}, {','.join(parts[:count])}", size)[0] for count in range(len(parts) + 1)]
+        ends[-1] = MARGIN + measure(f"{before}{found}, ", size)[0]  # the comma and the blank after it, too
         if found and ends[0] <= x < ends[-1] and is_on_line(x, y, state, width, size):
             own = [each for each in values(state.element) if each.field == field]
             part = next(at for at, end in enumerate(ends[1:]) if x < end)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import copysign, cos, dist, pi, sin
+from math import copysign, cos, pi, sin
 from typing import Any
 
 from minirt.element import Element, Record, fields_of
@@ -28,14 +28,22 @@ from minirt.viewer.editing.placing import aim_ahead, settled
 from minirt.viewer.editing.projection import UP, field_names
 from minirt.viewer.editing.rigid import clamp_point, shifted
 from minirt.viewer.editing.state import Snapshot, State, can_edit, index_of
-from minirt.viewer.editing.values import RecordType, leading_decimal, nice_number, round_length, round_point, values
+from minirt.viewer.editing.values import (
+    RecordType,
+    leading_decimal,
+    nice_number,
+    position_value,
+    round_length,
+    round_point,
+    values,
+)
 from minirt.viewer.files import usable_files
+from minirt.viewer.language import GAP
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 STACKED = 1.5  # times the usual size on top of another shape: of a shape of the same kind
 APART = 1.2  # breadths of selected shapes from their middle to that of their copies
-LAMP_SHARE = 0.25  # of the distance to a surface: where a new lamp hangs in front of it
 SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
@@ -56,6 +64,7 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
     state = replace(state, others=others, value_index=0)
     message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
+    message += f"{GAP}type = x y z: its position" if position_value(state.element) and not others else ""
     return state.with_message(message)
 
 
@@ -200,13 +209,13 @@ def one_digit(length: float) -> float:
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
     """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
 
-    What has no surface hangs in front of a surface there, along its normal, so that a lamp lights it.
+    What has no surface hangs in front of a surface there, at the size of a new shape, so that a lamp lights it.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     right, up, _ = camera_frame(state.scene.camera)
     middle = aim.point
     if aim.normal and not issubclass(kind, Shape):
-        middle = linear_combination(1.0, aim.point, LAMP_SHARE * dist(aim.eye, aim.point), aim.normal)
+        middle = linear_combination(1.0, aim.point, aim.size, aim.normal)
     radius = one_digit(aim.size) / 2 if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
