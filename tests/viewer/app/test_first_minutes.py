@@ -109,7 +109,7 @@ def test_three_numbers_are_the_position_where_one_number_is_active() -> None:
 
 @pytest.mark.parametrize(("beside", "value"), [((0, -4), "diameter"), ((0, 4), "x"), ((1, -4), "z"), ((1, 4), "z")])
 def test_a_click_on_a_number_of_the_line_on_top_begins_to_type_it(beside: tuple[int, int], value: str) -> None:
-    """`beside`: columns from the start (0) or the end (1) of the words of the centre. A comma belongs to what it ends."""
+    """`beside`: columns from the start (0) or the end (1) of the words of the centre; a comma is part of what it ends."""
     lines = "resize 1280x720", "press Tab", "press Tab"
     session = played(*lines, text=PAIR)
     shown = [title_in_words(session.state.element), *values_in_words(session.state)]
