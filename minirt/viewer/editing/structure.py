@@ -49,8 +49,11 @@ LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """Insert a copy after each selected element, and select the copies, which are beside the originals."""
-    scene, copies, way = state.scene, dict[int, Element](), way_beside(state)
+    """Insert a copy after each selected element, and select the copies, which are beside the originals.
+
+    The active value stays: it is the next one to be changed, as it was of the original.
+    """
+    scene, copies, way, active = state.scene, dict[int, Element](), way_beside(state), state.active
     for index in sorted(state.chosen, reverse=True):
         element = state.scene.elements[index]
         # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
@@ -62,9 +65,11 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     what = names_of_chosen(state)
     others = frozenset(index_of(scene, copies[index]) for index in state.others)
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
-    state = replace(state, others=others, value_index=0)
+    state = replace(state, others=others).with_active(active)
     message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
-    message += f"{GAP}type = x y z: its position" if position_value(state.element) and not others else ""
+    if position_value(state.element) and not others:
+        begun = "" if isinstance(active.leaf, Point) else f"{active.name}, Tab, "
+        message += f"{GAP}type = {begun}x y z"
     return state.with_message(message)
 
 
@@ -209,13 +214,13 @@ def one_digit(length: float) -> float:
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
     """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
 
-    What has no surface hangs in front of a surface there, at the size of a new shape, so that a lamp lights it.
+    What has no surface hangs half of the size of a new shape in front of a surface there, so that a lamp lights it.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     right, up, _ = camera_frame(state.scene.camera)
     middle = aim.point
     if aim.normal and not issubclass(kind, Shape):
-        middle = linear_combination(1.0, aim.point, aim.size, aim.normal)
+        middle = linear_combination(1.0, aim.point, aim.usual / 2, aim.normal)
     radius = one_digit(aim.size) / 2 if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
