@@ -18,7 +18,8 @@ from minirt.meshes.triangles import BLOCK
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes import Kind
-from minirt.shapes.mesh import BARYCENTRIC, Mesh
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.smooth_triangle import BARYCENTRIC
 
 PARTS = 4  # into about so many a thread divides a tree before all threads divide these
 CACHE_LINE = 64  # bytes

@@ -146,7 +146,7 @@ class Rounding:
 
 def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> SceneArrays:
     """Return a scene in float32, the eye at the origin, most of which a `rounding` writes; `extents` are those of
-    `minirt.kernel.binning.BinningArrays`, (n, 4)."""
+    `minirt.kernel.rectangles.BinningArrays`, (n, 4)."""
     extents[:, :3] = arrays.colours_and_extents[:, :3]
     light_cones = np.zeros(arrays.light_cones.shape, np.float32)
     if has_cones(*light_cones.shape[:2]):

@@ -12,12 +12,13 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from minirt.helpers import system
-from minirt.kernel.binning import CHUNK, RADIX, BinningArrays
+from minirt.kernel.binning import RADIX
 from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import Grid
+from minirt.kernel.rectangles import CHUNK, BinningArrays
 from minirt.kernel.shadow_rays import CIRCLE
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
