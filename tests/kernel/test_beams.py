@@ -12,7 +12,7 @@ from minirt.kernel import beam_traversal, beams, interpreted
 from minirt.kernel.scene_arrays import Group
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
-from minirt.rendering.packing.bvh import mesh_trees
+from minirt.rendering.packing.mesh_trees import mesh_trees
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import MESH, Mesh
 from tests.meshes.examples import GREY, ball, soup

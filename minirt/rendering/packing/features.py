@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.element import Element, fields_of
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
 from minirt.scene import Background, Lamp, Scene
@@ -132,3 +133,12 @@ def material_features(shape: Shape) -> Iterable[str]:
     if shape.map_frame() and not COORDINATE_MAPS.isdisjoint(found):
         found.add("placements")
     return found
+
+
+def fits_single(arrays: SceneArrays) -> bool:
+    """Whether float32 will do: a BVH consists of float64, and float32 cannot count the pixels of a large picture."""
+    return (
+        arrays.bvh is None
+        and arrays.environment is None
+        and (arrays.surface_maps is None or not len(arrays.surface_maps.pictures))
+    )
