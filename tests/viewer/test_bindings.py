@@ -223,7 +223,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "pan": ((), lambda _, after: camera(after).position[0] < -1 and camera(after).direction == (0, 0, -1)),
     "type value": (
         SPHERE,
-        lambda _, after: after.screen.list_box is not None and "diameter: =_" in after.screen.list_box.title,
+        lambda _, after: after.screen.list_box is not None and "diameter, now 2: _" in after.screen.list_box.title,
     ),
     "rename": (
         SPHERE,

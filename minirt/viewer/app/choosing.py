@@ -144,13 +144,11 @@ class Choosing:
         return True
 
     def takes_motion(self, x: int, y: int) -> bool:
-        """Choose the action under the pointer; False if no list of actions is open."""
-        if not self.is_open or self._group:
-            return False
-        row = self.row_at(x, y)
+        """Choose the row under the pointer; False if it is on none, and no list of actions is open."""
+        row = self.row_at(x, y) if self.is_open else None
         if row and row is not self._chosen:
             self.choose(row)
-        return True
+        return bool(row) or (self.is_open and not self._group)
 
     def row_at(self, x: int, y: int) -> ListRow | None:
         """Return the row at a pixel of the window; None beside the list."""

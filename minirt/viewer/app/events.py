@@ -19,7 +19,7 @@ from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.typed_value import BEGUN, Typing
+from minirt.viewer.app.typed_value import BEGUN, EMPTY, Typing
 from minirt.viewer.bindings import Binding
 from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.recovery import remember_panel
@@ -87,9 +87,9 @@ class EventDispatcher:
             case Event.BUTTON_PRESS, (Button.RIGHT | Button.MIDDLE, x, y) if screen.tool_at(x, y):
                 pass  # what lies behind the tool is not meant
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if self.is_on_line(x, y):
-                if field := screen.field_at(session.state, x, y):  # beside the values a click does nothing
-                    session.show(session.state.with_active(field))
-                    self.typing.begin("=")
+                if value := screen.value_at(session.state, x, y):  # beside the values a click does nothing
+                    session.show(session.state.with_active(value))
+                    self.typing.begin(EMPTY)
             case Event.MOTION_NOTIFY, (x, y):
                 if self.choosing.takes_motion(x, y):
                     return

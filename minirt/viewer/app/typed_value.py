@@ -1,21 +1,29 @@
-"""Typing the active value, which a digit or = begins, or a name, which F2 begins: Enter sets it, Escape leaves it."""
+"""Typing the active value, which a digit or = begins, or a name, which F2 begins: Enter sets it, Escape leaves it.
+
+Tab sets it, too, and begins the next value of the line on top; with Shift the one before.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from minirt.element import Element
+from minirt.fields import Three
 from minirt.mlx import Key, Modifier
 from minirt.scene.names import LONGEST, element_name, own_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox
+from minirt.viewer.display.words import next_in_line
 from minirt.viewer.editing.structure import rename
-from minirt.viewer.editing.typed import CHARACTERS, set_typed, value_for
+from minirt.viewer.editing.typed import CHARACTERS, set_typed, three_words, value_for
+from minirt.viewer.editing.values import part_names
 
 ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
+SETTING = "Enter: set it    Tab: and the next    Esc: leave it"
+EMPTY = "="  # begins a value of which nothing is typed
 NAME = "# "  # begins a name that is typed, as it does in the file
 BEGUN: dict[str, Callable[[Element], str]] = {  # what actions begin with; the first character replaces an old name
-    "type value": lambda _: "=",
+    "type value": lambda _: EMPTY,
     "rename": lambda element: NAME + own_name(element),
 }
 MAX_LENGTH = LONGEST  # characters
@@ -47,33 +55,50 @@ class Typing:
         if text.startswith(NAME):
             text = (NAME if text == self._begun else text) + character
         elif character in f"{CHARACTERS} ":
-            text = text.removeprefix("=") + character
+            text = text.removeprefix(EMPTY) + character
         self.show(text[:MAX_LENGTH])
 
     def takes(self, key: int) -> bool:
         """Take a key press; False if the key is not one of those that end, correct or type it."""
         session, text, is_name = self.session, self.text, self.text.startswith(NAME)
-        if not text or key not in (*ENTER, Key.ESCAPE, Key.BACKSPACE):
+        if not text or key not in (*ENTER, Key.TAB, Key.ESCAPE, Key.BACKSPACE):
             return is_name and Modifier.ACCEL not in session.modifiers
         if key == Key.BACKSPACE and is_name:
             self.show(NAME if text == self._begun else NAME + text[len(NAME) : -1])
             return True
         self.show(text[:-1] if key == Key.BACKSPACE else "")
-        if key in ENTER:
-            session.say("")
-            if is_name:
-                session.show(rename(session.state, text.removeprefix(NAME)))
-            else:
-                session.show(set_typed(session.state, value_for(session.state, text), text, session.now))
+        if key in (*ENTER, Key.TAB):
+            self.set(text)
+            if key == Key.TAB and not session.state.message:
+                step = -1 if Modifier.SHIFT in session.modifiers else 1
+                following = next_in_line(session.state, step, whole=bool(three_words(text)))
+                session.show(session.state.with_active(following))
+                self.begin(EMPTY)
         return True
+
+    def set(self, text: str) -> None:
+        """Set the name or the value that was typed; a message says what is wrong with it."""
+        session = self.session
+        session.say("")
+        if text.startswith(NAME):
+            session.show(rename(session.state, text.removeprefix(NAME)))
+        elif text != EMPTY:
+            session.show(set_typed(session.state, value_for(session.state, text), text, session.now))
 
     def show(self, text: str) -> None:
         """Show what is typed; nothing if it is empty."""
         session = self.session
         self.text = text
-        active = value_for(session.state, text)
-        also = "1 2 3: all three" if isinstance(active.get(session.state.element), tuple) else "+= -= *= /=: relative"
-        hint = f"{active.name}: {text}_    Enter: set it    Esc: leave it    {also}"
+        active, element = value_for(session.state, text), session.state.element
+        names = " ".join(part_names(active.leaf)[: Three.width])
+        also = f"or all three: {names}" if isinstance(active.get(element), tuple) else "+= -= *= /=: relative"
+        present = active.current(element)
+        parts = present if isinstance(present, tuple) else (present,)
+        are_numbers = all(isinstance(part, int | float) and not isinstance(part, bool) for part in parts)
+        now = ", now " + " ".join(f"{part:.6g}" for part in parts) if are_numbers else ""
+        hint = f"{active.name}{now}: {'' if text == EMPTY else text}_    {SETTING}    {also}"
+        if session.state.others:
+            hint = f"{len(session.state.chosen)} elements selected    {hint}"
         if text.startswith(NAME):
             name = element_name(session.state.scene, session.state.selected)
             hint = f"name of {name}: {text.removeprefix(NAME)}_    Enter: set it    Esc: leave it"

@@ -6,13 +6,13 @@ import textwrap
 from enum import IntEnum
 
 from minirt.element import fields_of
-from minirt.fields import Field
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
 from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
 from minirt.viewer.display.painter import Painted, Pixels
 from minirt.viewer.display.words import bracketed, short_numbers, title_in_words, value_in_words, values_in_words
 from minirt.viewer.editing.state import MoveAxes, State
+from minirt.viewer.editing.values import Value, values
 from minirt.viewer.language import GAP, translated
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
@@ -82,14 +82,19 @@ def fitting_words(state: State, width: int, size: int) -> str:
     return words if has_active else f"{title}, {value_in_words(state, state.active.field)}"
 
 
-def field_at(state: State, x: int, y: int, width: int, size: int) -> Field | None:
-    """Return the field whose value is at a pixel of the line on top of a window of a width; None beside the values."""
+def value_at(state: State, x: int, y: int, width: int, size: int) -> Value | None:
+    """Return the value at a pixel of the line on top of a window of a width, or the part of it there; None beside the
+    values."""
     line = fitting_words(state, width, size)
-    for value, field in values_in_words(state).items():
-        before, found, _ = line.partition(f", {value}")
-        start, end = (MARGIN + measure(words, size)[0] for words in (f"{before}, ", before + found))
-        if found and start <= x < end and is_on_line(x, y, state, width, size):
-            return field
+    for words, field in values_in_words(state).items():
+        before, found, _ = line.partition(f", {words}")
+        parts = words.split(",")
+        ends = [MARGIN + measure(f"{before}, {','.join(parts[:count])}", size)[0] for count in range(len(parts) + 1)]
+        ends[-1] = MARGIN + measure(f"{before}{found}, ", size)[0]  # the comma and the blank after it, too
+        if found and ends[0] <= x < ends[-1] and is_on_line(x, y, state, width, size):
+            own = [each for each in values(state.element) if each.field == field]
+            part = next(at for at, end in enumerate(ends[1:]) if x < end)
+            return next((each for each in own if each.part == part), own[0] if own else None)
     return None
 
 

@@ -14,7 +14,6 @@ from itertools import zip_longest
 
 import numpy as np
 
-from minirt.fields import Field
 from minirt.mlx import Mlx, MlxImage, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
@@ -28,6 +27,7 @@ from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE,
 from minirt.viewer.display.painter import Painted, Pixels
 from minirt.viewer.display.tool_row import Tool, draw_tools, tool_at
 from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import Value
 from minirt.viewer.language import translated
 
 TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow window
@@ -112,9 +112,9 @@ class Screen:
         is_shown = self.level == HudLevel.LINE and not self.help and self.size[1] >= LEAST_LINES * self.text_size
         return is_shown and overlay.is_on_line(x, y, state, self.size[0], self.text_size)
 
-    def field_at(self, state: State, x: int, y: int) -> Field | None:
-        """Return the field whose value the line on top shows at a pixel, None beside the values."""
-        return overlay.field_at(state, x, y, self.size[0], self.text_size)
+    def value_at(self, state: State, x: int, y: int) -> Value | None:
+        """Return the value, or the part of one, that the line on top shows at a pixel, None beside the values."""
+        return overlay.value_at(state, x, y, self.size[0], self.text_size)
 
     @property
     def tools_width(self) -> int:
@@ -142,7 +142,7 @@ class Screen:
         scale, size = self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        handles = self.handles and not keys_held
+        handles = self.handles and not keys_held and not self.list_box  # which may be about something small
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
         row = self.explained, handles, self.handles, self.handle_kind, self.tool
         contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout

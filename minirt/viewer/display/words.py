@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 
 from minirt.element import Element, fields_of
-from minirt.fields import Colour, Direction, Field, Point
+from minirt.fields import Colour, Direction, Field, Point, Three
 from minirt.scene.writer import field_text
 from minirt.viewer.editing.colours import colour_word, own_colour
 from minirt.viewer.editing.state import State
+from minirt.viewer.editing.values import Value, values
 from minirt.viewer.language import translated
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
@@ -34,6 +35,27 @@ def values_in_words(state: State) -> dict[str, Field]:
     ]
     fields.sort(key=order)
     return {value_in_words(state, field): field for field in fields}
+
+
+def next_in_line(state: State, step: int, whole: bool = False) -> Value:
+    """Return the value that follows the active one in the line on top, after a step of 1, or comes before it, after one
+    of -1.
+
+    After a part of a triple that is its next part, unless the `whole` triple was meant.
+    """
+    active, every = state.active, values(state.element)
+    alike = [
+        each
+        for each in every
+        if (each.channel is None) == (active.channel is None) and (each.channel or 0) < Three.width
+    ]
+    siblings = [each for each in alike if each.field == active.field]
+    index = siblings.index(active) + step if active in siblings and not whole else -1
+    if 0 <= index < len(siblings):
+        return siblings[index]
+    fields = [each for each in values_in_words(state).values() if any(value.field == each for value in every)]
+    following = fields[(fields.index(active.field) + step) % len(fields)]
+    return next(each for each in every if each.field == following)
 
 
 def order(field: Field) -> int:

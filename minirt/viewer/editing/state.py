@@ -81,10 +81,10 @@ class State:
         return all_values[self.value_index % len(all_values)]
 
     def with_active(self, wanted: Field | Value) -> State:
-        """The state in which the first value of a field of the element, or the first part of a value, is active."""
+        """The state in which a value, its first part, or the first value of a field of the element is active."""
         every = enumerate(values(self.element))
         index = next(
-            (at for at, each in every if wanted in (each.field, each._replace(channel=None))), self.value_index
+            (at for at, each in every if wanted in (each.field, each._replace(channel=None), each)), self.value_index
         )
         return replace(self, value_index=index)
 

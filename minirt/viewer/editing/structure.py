@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import cos, dist, pi, sin
+from math import copysign, cos, pi, sin
 from typing import Any
 
 from minirt.element import Element, Record, fields_of
@@ -23,37 +23,66 @@ from minirt.scene.names import element_name, named_block, own_name, renamed
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.writer import field_text
 from minirt.shapes import Shape
+from minirt.shapes.shape import union_of_bounds
 from minirt.viewer.editing.placing import aim_ahead, settled
 from minirt.viewer.editing.projection import UP, field_names
-from minirt.viewer.editing.rigid import clamp_point
+from minirt.viewer.editing.rigid import clamp_point, shifted
 from minirt.viewer.editing.state import Snapshot, State, can_edit, index_of
-from minirt.viewer.editing.values import RecordType, leading_decimal, nice_number, round_length, round_point, values
+from minirt.viewer.editing.values import (
+    RecordType,
+    leading_decimal,
+    nice_number,
+    position_value,
+    round_length,
+    round_point,
+    values,
+)
 from minirt.viewer.files import usable_files
+from minirt.viewer.language import GAP
 
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 STACKED = 1.5  # times the usual size on top of another shape: of a shape of the same kind
-LAMP_SHARE = 0.4  # of the distance to a surface: where a new lamp hangs in front of it
+APART = 1.2  # breadths of selected shapes from their middle to that of their copies
 SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """Insert a copy after each selected element, at the same position, and select the copies; what stands, stands on
-    there."""
-    scene, copies = state.scene, dict[int, Element]()
+    """Insert a copy after each selected element, and select the copies, which are beside the originals."""
+    scene, copies, way = state.scene, dict[int, Element](), way_beside(state)
     for index in sorted(state.chosen, reverse=True):
         element = state.scene.elements[index]
         # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
         repeatable = [kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once]
         if not repeatable:
             return state.with_message(f"a scene has one {element.title}")
-        copies[index] = element.as_kind(repeatable[0])
+        copies[index] = shifted(element.as_kind(repeatable[0]), way)
         scene = scene.edit(index, element, copies[index])
     what = names_of_chosen(state)
     others = frozenset(index_of(scene, copies[index]) for index in state.others)
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
-    return replace(state, others=others, value_index=0).with_message(f"a copy of {what}, at the same position")
+    state = replace(state, others=others, value_index=0)
+    message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
+    message += f"{GAP}type = x y z: its position" if position_value(state.element) and not others else ""
+    return state.with_message(message)
+
+
+def way_beside(state: State) -> Triple:
+    """Return the way that takes the selected shapes beside themselves: to the right in the picture, along x or z.
+
+    There is no way beside what has no bounds, such as a plane or a light.
+    """
+    chosen = [state.scene.elements[index] for index in state.chosen]
+    boxes = [box for each in chosen if isinstance(each, Shape) and (box := each.bounds())]
+    if not boxes:
+        return 0.0, 0.0, 0.0
+    least, greatest = union_of_bounds(*boxes)
+    right, _, _ = camera_frame(state.scene.camera)
+    axis = 0 if abs(right[0]) >= abs(right[2]) else 2
+    length = copysign(max(APART * (greatest[axis] - least[axis]), state.stride / 10), right[axis])
+    x, _, z = round_point((length, 0.0, length), state.stride)
+    return (x, 0.0, 0.0) if axis == 0 else (0.0, 0.0, z)
 
 
 def delete(state: State, _amount: float, now: float) -> State:
@@ -180,13 +209,13 @@ def one_digit(length: float) -> float:
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
     """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
 
-    What has no surface hangs in front of a surface there, along its normal, so that a lamp lights it.
+    What has no surface hangs in front of a surface there, at the size of a new shape, so that a lamp lights it.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     right, up, _ = camera_frame(state.scene.camera)
     middle = aim.point
     if aim.normal and not issubclass(kind, Shape):
-        middle = linear_combination(1.0, aim.point, LAMP_SHARE * dist(aim.eye, aim.point), aim.normal)
+        middle = linear_combination(1.0, aim.point, aim.size, aim.normal)
     radius = one_digit(aim.size) / 2 if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]

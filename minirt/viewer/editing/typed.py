@@ -20,11 +20,11 @@ from typing import Any
 
 from minirt.element import Element
 from minirt.errors import ElementError, FieldError
-from minirt.fields import Colour, Direction, Point, Three, Whole
+from minirt.fields import Colour, Direction, Three, Whole
 from minirt.fields.scalars import found, number
 from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import Value, values
+from minirt.viewer.editing.values import Value, position_value, values
 
 OPERATIONS: dict[Any, Any] = {ast.Mult: mul, ast.Div: truediv, ast.Add: add, ast.Sub: sub, ast.USub: neg, ast.UAdd: pos}
 CHARACTERS = "0123456789.,+-*/=()"  # of which typed values are made
@@ -63,8 +63,8 @@ def value_for(state: State, text: str) -> Value:
     """The value that a typed text is for: the active one; where that is one number, the position for three of them."""
     active = state.active
     is_for_place = not isinstance(active.get(state.element), tuple) and three_words(text.removeprefix("="))
-    places = [each for each in values(state.element) if isinstance(each.leaf, Point)]
-    return places[0]._replace(channel=None) if is_for_place and places else active
+    place = position_value(state.element)
+    return place._replace(channel=None) if is_for_place and place else active
 
 
 def is_like(one: Value, other: Value) -> bool:

@@ -119,6 +119,11 @@ def with_part(triple: Triple, channel: int, new: Any) -> Triple:
     return level * sine, height, level * cosine
 
 
+def position_value(element: Element) -> Value | None:
+    """The first coordinate of an element's position; None if it has none."""
+    return next((each for each in values(element) if isinstance(each.leaf, Point)), None)
+
+
 def values(element: Element) -> tuple[Value, ...]:
     """All values of an element; parts of triples come last, positions and directions after the others."""
     every = [each for field in seen_fields(element) for each in values_of_field(field, getattr(element, field.name))]

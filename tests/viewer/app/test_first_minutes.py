@@ -107,9 +107,9 @@ def test_three_numbers_are_the_position_where_one_number_is_active() -> None:
     assert session.state.scene.lights[0].brightness == 0.6
 
 
-@pytest.mark.parametrize(("beside", "is_on_it"), [((0, -4), False), ((0, 4), True), ((1, -4), True), ((1, 4), False)])
-def test_a_click_on_a_value_of_the_line_on_top_begins_to_type_it(beside: tuple[int, int], is_on_it: bool) -> None:
-    """`beside`: columns from the start (0) or the end (1) of the words of the value."""
+@pytest.mark.parametrize(("beside", "value"), [((0, -4), "diameter"), ((0, 4), "x"), ((1, -4), "z"), ((1, 4), "z")])
+def test_a_click_on_a_number_of_the_line_on_top_begins_to_type_it(beside: tuple[int, int], value: str) -> None:
+    """`beside`: columns from the start (0) or the end (1) of the words of the centre; a comma is part of what it ends."""
     lines = "resize 1280x720", "press Tab", "press Tab"
     session = played(*lines, text=PAIR)
     shown = [title_in_words(session.state.element), *values_in_words(session.state)]
@@ -118,8 +118,9 @@ def test_a_click_on_a_value_of_the_line_on_top_begins_to_type_it(beside: tuple[i
     column = MARGIN + measure(ends[beside[0]], session.screen.text_size)[0] + beside[1]
     session = played(*lines, f"click {column},{MARGIN + 5}", "text 7", "press Return", text=PAIR)
     sphere = next(each for each in session.state.scene.shapes if isinstance(each, Sphere))
-    assert session.state.element is sphere, "a click beside the values does nothing"
-    assert (sphere.diameter, sphere.centre[0]) == ((2, 7) if is_on_it else (7, -2))
+    assert session.state.element is sphere
+    changed = {"diameter": (7, (-2, 3.5, 0)), "x": (2, (7, 1, 0)), "z": (2, (-2, 1, 7))}
+    assert (sphere.diameter, sphere.centre) == changed[value]
 
 
 def test_a_right_click_on_a_tool_is_none_on_what_lies_behind_it() -> None:

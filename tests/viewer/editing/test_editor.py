@@ -227,8 +227,10 @@ class TestStructure:
         state = after(selecting(Sphere), "duplicate")
         assert [each.title for each in state.scene.elements[3:6]] == ["sphere", "sphere", "plane"]
         assert state.selected == 4
+        assert state.element.centre == (2.4, 0, 0)  # beside it, a fifth of its diameter apart
         moved = after(state, "right")
-        assert [each.centre for each in moved.scene.spheres] == [(0, 0, 0), (1, 0, 0)]
+        assert [each.centre for each in moved.scene.spheres] == [(0, 0, 0), (3.4, 0, 0)]
+        assert after(selecting(Plane), "duplicate").element.point == selecting(Plane).element.point
 
     @pytest.mark.parametrize(("kind", "further"), [(Light, FurtherLight), (Camera, FurtherCamera)])
     def test_the_copy_of_a_light_or_camera_is_a_further_one(self, kind, further):

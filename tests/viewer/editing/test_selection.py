@@ -84,7 +84,7 @@ def test_copies_are_selected_and_what_is_needed_is_neither_copied_nor_deleted() 
     state = apply(chosen(SPHERE, CYLINDER), "duplicate")
     assert [state.scene.elements[index].title for index in sorted(state.chosen)] == ["sphere", "cylinder"]
     assert state.element is state.scene.cylinders[1]
-    assert state.message == "a copy of 2 elements, at the same position"
+    assert state.message == "a copy of 2 elements, beside the original"
     ambient = chosen(0, SPHERE)
     for action in ("duplicate", "delete"):
         after = apply(ambient, action)
