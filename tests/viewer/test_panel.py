@@ -26,7 +26,8 @@ from minirt.scene.registry import ELEMENTS
 from minirt.scene.value_reader import lacked_by
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Painter, PaintJob
+from minirt.viewer.display.jobs import PaintJob
+from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.structure import ATTRIBUTE, choices
