@@ -44,7 +44,7 @@ HOMES = {
         "minirt.rendering.renderer": "Renderer renderer",
         "minirt.rendering.settings": "DEFAULT_ERROR render",
         "minirt.scene": "DEFAULT_SIZE Scene dumps loads size_of",
-        "minirt.scene.parser": "example examples",
+        "minirt.scene.examples": "example examples",
         "minirt.shapes": "Shape",
     }.items()
     for name in names.split()

@@ -61,8 +61,8 @@ from minirt.scene.elements import Light as Light
 from minirt.scene.elements import ParallelLight as ParallelLight
 from minirt.scene.elements import Resolution as Resolution
 from minirt.scene.elements import SpotLight as SpotLight
-from minirt.scene.parser import example as example
-from minirt.scene.parser import examples as examples
+from minirt.scene.examples import example as example
+from minirt.scene.examples import examples as examples
 from minirt.shapes import Shape as Shape
 from minirt.shapes.box import Box as Box
 from minirt.shapes.cone import Cone as Cone

@@ -1,4 +1,4 @@
-"""Lines and files of each part against the budget in CONTRIBUTING.md: python -m tests.budget
+"""Lines and files of each part against the budget in CONTRIBUTING.md, and lines of each file: python -m tests.budget
 
 The status is 1 where one is above. A file counts for the closest folder or pattern, and for the sum. A number is raised
 in CONTRIBUTING.md, where reviewers see it.
@@ -14,6 +14,8 @@ from pathlib import PurePosixPath
 from tests.paths import ROOT
 
 ROW = re.compile(r"^\| (`[^|]*`) \| ([\d,]+) \| ([\d,]+) \|$", re.MULTILINE)
+
+LONGEST = 250  # lines of a file of the program
 
 
 def used(folders: list[str]) -> tuple[Counter[str], Counter[str]]:
@@ -40,6 +42,10 @@ def main() -> int:
         above += is_above
         figures = f"{lines[group]:>7,} of {most_lines:>6,} lines, {files[group]:>3} of {most_files:>3} files"
         print(f"{figures}  {group.replace('`', '')}{'  ABOVE THE BUDGET' * is_above}")
+    for path in ROOT.glob("minirt/**/*.py"):
+        if (length := path.read_bytes().count(b"\n")) > LONGEST:
+            above += 1
+            print(f"{length:>7,} of {LONGEST:>6,} lines  {path.relative_to(ROOT)}  TOO LONG: each file has one purpose")
     return int(above > 0)
 
 

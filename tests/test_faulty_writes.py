@@ -18,6 +18,7 @@ import pytest
 from minirt.errors import MiniRTError
 from minirt.formats.table import is_installed
 from minirt.helpers import file_io
+from minirt.helpers.file_io import writing
 from minirt.movie import save_movie
 from minirt.rendering.image import Image
 from minirt.report.document import write_files
@@ -160,9 +161,9 @@ def test_short_writes_are_gone_on_with(writer: Writer, tmp_path: Path) -> None:
 
 def test_old_temporary_files_of_killed_programs_are_swept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only they: not those that a program may still write, other names, folders, nor what a link leads to."""
-    monkeypatch.setattr(file_io, "SWEPT", set())
+    monkeypatch.setattr(writing, "SWEPT", set())
     folder, elsewhere = tmp_path / "work", tmp_path / "elsewhere"
-    names = [file_io.TEMPORARY.replace("*", f"{number:016x}") for number in range(4)]
+    names = [writing.TEMPORARY.replace("*", f"{number:016x}") for number in range(4)]
     old, young, is_link, is_folder = (folder / each for each in names)
     others = [folder / each for each in ("scene.rt", ".minirt-1.tmp", f"{names[0]}~", names[0].replace("0", "g"))]
     folder.mkdir()

@@ -30,7 +30,8 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
     read as --lenient does, after its error.
     """
     from minirt.scene import Reading, files, load, parse
-    from minirt.scene.parser import NEW, example, load_for_window
+    from minirt.scene.examples import example
+    from minirt.scene.parser import NEW, load_for_window
 
     path = options.scene[0]
     words = (options.cone, options.camera_as, options.up and f"{options.up}-up")

@@ -22,7 +22,9 @@ from minirt.helpers import file_io
 from minirt.rendering.image import Image
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.settings import Keywords, RenderSettings, takes_settings
-from minirt.scene.scene import Scene, check_scene, size_for
+from minirt.scene.arguments import check_scene
+from minirt.scene.scene import Scene
+from minirt.scene.sizes import size_for
 
 Progress = Callable[[int, int], object]  # gets the number of bands that are done, and of all
 

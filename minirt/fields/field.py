@@ -56,6 +56,8 @@ class Field(Immutable):
     feature: str = ""  # of an attribute of shapes: the feature of the kernel that draws it
     packed: Callable[[Any, Any], Any] | None = None  # of the same: the row of a value in the array of its feature
     mapped: bool = False  # of an attribute of shapes: whether it lies on their surface, and turns with them
+    needs: tuple[str, ...] = ()  # of an attribute: the names of others; without any of them it has no effect
+    in_albedo: bool = False  # of an attribute of shapes: whether it changes their colour under white light
     initial: Any = None  # the editor's first value; of a length in the scene, as a factor of the usual one
     name: str = ""
     default: Any = None  # None: the field must be given, or as an attribute is absent
@@ -102,6 +104,12 @@ class Field(Immutable):
     def rows(self, value: Any, _shape: Any, reader: Any) -> dict[str, Any]:
         """The rows of a shape with `value` in the arrays of the kernel, by feature: see `minirt.materials`."""
         return {self.feature: self.packed(value, reader)} if self.packed else {}
+
+    @property
+    def facts(self) -> Any:
+        """What states the `needs` of an attribute and whether it is `in_albedo`: this field, or the class of a material
+        with several values."""
+        return self
 
     @property
     def required(self) -> bool:

@@ -1,4 +1,4 @@
-"""Beams of coherent rays through the trees of meshes.
+"""Beams of coherent rays, and which boxes and triangles in the tree of a mesh they meet.
 
 The tree of a mesh is a wide bounding volume hierarchy in a space of its own, whose unit is half of the mesh's size: it
 is built once for a file, and a mesh that is moved, turned or scaled keeps it. The triangles lie in the scene; leaves
@@ -12,19 +12,17 @@ Boxes are float32. Beams are widened for the rounding of boxes, of rays and of t
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.scene_arrays import LEVELS, Group, vector
+from minirt.kernel.scene_arrays import LEVELS, vector
 from minirt.lanes import (
     Mask,
     Number,
     Vec,
     any,
-    bits,
     cross,
     dot,
     fabs,
@@ -33,7 +31,6 @@ from minirt.lanes import (
     in_single,
     lane,
     load,
-    lowest,
     max_norm,
     maximum,
     minimum,
@@ -114,32 +111,6 @@ def beam_memory() -> Any:
     return np.zeros(MEMORY, np.float32)
 
 
-Visit = Callable[..., Any]
-Reach = Callable[[Any, Any], Number]
-Rays = tuple[Vec, Vec, Number]
-
-
-def fold_over_mesh(
-    visit: Visit, reach: Reach, group: Group, row: int, rays: Rays, active: Mask, state: Any, data: Any
-) -> Any:
-    """Fold `state = visit(group, row, index, within, state, data)` over the triangles of a mesh that rays may meet.
-
-    `row` is that of the first triangle of the mesh. `rays` are their apexes, which are alike or close together, their
-    ways, of any length, and for each the index of a triangle that it does not meet; only the `active` ones count. Those
-    within a beam around the first of them traverse the tree together, the nearest triangles first, and then the rest.
-    No triangle beyond `reach(state, data)` times its way matters to a ray. `visit` is called with the row of a
-    triangle, its index in the scene, and the rays that may meet it. Returns the last state.
-    """
-    apexes, way, own = rays
-    length = fabs(way.x) + fabs(way.y) + fabs(way.z)
-    remaining = active & (length > TINY) & (4.0 * length < inf)  # no product of beams overflows
-    while any(remaining):  # the first of them is in its own beam: so this ends
-        beam = beam_of(group.trees.places[group.trees.numbers[row]], apexes, way, remaining)
-        state = walk(visit, reach, group, row, beam, own, state, data)
-        remaining = remaining & ~beam.within
-    return state
-
-
 def beam_of(place: Any, apexes: Vec, way: Vec, remaining: Mask) -> Beam:
     """Return a beam around the first of the `remaining` rays and those close to it; `place` is a row of `places`."""
     factor = place[FACTOR]
@@ -213,40 +184,6 @@ def between_slopes(nodes: Any, node: int, bounds: Bounds) -> Mask:
     return above & below
 
 
-def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Number, state: Any, data: Any) -> Any:
-    """Continue `fold_over_mesh` over the triangles whose boxes a beam meets, the nearest nodes first."""
-    nodes, start = group.trees.nodes, group.trees.starts[group.trees.numbers[row]]
-    excluded, memory = own - start[1], beam_memory()
-    memory[0], memory[DEPTHS] = 0.0, -inf
-    waiting = 1
-    limit = depth_of_reach(beam, reach(state, data))
-    while waiting > 0:
-        waiting -= 1
-        if memory[DEPTHS + waiting] > limit:
-            continue
-        node = (start[0] + int(memory[waiting])) * NODE
-        if nodes[node + REFERENCES] < 0.0:
-            children = bits(triangles_in_beam(nodes, node, beam, limit, memory))
-            while children != 0:
-                place = lowest(children)
-                triangle = int(-1.0 - nodes[node + REFERENCES + place])
-                children = children & (children - 1)
-                met = beam.within & between_planes(memory, place, beam) & (excluded != triangle)
-                if any(met):
-                    state = visit(group, row + triangle, start[1] + triangle, met, state, data)
-                    limit = depth_of_reach(beam, reach(state, data))
-        else:
-            inside, near = boxes_in_beam(nodes, node, beam, limit)
-            children = bits(inside)
-            save(near, memory, CHILDREN)
-            while children != 0:
-                child = lowest(children)
-                children = children & (children - 1)
-                push(memory, waiting, nodes[node + REFERENCES + child], memory[CHILDREN + child])
-                waiting += 1
-    return state
-
-
 # Triangles are seen along one ray of the beam, sheared: so coordinates across are small, and float32 tells exactly
 # enough which rays pass between the planes through the apex and the edges.
 
@@ -308,16 +245,3 @@ def above_plane(memory: Any, at: int, beam: Beam) -> Number:
     if not beam.is_point:
         above = above - dot(Vec(memory[edge], memory[edge + WIDE], memory[edge + 2 * WIDE]), beam.moments)
     return above
-
-
-def depth_of_reach(beam: Beam, reach: Number) -> float:
-    """Return the depth up to which any ray of a beam has to go; each has to go `reach` times its way."""
-    return beam.apex + beam.slack + greatest(where(beam.within, reach * beam.rate, -inf))
-
-
-def push(memory: Any, waiting: int, reference: float, depth: float) -> None:
-    """Insert a node among those that wait, the nearest of which is the last."""
-    while waiting > 0 and memory[DEPTHS + waiting - 1] < depth:
-        memory[waiting], memory[DEPTHS + waiting] = memory[waiting - 1], memory[DEPTHS + waiting - 1]
-        waiting -= 1
-    memory[waiting], memory[DEPTHS + waiting] = reference, depth

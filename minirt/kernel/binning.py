@@ -1,158 +1,18 @@
 """Binning of shapes into a grid of directions by projected bounds: the shape lists of screen tiles and light buffers.
 
-The light buffer is that of Haines and Greenberg 1986. `project_shapes` projects chunks of shapes, on any number of
-threads; `fill_bins` then sorts their rectangles by depth into lists. The caller allocates all memory.
+The light buffer is that of Haines and Greenberg 1986. `minirt.kernel.rectangles` projects the shapes;
+`fill_bins` then sorts their rectangles by depth into lists. The caller allocates all memory.
 """
 
 from __future__ import annotations
 
-from math import inf
-from typing import Any, NamedTuple
+from typing import Any
 
-from minirt.kernel.pixels import fetch_add
-from minirt.kernel.projection import MARGIN, Grid, bounding_cone, cells_of_plane, projected_rectangle, signed_height
-from minirt.kernel.scene_arrays import has_rows, vector
+from minirt.kernel.rectangles import DROPPED_BITS, BinningArrays, project_chunk, rectangle_at, write_extent
 
-CHUNK = 1024  # shapes that a thread projects at once, at most
-
-# Positive floating-point numbers sort like their bits, the exponent first. Distances sort by their upper 25 bits, from
-# 2^-128 on: a relative precision of 2^-13, which is more than `minirt.kernel.trace.COINCIDENT`.
-DROPPED_BITS = 39
-LEAST_DEPTH = (1023 - 128) << (52 - DROPPED_BITS)
+# Entries sort by the upper bits of distances, digit after digit.
 DIGITS, RADIX = 3, 8  # of the upper bits but the sign, and bits of a digit
 INDEX_BITS = 32  # below these, in the entries that are sorted
-
-
-class BinningArrays(NamedTuple):
-    """The shapes to project, as in `minirt.rendering.packing.shape_arrays`, and what a point sees of them.
-
-    The rectangles hold for rays from all points within `radius` of the origin, in the directions of their cells; for
-    planes also in directions, not normalised, up to `lean` away. A chunk of shapes has its own rows of `rectangles`, as
-    many as it has shapes times the frames of the grid; the planes have those behind the last chunk.
-    """
-
-    origin: Any  # (3,) the point
-    grid: Grid
-    radius: float
-    reach: float  # from the point, beyond which shapes are in no list
-    lean: float
-    balls: Any  # (b, 4) centre and radius
-    first_ball: Any  # (s + 1,)
-    boxes: Any  # (s, 2, 3)
-    listed: Any  # (s, 4)
-    first_primitive: Any  # (s + 1,) of each shape in the order of the scene
-    planes: Any  # (p, 5)
-    plane_places: Any  # (p,) their numbers in lists
-    shown: Any  # (p,) whether a plane has rectangles
-    chunk: int  # shapes in it, at most
-    rectangles: Any  # (r, 4) shape, first cell, columns and rows
-    used: Any  # (chunks + 1,) rows of each chunk, and of the planes
-    cones: Any  # (s, 5) as in `minirt.kernel.scene_arrays`; 0 for shapes without a rectangle
-    cone_bits: Any  # (s, 5) the same memory as integers
-    sides: Any  # (p,) of each plane, on which the point lies: 1, -1, or 0 where rounding may decide
-    found: Any  # (2,) the number of members of all lists, and of planes whose side was another one before
-    extents: Any  # float32 (n, 4) or (0, 4): the last column receives bounds of coordinates from the point
-
-
-def project_shapes(next_chunk: Any, seen: BinningArrays) -> None:
-    """Project chunks of shapes, and planes, taking the next ones from the counter `next_chunk` until none is left.
-
-    Any number of threads may do so at the same time.
-    """
-    while True:
-        number = fetch_add(next_chunk, 1)
-        if number >= seen.used.shape[0]:
-            return
-        project_chunk(seen, number)
-
-
-def project_chunk(seen: BinningArrays, number: int) -> None:
-    """Project the shapes of a chunk or, behind the last one, all planes."""
-    origin, start = seen.origin, number * seen.chunk * seen.grid.frames.shape[0]
-    slack, end = MARGIN * max(abs(origin[0]), abs(origin[1]), abs(origin[2])) + seen.radius, start
-    if number + 1 == seen.used.shape[0]:
-        end = project_planes(seen, slack, end)
-    else:
-        first = number * seen.chunk
-        for shape in range(first, min(first + seen.chunk, seen.listed.shape[0])):
-            end = project_shape(seen, slack, shape, end)
-            write_extent(seen, shape)
-    seen.used[number] = end - start
-
-
-def write_extent(seen: BinningArrays, index: int) -> None:
-    """Write the extent of the shape with this index in the scene: boxes and extents lie in the order of the scene."""
-    if has_rows(seen.extents):
-        seen.extents[seen.first_primitive[index], 3] = extent_from(seen.origin, seen.boxes, index)
-
-
-def project_shape(seen: BinningArrays, slack: float, shape: int, at: int) -> int:
-    """Project a shape with bounding spheres to rectangles, from number `at` on; return the number behind its last.
-
-    It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
-    """
-    grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
-    if start == end:
-        return at
-    if seen.reach < inf:
-        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
-    for face in range(grid.frames.shape[0] if seen.cones[shape, 4] <= seen.reach else 0):
-        column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
-        if columns > 0 and rows > 0:
-            at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
-    for i in range(5):
-        seen.cones[shape, i] = 0.0
-    if at > before:
-        bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
-    quantise_distance(seen, shape)
-    return at
-
-
-def write_rectangle(seen: BinningArrays, at: int, shape: int, row: int, column: int, columns: int, rows: int) -> int:
-    """Write rectangle number `at`, and return the next number. The cells of each kind are followed by one more."""
-    seen.rectangles[at, 0] = shape
-    seen.rectangles[at, 1] = seen.listed[shape, 0] * (seen.grid.cells + 1) + row * seen.grid.across + column
-    seen.rectangles[at, 2] = columns
-    seen.rectangles[at, 3] = rows
-    return at + 1
-
-
-def extent_from(origin: Any, boxes: Any, shape: int) -> float:
-    """Return an upper bound of the largest coordinate of a shape relative to a point."""
-    farthest, size = 0.0, 0.0
-    for axis in range(3):
-        low, high = boxes[shape, 0, axis], boxes[shape, 1, axis]
-        farthest, size = max(farthest, abs((low + high) / 2 - origin[axis])), max(size, high - low)
-    return farthest + size / 2
-
-
-def quantise_distance(seen: BinningArrays, shape: int) -> None:
-    """Round the distance of a cone down to its upper bits, by at least one step: a hit that is so little farther may
-    count as coincident."""
-    depth = (seen.cone_bits[shape, 4] >> DROPPED_BITS) - 1
-    seen.cone_bits[shape, 4] = depth << DROPPED_BITS if depth > LEAST_DEPTH else 0
-
-
-def project_planes(seen: BinningArrays, slack: float, at: int) -> int:
-    """Project all planes to rectangles of one row of cells, from number `at` on; return the number behind the last."""
-    for number in range(seen.planes.shape[0]):
-        plane, shape = seen.planes[number], seen.plane_places[number]
-        height = signed_height(plane, vector(seen.origin, 0), slack)
-        side = int(height > 0.0) - int(height < 0.0)
-        seen.found[1] += int(seen.sides[number] != side)
-        seen.sides[number] = side
-        cone = seen.cones[shape]
-        cone[0], cone[1], cone[2], cone[3], cone[4] = 0.0, 0.0, 0.0, -2.0, abs(height)
-        quantise_distance(seen, shape)
-        if seen.shown[number] and abs(height) <= seen.reach:
-            for row in range(seen.grid.frames.shape[0] * seen.grid.down):
-                column, columns = cells_of_plane(seen.grid, row, -side * vector(plane, 0), seen.lean)
-                if columns > 0:
-                    at = write_rectangle(seen, at, shape, row, column, columns, 1)
-    return at
-
-
-# The lists, by counting.
 
 
 def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digits: Any) -> None:
@@ -189,12 +49,6 @@ def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digi
                     starts[covered] -= 1
                     members[starts[covered]] = shape
     seen.found[0] = total
-
-
-def rectangle_at(seen: BinningArrays, at: int) -> tuple[int, int, int, int]:
-    """Return shape, first cell, columns and rows of a rectangle."""
-    rectangle = seen.rectangles[at]
-    return int(rectangle[0]), int(rectangle[1]), int(rectangle[2]), int(rectangle[3])
 
 
 def sort_by_depth(entries: Any, count: int, digits: Any) -> None:

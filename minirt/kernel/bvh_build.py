@@ -1,6 +1,6 @@
-"""Construction of a wide BVH: a binary tree by the surface area heuristic (SAH), collapsed to a wide one.
+"""Construction of a binary BVH by the surface area heuristic (SAH), which `minirt.kernel.bvh_collapse` makes wide.
 
-The binary tree is built with bins (Wald, On Fast Construction of SAH-based Bounding Volume Hierarchies, 2007). A box is
+The tree is built with bins (Wald, On Fast Construction of SAH-based Bounding Volume Hierarchies, 2007). A box is
 six numbers, its bounds towards -x, -y, -z, x, y and z: the bounds of two boxes are the maximum of each.
 """
 
@@ -201,77 +201,3 @@ def half_area(bounds: Any, at: int) -> float:
     """Return half of the surface area of a box, whose bounds begin at an index."""
     x, y, z = bounds[at] + bounds[at + 3], bounds[at + 1] + bounds[at + 4], bounds[at + 2] + bounds[at + 5]
     return x * y + y * z + z * x
-
-
-# Collapse into the wide tree whose nodes have the least surface area in all (Ylitie et al., Efficient Incoherent Ray
-# Traversal on GPUs Through Compressed Wide BVHs, 2017). Of 10,000 spheres it is 0.63 of that of nodes that open their
-# largest child until they are full.
-
-
-def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, references: Any, leaves: Any) -> None:
-    """Find the wide nodes: the binary node of each child, -1 for none, and references to the children, (n, width).
-
-    The reference to a node is its number; that to leaf i, whose binary node is written to `leaves`, is -1 - i. `areas`
-    (m, width) and `shares` (m, width + 1) are overwritten.
-    """
-    share_places(tree, areas, shares)
-    node_count, leaf_count, top, memory = 1, 0, 2, packet_memory()
-    memory[0], memory[1] = 0, 0
-    while top > 0:
-        top -= 2
-        binary, node = int(memory[top]), int(memory[top + 1])
-        count = collect_children(tree, shares, binary, children[node], references[node])
-        for place in range(tree.width):
-            child = children[node, place]
-            if place >= count:
-                children[node, place], references[node, place] = -1, 0
-            elif tree.links[child, 2] == 0:
-                references[node, place], leaves[leaf_count] = -1 - leaf_count, child
-                leaf_count += 1
-            else:
-                references[node, place] = node_count
-                memory[top], memory[top + 1] = child, node_count
-                top += 2
-                node_count += 1
-    tree.found[0], tree.found[1] = node_count, leaf_count
-
-
-def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
-    """Find for each binary node, and k + 1 places among the children of a wide node for what is in it, the least area
-    of wide nodes, and how many of the places its first child gets: 0 where the node itself is the child. In the last
-    column of `shares` the node becomes a wide node."""
-    for node in range(tree.found[0] - 1, -1, -1):
-        first = tree.links[node, 2]
-        for k in range(tree.width - 1, -1, -1):
-            least, share = (inf, 1) if first > 0 and k > 0 else (0.0, 0)
-            for i in range(k if first > 0 else 0):
-                area = areas[first, i] + areas[first + 1, k - 1 - i]
-                if area < least:
-                    least, share = area, i + 1
-            if k == tree.width - 1:
-                whole = least + half_area(tree.bounds[node], 0) if first > 0 else 0.0
-                shares[node, tree.width] = share
-            if k == 0 or whole < least:
-                least, share = whole, 0
-            areas[node, k], shares[node, k] = least, share
-
-
-def collect_children(tree: BinaryTree, shares: Any, node: int, children: Any, places: Any) -> int:
-    """Write the binary nodes that become the children of a wide node, and return their number.
-
-    The only child of a leaf is the leaf itself, or none if the leaf is empty. `places` is overwritten.
-    """
-    links = tree.links
-    children[0], places[0] = node, tree.width + 1
-    if links[node, 2] == 0:
-        return min(1, links[node, 1] - links[node, 0])
-    child, count = 0, 1
-    while child < count:
-        first, share = links[children[child], 2], shares[children[child], places[child] - 1]
-        if share == 0:
-            child += 1
-        else:
-            children[child], children[count] = first, first + 1
-            places[child], places[count] = share, min(places[child], tree.width) - share
-            count += 1
-    return count

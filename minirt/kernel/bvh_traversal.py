@@ -8,7 +8,7 @@ Marbles take 0.56 of the time that they take when all rays go by themselves.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf, nan
+from math import inf
 from typing import Any
 
 from minirt.kernel.bvh_nodes import (
@@ -34,9 +34,8 @@ from minirt.kernel.bvh_nodes import (
     vec_at,
 )
 from minirt.kernel.bvh_single_rays import traverse
-from minirt.kernel.pixels import fetch_add
-from minirt.kernel.scene_arrays import has_rows, intersect, occludes, read, read_block, read_one, surface
-from minirt.kernel.trace import Hit, closer_hit, for_each_kind, of_shape
+from minirt.kernel.scene_arrays import has_rows, intersect, occludes, read, read_block, read_one
+from minirt.kernel.trace import Hit, closer_hit, for_each_kind
 from minirt.lanes import (
     Mask,
     Number,
@@ -50,16 +49,13 @@ from minirt.lanes import (
     load,
     load_vec,
     lowest,
-    max_norm,
     outlined,
     save,
     save_vec,
     splat,
-    unit,
     where,
 )
 
-CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 FEW = 6  # rays of a packet that go on one by one
 FEW_IN_SMALL = 2  # likewise in a small tree, which has one node
 APART = 1.0  # square of the difference of directions from which on all rays of a packet go one by one
@@ -215,48 +211,3 @@ def occlude_by_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray:
     origin, direction, distance = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray), memory[HIT + ray]
     occluded = any(occludes(read_block(group.blocks, block), origin, direction, distance))
     memory[HIT + ray] = where(occluded, -inf, distance)
-
-
-def trace_rays(
-    next_ray: Any, tree: Tree, origins: Any, directions: Any, distances: Any, owners: Any, points: Any, normals: Any
-) -> None:
-    """Find the closest hits of n rays, claiming chunks of rays from the counter `next_ray` until none is left.
-
-    Any number of threads may do so at the same time. Reads `origins` and `directions`, (n, 3), which may have any
-    length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,): NaN, infinity and -1 without a hit.
-    """
-    count = origins.shape[0]
-    memory = packet_memory()
-    while True:
-        start = fetch_add(next_ray, CHUNK)
-        if start >= count:
-            return
-        for begin in range(start, min(start + CHUNK, count), WIDTH):
-            for ray in range(WIDTH):
-                memory[HIT + ray] = begin + ray
-                for axis in range(3):
-                    memory[ORIGIN + axis * WIDTH + ray] = origins[min(begin + ray, count - 1), axis]
-                    memory[DIRECTION + axis * WIDTH + ray] = directions[min(begin + ray, count - 1), axis]
-            origin, direction = load_vec(memory, ORIGIN), unit(rescale(load_vec(memory, DIRECTION)))
-            t, owner, _, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
-            save_vec(origin + t * direction, memory, ORIGIN)
-            save_vec(Vec(t, owner, t), memory, HIT)
-            for ray in range(min(WIDTH, count - begin)):
-                index, point = int(memory[HIT + WIDTH + ray]), vec_at(memory, ORIGIN, ray)
-                on, normal = Vec(nan, nan, nan), Vec(nan, nan, nan)
-                if index >= 0:
-                    on, normal = of_shape(surface, tree.groups, tree.slots[index], (point,), (point, point))
-                distances[begin + ray], owners[begin + ray] = memory[HIT + ray], index
-                store_vec(points, begin + ray, on)
-                store_vec(normals, begin + ray, normal)
-
-
-def store_vec(vectors: Any, i: int, v: Vec) -> None:
-    """Store a vector in row i of an array (n, 3)."""
-    vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
-
-
-def rescale(v: Vec) -> Vec:
-    """Scale a vector so that its largest coordinate is 1: its length then neither overflows nor underflows."""
-    size = max_norm(v)
-    return Vec(v.x / size, v.y / size, v.z / size)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from minirt.kernel.bvh_nodes import WIDTH, packet_memory, vec_at
-from minirt.kernel.bvh_traversal import store_vec
 from minirt.kernel.pixels import fetch_add
-from minirt.kernel.scene_arrays import scaled, turned, vector
+from minirt.kernel.scene_arrays import scaled, store_vec, turned, vector
 from minirt.lanes import Vec, load_vec, save_vec
-from minirt.shapes.triangle import plane_normal_towards
+from minirt.shapes.plane_normals import plane_normal_towards
 
 CHUNK = 4096  # points, and triangles, that a thread places at once: a multiple of `WIDTH`
 SCALE, POSITION = 9, 10  # offsets in the numbers of a place, behind the turn

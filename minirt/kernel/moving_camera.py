@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.binning import BinningArrays, fill_bins, project_shapes
+from minirt.kernel.binning import fill_bins
+from minirt.kernel.rectangles import BinningArrays, project_shapes
 from minirt.kernel.scene_arrays import to_single
 from minirt.lanes import rounded_product
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from minirt.lanes import Mask, Number, Vec, rounded_product
 from minirt.shapes import ALL_KINDS, Kind
-from minirt.shapes.mesh import PackedMeshTriangle
 from minirt.shapes.shape import Position
+from minirt.shapes.smooth_triangle import PackedMeshTriangle
 
 Rows = Any  # an array of dtype `row_type(kind)`
 TRIANGLE_ROW = np.dtype([("mesh.corners", np.int32, (3,))])
@@ -107,6 +107,11 @@ def has_rows(table: Any) -> bool:
 def vector(row: Any, at: int) -> Vec:
     """Return the Vec of three numbers of a row."""
     return Vec(row[at], row[at + 1], row[at + 2])
+
+
+def store_vec(vectors: Any, i: int, v: Vec) -> None:
+    """Store a vector in row i of an array (n, 3)."""
+    vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
 
 
 def range_in_tile(group: Group, tile: int) -> tuple[int, int]:

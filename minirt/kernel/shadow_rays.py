@@ -10,7 +10,8 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
-from minirt.kernel.beams import fold_over_mesh, vec_of
+from minirt.kernel.beam_traversal import fold_over_mesh
+from minirt.kernel.beams import vec_of
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read_row, vector
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, unit, where, width

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.beams import fold_over_mesh
+from minirt.kernel.beam_traversal import fold_over_mesh
 from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read_row, surface, vector
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, max_norm, maximum, rarely, splat, unit_roundoff, where
 

@@ -154,11 +154,6 @@ def product_error(a: Number, b: Number) -> Number:
     return a_low * b_low - (((a * b - a_high * b_high) - a_low * b_high) - a_high * b_low)
 
 
-def two_product(a: Number, b: Number) -> tuple[Number, Number]:
-    """Return the rounded product a * b and its rounding error."""
-    return rounded_product(a, b), product_error(a, b)
-
-
 def high_half(x: Number) -> Number:
     """Return x rounded to half of its bits (Veltkamp 1968), so that products of halves are exact."""
     shifted = x * (2.0 ** (27 if np.asarray(x).itemsize == 8 else 12) + 1.0)

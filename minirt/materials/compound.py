@@ -19,6 +19,8 @@ class Material(Record):
     """Values of one material, and the feature of the kernel that draws it."""
 
     feature: ClassVar[str]  # a key of `minirt.rendering.packing.features.FEATURES`
+    needs: ClassVar[tuple[str, ...]] = ()  # fields of `Attributes`; without any of them it has no effect
+    in_albedo: ClassVar[bool] = False  # whether it changes the colour of a surface under white light
 
     def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
         """The rows of a shape with this material in the arrays of the kernel, by their names.
@@ -98,6 +100,10 @@ class Compound(Field):
             for each in field.pictures(getattr(value, field.name)):
                 yield each._replace(part=start)
             start += field.width
+
+    @property
+    def facts(self) -> type[Material]:
+        return self.record
 
     def features_of(self, value: Material) -> tuple[str, ...]:
         return value.features()

@@ -119,7 +119,7 @@ class Tint(Material):
         sp 0,0,20 8 255,255,255 glass:1.5 tint:120,220,160,4
     """
 
-    title, feature = "tint", "media"
+    title, feature, needs = "tint", "media", ("glass",)
     colour: Triple = declare(Colour, "what is left of white light", initial=(120, 200, 160))
     distance: float = declare(Length, "way inside after which it is left", default=1.0)
 
@@ -150,4 +150,6 @@ class Tint(Material):
 # does: `mirror:0.04` is a polished floor. A shape with neither `glass:` nor `mirror:` shows no difference.
 #
 #     sp 0,0,20 8 255,255,255 glass:1.5 fresnel
-Fresnel = partial(Share, step=0.1, initial=1.0, feature="fresnel", packed=lambda share, _: share)
+Fresnel = partial(
+    Share, step=0.1, initial=1.0, feature="fresnel", needs=("glass", "mirror"), packed=lambda share, _: share
+)

@@ -25,7 +25,7 @@ class Checker(Material):
         pl 0,-1,0 0,1,0 255,255,255 checker:2,40,40,60
     """
 
-    title, feature = "checker", "checks"
+    title, feature, in_albedo = "checker", "checks", True
     size: float = declare(Length, "side of a square, in u and v", unit="")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))
 
@@ -48,7 +48,7 @@ class TextureField(Picture):
 # read. The path begins at the folder of the scene file; one with spaces stands within quotes, and none has a `#`.
 #
 #     sp 0,0,20 8 255,255,255 texture:textures/planet.png
-Texture = partial(TextureField, feature="textures")
+Texture = partial(TextureField, feature="textures", in_albedo=True)
 
 
 @record()
@@ -103,7 +103,8 @@ class Placement(Material):
         pl 0,-1,0 0,1,0 255,255,255 texture:textures/bricks.png uv:0.25,0.5
     """
 
-    title, feature = "uv", "placements"
+    title, feature, in_albedo = "uv", "placements", True
+    needs = "checker", "texture", "bump", "normal_map"
     scale_u: float = declare(Scale, "pictures in a unit of u", placeholder="su")
     scale_v: float = declare(Scale, "pictures in a unit of v", placeholder="sv")
     shift_u: float = declare(Shift, "u of the lower left corner", placeholder="ou", default=0.0)
@@ -123,7 +124,7 @@ class Pattern(Material):
     They are formulas of space in the frame of the shape, computed by `minirt.kernel.shading.patterns`.
     """
 
-    feature = "patterns"
+    feature, in_albedo = "patterns", True
     size: float = declare(Length, "size of the pattern")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))
     octaves: int = declare(Whole, "levels of detail", low=1, high=12, default=6)

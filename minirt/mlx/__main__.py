@@ -23,7 +23,7 @@ from minirt.mlx import recording
 from minirt.mlx.api import Mlx
 from minirt.mlx.arguments import Host, Integer, MaybeNone, integer
 from minirt.mlx.display import NO_WINDOW, Display
-from minirt.mlx.memory import Headless
+from minirt.mlx.headless import Headless
 from minirt.mlx.window import Window
 
 FAILED = 1  # exit status

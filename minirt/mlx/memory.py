@@ -16,7 +16,6 @@ The script is a list of steps of a user. Between two steps the program's loop ta
 from __future__ import annotations
 
 import math
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.errors import MlxError, printable
+from minirt.errors import MlxError
 from minirt.mlx.canvas import stretch
 from minirt.mlx.display import TICK, Display
 from minirt.mlx.events import Button, Event
@@ -211,42 +210,3 @@ class Memory(Display):
 
     def screen_size(self) -> tuple[int, int]:
         return self.screen
-
-
-class Headless(Memory):
-    """A user who leaves a tick of the loop between two steps, and clicks the close button at the end.
-
-    picture: the file of the last picture, or None.
-    """
-
-    def __init__(self, picture: Path | None, screen: tuple[int, int]) -> None:
-        super().__init__(screen)
-        self.picture = picture
-
-    def run(self) -> None:
-        """Play the script; then save the picture, click the close button, and end the loop if that did not."""
-        self.play()
-        if not self.over:
-            self.finish()
-            self.picture = None  # what the program draws when it ends does not count
-            self.window.on_close_button()
-            self.turn(tick=False)
-
-    def finish(self) -> bool:
-        """Save the last picture, if one is asked for. False if that failed; the reason is printed."""
-        try:
-            if self.picture:
-                self.save(self.picture)
-        except MlxError as error:
-            print(f"mlx: {printable(str(error))}", file=sys.stderr)
-            return False
-        return True
-
-    def pass_time(self, seconds: float) -> None:
-        """Let simulated time pass, without turns of the loop."""
-        self._now += seconds
-
-    def _settle(self) -> None:
-        """Let the program handle what came, and take one tick of the loop."""
-        self.turn(tick=False)
-        self._advance(TICK)

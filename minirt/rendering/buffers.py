@@ -13,6 +13,7 @@ from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import GOLDEN_RATIO
+from minirt.rendering.packing.features import MATERIALS
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -22,7 +23,7 @@ from minirt.scene import Ambient, Scene, check_scene
 
 WHITE = (255, 255, 255)
 MEMORY = 500  # bytes a pixel of all buffers while they are made
-UNLIT = ("specular", "mirror", "glass", "tint", "fresnel", "glow", "bump", "normal_map")  # no part of the albedo
+UNLIT = tuple(name for name, field in MATERIALS if not field.facts.in_albedo)
 
 
 class Buffers(NamedTuple):

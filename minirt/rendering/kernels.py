@@ -23,7 +23,7 @@ from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.packing import generic_kernels
 from minirt.rendering.packing.features import DEPTH, examples, features
 from minirt.rendering.packing.generic_kernels import GenericKernel
-from minirt.rendering.packing.visibility import SMALL
+from minirt.rendering.packing.light_buffers import SMALL
 from minirt.rendering.sampling.packets import classify_call
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene, fast, parse

@@ -18,13 +18,14 @@ from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.kernel.shading.lights import LightGrid
 from minirt.lanes import Vec
 from minirt.rendering.notes import notes
-from minirt.rendering.packing import camera, lights, materials, visibility
-from minirt.rendering.packing.bvh import build_bvh, pack_trees, place_meshes
+from minirt.rendering.packing import camera, light_buffers, lights, materials, visibility
+from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import Crop, Place
-from minirt.rendering.packing.features import APERTURES, DEPTH, SECONDARY, SPREAD, features
+from minirt.rendering.packing.features import APERTURES, DEPTH, SECONDARY, SPREAD, features, fits_single
+from minirt.rendering.packing.mesh_trees import pack_trees, place_meshes
 from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.view import View
+from minirt.rendering.packing.view import View, all_but_pose
 from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Mesh, Shape
@@ -132,7 +133,7 @@ class Packing:
             lens = camera.lens_numbers(scene.camera, float(focus))
         radius, _ = camera.radius_and_focus(lens)
         cells, binned, keys = self.light_buffers_that_fit(sources, numbers[:3], cached, radius)
-        light_starts, light_buffers = cached(keys, joined_light_buffers, binned, shapes)
+        light_starts, lists_of_lights = cached(keys, light_buffers.joined_light_buffers, binned, shapes)
         # How files spell colours matters to all materials, the exposure only to what glows.
         materials_key = "materials", used, colours.decodes, colours.gain if "glow" in used else 1.0
         packed = cached(materials_key, materials.pack_materials, scene, shapes, used)
@@ -144,7 +145,7 @@ class Packing:
         spots = lights.spot_parameters(sources) if "spots" in used else None
         emitted = lights.positions_and_intensities(sources, colours)
         grid_key = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
-        needs_bvh = "reflective" in used or (len(shapes.slots) > visibility.SMALL and not SPREAD.isdisjoint(used))
+        needs_bvh = "reflective" in used or (len(shapes.slots) > light_buffers.SMALL and not SPREAD.isdisjoint(used))
         trees = cached("trees", pack_trees, shapes, self.kernel, self.run)
         triangles = cached("triangles", place_meshes, shapes, self.kernel, self.run)
         of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
@@ -166,7 +167,7 @@ class Packing:
             cones=in_tiles.cones,
             square=square,
             light_buffer_cells=cells,
-            **light_buffers,
+            **lists_of_lights,
             groups=tuple(map(Group, shapes.tables, in_tiles.starts, light_starts, count(), trees, of_kinds)),
             spots=spots,
             light_grid=cached(grid_key, lights.light_grid, emitted, spots),
@@ -190,13 +191,13 @@ class Packing:
 
         TooLargeError where even the coarsest have no room.
         """
-        usual_cells = self.cells_that_fit.get(len(sources), visibility.light_buffer_cells(self.shape_arrays))
+        usual_cells = self.cells_that_fit.get(len(sources), light_buffers.light_buffer_cells(self.shape_arrays))
         cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
         while True:
             try:
                 return cells, *self.seen_by_lights(sources, eye, cells, cached, radius)
             except TooLargeError:
-                if cells <= visibility.COARSEST:
+                if cells <= light_buffers.COARSEST:
                     raise
                 cells //= 2
                 self.cells_that_fit[len(sources)] = cells
@@ -212,23 +213,23 @@ class Packing:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
         shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
         has_meshes = Mesh in shapes.group_numbers  # from whose facets rays may be moved out of reach
-        has_cones = visibility.has_cones(len(sources), len(shapes.listed))
+        has_cones = light_buffers.has_cones(len(sources), len(shapes.listed))
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for light in sources:
             skipped = lights.never_occludes(shapes, eye, light, radius)
             if not light.position or (light.size and cells > 1):  # by the BVH
                 keys.append(("spread", cells, skipped.tobytes(), has_cones))
-                binned.append(cached(keys[-1], visibility.seen_by_parallel_light, shapes, cells, skipped))
+                binned.append(cached(keys[-1], light_buffers.seen_by_parallel_light, shapes, cells, skipped))
             else:
                 position, size = lights.light_position(light), lights.radius_of(light)
                 reach = (not has_meshes and light.fade) or np.inf
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach, has_cones))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
                 at = position, cells, skipped, size, reach, alike, self.run, self.spare.pop(len(binned), None)
-                binned.append(cached(keys[-1], visibility.seen_by_light, self.kernel, shapes, *at))
+                binned.append(cached(keys[-1], light_buffers.seen_by_light, self.kernel, shapes, *at))
             if len(binned) > FEW:  # scratch memory, of twice the size of the lists
-                cones = binned[-1].cones if has_cones else visibility.NO_CONES
+                cones = binned[-1].cones if has_cones else light_buffers.NO_CONES
                 self.cache[keys[-1]] = binned[-1] = binned[-1]._replace(bins=None, cones=cones)
         self.spare = {}
         return binned, tuple(keys)
@@ -242,35 +243,3 @@ class Packing:
         if self.precision == "single" and not fits_single(arrays):
             sentences.insert(0, "double precision: single supports neither images nor a BVH")
         return sentences
-
-
-def fits_single(arrays: SceneArrays) -> bool:
-    """Whether float32 will do: a BVH consists of float64, and float32 cannot count the pixels of a large picture."""
-    return (
-        arrays.bvh is None
-        and arrays.environment is None
-        and (arrays.surface_maps is None or not len(arrays.surface_maps.pictures))
-    )
-
-
-def all_but_pose(scene: Scene) -> tuple[Any, ...]:
-    """Return all of a scene, beside its shapes, that a camera leaves as it is when it moves and turns."""
-    seen_by = scene.camera
-    rest = scene.lights, scene.ambient, scene.background, scene.file
-    return *rest, seen_by.fov, seen_by.tone, seen_by.exposure, seen_by.lens
-
-
-def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
-    starts, members = np.zeros((len(shapes.tables), 0, 1), np.int32), np.zeros(0, np.int32)
-    cones = np.zeros((0, len(shapes.listed), 5))
-    if len(binned) == 1:  # in the same memory: a million shapes take long to copy
-        starts, cones, members = binned[0].starts[:, None], binned[0].cones[None], binned[0].members
-    elif binned:
-        offsets = np.cumsum([0, *(len(each.members) for each in binned[:-1])], dtype=np.int32)
-        starts = np.stack([each.starts + offset for each, offset in zip(binned, offsets, strict=True)], axis=1)
-        cones = np.zeros((len(binned), len(shapes.listed), 5))
-        if visibility.has_cones(*cones.shape[:2]):
-            np.stack([each.cones for each in binned], out=cones)
-        members = np.concatenate([each.members for each in binned])
-    return starts, {"light_shapes": members, "light_cones": cones}

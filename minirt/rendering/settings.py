@@ -24,7 +24,8 @@ from minirt.rendering.image import Image, LinearImage, rgb_of
 from minirt.rendering.packing.camera import cut_for
 from minirt.rendering.renderer import Renderer, renderer
 from minirt.scene import Scene, dump
-from minirt.scene.scene import check_scene, size_for
+from minirt.scene.arguments import check_scene
+from minirt.scene.sizes import size_for
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, MeshField, Picture, Point
-from minirt.materials import Attributes, Clouds, Compound, Glass
+from minirt.materials import Attributes, Clouds, Compound
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import APERTURES, ATTRIBUTES, NEEDS, PLAIN, WORDS, features, material_features
+from minirt.rendering.packing.features import APERTURES, ATTRIBUTES, PLAIN, WORDS, features, material_features
 from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Background, Scene, SpotLight
 from minirt.shapes import ALL_KINDS, Shape
@@ -83,12 +83,10 @@ class InvisibleElements:
     def features(self, plain: Shape) -> dict[str, Any]:
         """Return an element with each feature, by the feature's key; materials are those of a `plain` shape."""
         found: dict[str, Any] = {}
-        for field in fields_of(Attributes):
-            value = self.value(field)
-            found.setdefault(field.features_of(value)[0], plain.replace(**{field.name: value}))
-        glass = self.record(Glass)
-        found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
-        found["placements"] = found["placements"].replace(checker=found["checks"].checker)
+        fields = {field.name: field for field in fields_of(Attributes)}
+        for name, field in fields.items():
+            values = {each: self.value(fields[each]) for each in (name, *field.facts.needs[:1])}
+            found.setdefault(field.features_of(values[name])[0], plain.replace(**values))
         found["raised_patterns"] = plain.replace(clouds=Clouds(self.size, height=0.1))
         found["spots"] = SpotLight(position=self.place, direction=self.back, angle=10.0, brightness=0.5)
         found |= {"background": Background(DARK), "environment": Background(self.picture)}

@@ -8,29 +8,28 @@ change, with its places.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from minirt.element import Element, fields_by_key, positional_fields
-from minirt.errors import FieldError, FileError, Problem, quoted
-from minirt.fields import Colour, Direction, Field, Real, Three, Triple, Whole, clamp, unit
-from minirt.fields.directions import SCALED
-from minirt.fields.scalars import Scalar
+from minirt.errors import FieldError, FileError, Problem
+from minirt.fields import Three
 from minirt.helpers import file_io
 from minirt.materials import pictures
 from minirt.scene import dialect_tables as tables
+from minirt.scene.dialect_fields import TRIPLE, Changes, RangeError, css_colour, fields_of_words
 from minirt.scene.dialect_tables import NUMBER
-from minirt.scene.element_reader import HEX_COLOUR, SLASHES, split_key
+from minirt.scene.element_reader import HEX_COLOUR, split_key
 from minirt.scene.elements import FURTHER, LAMPS, Ambient, Background, Camera, FurtherCamera, Light, Resolution
+from minirt.scene.line_reader import SLASHES, read_line
 from minirt.scene.lines import MAX_WORDS, TAKEN, Line, Log, first_unprintable, line_from
-from minirt.scene.registry import NUMERIC, SHAPES, SPELLINGS
-from minirt.shapes import Cone
+from minirt.scene.pages import Item
+from minirt.scene.registry import SHAPES, SPELLINGS
+from minirt.scene.scene import MISSING
 
 # Blanks may stand around the commas of three numbers, and within quotes.
 WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|(?:\"[^\"]*\"|[^ \t\"])+|[^ \t]+")
-TRIPLE = re.compile(rf"{NUMBER},{NUMBER},{NUMBER},?")
 FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
 SEMICOLONS = re.compile(rf"(?<![^ \t])({NUMBER});({NUMBER});({NUMBER})(?![^ \t])")
 # The value of an attribute that a blank parts from it, or a number from a comma; and a resolution with a comma or x.
@@ -38,14 +37,7 @@ DETACHED = re.compile(r"(?<=[ \t])([A-Za-z]\w*:(?:[^ \t]*,(?=[ \t]+[0-9.]))?)[ \
 JOINED_SIZE = re.compile(r"^([ \t]*R[ \t]+[0-9]+)[,x]([0-9]+)(?![^ \t])")
 DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
-LEAST_PERCENT = 10  # a share from here on is one in percent
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
-
-Changes = list[tuple[str, str]]  # sorts of changes, and the words that each is about
-
-
-class RangeError(FieldError):
-    """A value that is well spelled, and that no field can take."""
 
 
 class Translation(NamedTuple):
@@ -53,14 +45,6 @@ class Translation(NamedTuple):
 
     text: str
     changes: Iterable[tuple[str, str]]
-
-
-class Spelling(NamedTuple):
-    """The spelling of a field, the number of words that it stands for, and the sort of change, '' for none."""
-
-    text: str
-    words: int
-    sort: str = ""
 
 
 def colours_of_materials(sources: list[str]) -> dict[str, str]:
@@ -182,124 +166,6 @@ def in_order(code: str, words: list[str]) -> list[str]:
     return [*(next(triples if sort == "v" else numbers) for sort in wanted), *words[len(wanted) :]]
 
 
-def fields_of_words(
-    kind: type[Element], words: list[str], colours: Mapping[str, str], changes: Changes
-) -> tuple[list[str], list[str]] | None:
-    """Spell the fields of an element by the first words, and return the others, too.
-
-    None where a field is missing, or something else stands in its place; FieldError for a malformed word.
-    """
-    fields = []
-    for field in positional_fields(kind):
-        words = colour_first(words, colours) if isinstance(field, Colour) else words
-        spelled = next(spellings(field, words, colours), None)
-        is_absent = not (words and NUMERIC.match(words[0]) and "," in words[0])
-        if spelled is None and isinstance(field, Colour) and field.required and is_absent:
-            spelled = Spelling("255,255,255", 0, tables.WHITE)
-        if spelled is None and field.required:
-            other = NUMBER if isinstance(field, Three) else TRIPLE.pattern  # and attributes
-            if words and is_well_spelled(field, words[0]):
-                raise RangeError(f"its {field.title} cannot be {words[0]}")
-            if words and not re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", words[0]):
-                raise FieldError(f"cannot be {quoted(words[0])}")
-            return None
-        if spelled is None:
-            break
-        if spelled.sort:
-            old = " ".join(words[: spelled.words])
-            changes.append((spelled.sort, f"{old}{TAKEN}{spelled.text}" if old else kind.code))
-        fields.append(spelled.text)
-        words = words[spelled.words :]
-    return fields, words
-
-
-def is_well_spelled(field: Field, text: str) -> bool:
-    """Whether a text is that of a value, in range or not."""
-    with suppress(FieldError):
-        field.parse(text)
-        return True
-    return False
-
-
-def colour_first(words: list[str], colours: Mapping[str, str]) -> list[str]:
-    """Return the words with that of a colour before numbers and names that stand between the other fields and it."""
-    if not words or words[0] in colours or css_colour(words[0]):
-        return words
-    index = next((index for index, word in enumerate(words) if TRIPLE.fullmatch(word)), 0)
-    return [words[index], *words[:index], *words[index + 1 :]]
-
-
-def spellings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iterator[Spelling]:
-    """Yield what the first words may mean as the value of a field."""
-    for text, count, sort in readings(field, words, colours):
-        with suppress(FieldError):
-            value = field.parse(text)
-            with suppress(FieldError):
-                field.check(value)
-                yield Spelling(text, count, sort)
-            fitted, how = fit(field, value)
-            yield Spelling(field.format(field.check(fitted)), count, how)
-
-
-def readings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iterator[Spelling]:
-    """Yield texts that may spell the value of a field, not yet parsed."""
-    if not words:
-        return
-    word = words[0].strip("()[]{};,") if isinstance(field, Three) else words[0].removesuffix(",")
-    yield Spelling(word, 1)
-    head, _, fourth = word.rpartition(",")
-    if isinstance(field, Three) and re.fullmatch(NUMBER, fourth):
-        yield Spelling(head, 1, tables.FOURTH)
-    if isinstance(field, Three) and "," not in "".join(words[:3]):
-        yield Spelling(",".join(words[:3]), 3, tables.JOINED)
-    if isinstance(field, Colour):
-        if name := colours.get(word) or css_colour(word):
-            yield Spelling(name, 1, tables.NAMED)
-        if levels := levels_of_shares(word):
-            yield Spelling(levels, 1, tables.SHARES)
-        if levels := nearest_colour(word):
-            yield Spelling(levels, 1, tables.NEAREST)
-    if isinstance(field, Scalar) and word.count(",") == 1:
-        yield Spelling(word.replace(",", "."), 1, tables.DECIMALS)
-
-
-def css_colour(name: str) -> str:
-    """Return R,G,B of a colour of CSS, '' for none."""
-    from PIL import ImageColor
-
-    with suppress(ValueError):
-        return ",".join(map(str, ImageColor.getrgb(name)[:3]))
-    return ""
-
-
-def levels_of_shares(word: str) -> str:
-    """Return the R,G,B from 0 to 255 of three shares from 0 to 1, of which one is no whole number; '' for others."""
-    with suppress(ValueError):
-        shares = [float(part) for part in word.split(",")]
-        if len(shares) == 3 and min(shares) >= 0 and max(shares) <= 1 and any(each % 1 for each in shares):
-            return ",".join(str(int(255 * each + 0.5)) for each in shares)
-    return ""
-
-
-def nearest_colour(word: str) -> str:
-    """Return the whole R,G,B from 0 to 255 next to the first three of some numbers, '' for other words."""
-    parts = word.split(",")[:3]
-    with suppress(ValueError):
-        return ",".join(str(int(clamp(float(part), 0, 255) + 0.5)) for part in parts) if len(parts) == 3 else ""
-    return ""
-
-
-def fit(field: Field, value: Any) -> tuple[Any, str]:
-    """Return the value of a field next to one that is out of range, and what was done; FieldError where none is."""
-    if isinstance(field, Direction):
-        return (unit(value), SCALED) if any(value) else (field.instead, tables.NOWHERE)
-    if isinstance(field, Real) and field.high == 1 and LEAST_PERCENT <= value <= 100:
-        return value / 100, tables.PERCENT
-    if isinstance(field, Real) or (isinstance(field, Whole) and value > field.high):
-        return clamp(value, field.low, field.high), tables.NEAREST
-    raise FieldError("has no value next to it")
-
-
 def meanings(kind: type[Element], words: list[str], folder: Path | None, changes: Changes) -> list[str]:
     """Return the attributes that words behind the fields mean."""
     keyed = fields_by_key(kind)
@@ -349,64 +215,28 @@ def meaning(words: list[str], are_guessed: bool) -> tuple[int, str, str]:
     return 1, "", tables.LEFT_OUT
 
 
-def unread_lines(log: Log) -> int:
-    """Return the number of lines that no meaning was found for, and that became comments."""
-    return sum(len(log.changes.get(sort, ())) for sort in tables.UNREAD)
+def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[str, str]) -> Item | None:
+    """Read any line, in a dialect of another program where it cannot be read as it stands; None after an error.
 
-
-def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
-    """Do what takes all lines of a file: choose its camera, give it an ambient light, tell cones and missing shapes."""
-    promote_camera(items, seen, log)
-    apply_conventions(items, log)
-    unread = [*log.changes.get(tables.MISSING, ()), *log.changes.get(tables.INCOMPLETE, ())]
-    if unread and not any(isinstance(item, SHAPES) for item in items):
-        line, code = unread[0]
-        log.error(line, f"none of the shapes can be read, of which {quoted(code)} is the first", 1, len(code))
-    if Camera.code in seen and seen.setdefault(Ambient.code, 0) == 0:
-        items.insert(0, Ambient(0.0, (255, 255, 255)))
-        log.change(line_from(1, ""), tables.DARK, Ambient.code)
-
-
-def promote_camera(items: list[Any], seen: dict[str, int], log: Log) -> None:
-    """Let the first further camera be the camera of a file that has none, as the older subject means it."""
-    index = next((index for index, item in enumerate(items) if isinstance(item, FurtherCamera)), None)
-    if index is not None and Camera.code not in seen:
-        first = items[index]
-        source = first.source.replace(FurtherCamera.code, Camera.code, 1)
-        items[index] = first.as_kind(Camera).replace(source=source)
-        seen[Camera.code] = seen[first.code]
-        log.change(line_from(seen[first.code], first.source), tables.RENAMED, first.code)
-
-
-def apply_conventions(items: list[Any], log: Log) -> None:
-    """Give cones and cameras the meaning that was asked for, or say which one cones have in a file in a dialect.
-
-    ValueError for a word that asks for nothing.
+    A line without a meaning here becomes a comment. `colours` are those of named materials.
     """
-    words = log.lenient.split() if isinstance(log.lenient, str) else []
-    if unknown := [word for word in words if word not in tables.OPTIONS]:
-        raise ValueError(f"lenient must be a bool, or some of {' '.join(tables.OPTIONS)}, got {quoted(unknown[0])}")
-    is_dialect = bool(log.changes.keys() - {SCALED})
-    for number, item in enumerate(items, 1):
-        if not isinstance(item, Cone | Camera):
-            continue
-        line = line_from(number, item.source)
-        table = tables.CONES if isinstance(item, Cone) else tables.CAMERAS
-        meant = [word for word in table if word in words]
-        if is_dialect and isinstance(item, Cone) and not meant:
-            log.change(line, tables.APEX, item.code)
-        for word in meant:
-            log.change(line, tables.CONVENTION.format(item.plural, tables.OPTIONS[word]), item.code)
-            before, written = items[number - 1], direction_as_written(line, log)
-            try:
-                items[number - 1] = before.replace(**table[word](before, written))
-            except ValueError as error:
-                log.error(line, f"{error} ({tables.OPTIONS[word]})", 1)
-
-
-def direction_as_written(line: Line, log: Log) -> Triple:
-    """Return the second three numbers of a line, before they were scaled to a direction."""
-    scaled = (words for each, words in log.changes.get(SCALED, ()) if each.number == line.number)
-    text = next(scaled, "") or TRIPLE.findall(line.text)[1]
-    x, y, z = map(float, re.findall(NUMBER, text)[:3])
-    return x, y, z
+    known, before, notices = dict(seen), len(log.errors), len(log.notices)
+    item = read_line(line, seen, log)
+    translation = None if item is not None else translated(line, colours, log.folder, known)
+    if translation is None:
+        return item
+    errors = log.errors[before:]
+    del log.errors[before:], log.notices[notices:]
+    seen.clear()
+    seen.update(known)
+    if translation.text:
+        item = read_line(line_from(line.number, translation.text), seen, log)
+        unread = log.errors[before:]
+        if item is None and (translation := without_element(line, unread)) is None:
+            log.errors[before:] = errors
+            return None
+        del log.errors[before:]
+    for sort, words in translation.changes:
+        log.change(line, sort, words)
+    is_missing = {tables.MISSING, tables.INCOMPLETE}.intersection(dict(translation.changes))
+    return item or f"{MISSING if is_missing else '# '}{line.text}"

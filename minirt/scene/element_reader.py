@@ -1,66 +1,23 @@
-"""Diagnosing reader of one line of a scene file: every error is logged with its column and a hint.
-
-It works in four steps: split the line into words, identify the element, assign words to fields, parse their values.
-"""
+"""Reader of the words of an element: which field of it each word is the value of."""
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from itertools import combinations, pairwise, starmap, takewhile
-from pathlib import Path
-from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_by_key, fields_of, pattern, positional_fields
-from minirt.errors import FieldError, FileError, hint, quoted
-from minirt.fields import Colour, Direction, Field, MeshField, MeshFile, PictureFile
-from minirt.fields.scalars import code_point_name
-from minirt.helpers import file_io
-from minirt.materials import pictures
+from minirt.errors import FieldError, hint, quoted
+from minirt.fields import Colour, Field
 from minirt.materials.compound import Compound
-from minirt.meshes import load_mesh
-from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
-from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, OLD_NAMES, SPELLINGS, nearest_element, nearest_word
-from minirt.shapes import Mesh
+from minirt.scene.lines import Line, Log, Word
+from minirt.scene.registry import ELEMENTS, OLD_NAMES, SPELLINGS, nearest_word
+from minirt.scene.value_reader import Slot, parse_slots
 
-SLASHES = re.compile(r"(?<![^ \t])//")
 KEY = re.compile(r"(?![A-Za-z]:[\\/])(?:(pattern:[a-z]+)(?:,|\Z)|([A-Za-z_]+):)")  # which no drive of Windows is
 LEAST_LIKE = 4  # letters of a word for which a similar one is proposed that begins with another
 HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
-
-# Attributes, by the fields of which they need one.
-NEEDS = {
-    "tint": ("glass",),
-    "fresnel": ("glass", "mirror"),
-    "uv": ("checker", "texture", "bump", "normal_map"),
-    "focus": ("lens",),
-}
-
-
-class Slot(NamedTuple):
-    """A field of a kind of element, and the word that holds its value."""
-
-    kind: type[Element]
-    field: Field
-    word: Word
-    start: int = 0  # index of the value in the word, behind `key:`
-    bare: bool = False  # whether the word is the key alone
-
-    @property
-    def title(self) -> str:
-        """Name of the field in messages."""
-        return f"{self.kind.title} {self.field.title}"
-
-    @property
-    def text(self) -> str:
-        """Text of the value."""
-        return self.field.bare if self.bare else self.word.text[self.start :]
-
-    def span(self, part: int | None) -> tuple[int, int]:
-        """Return column and length of component `part` of the value; None: of the whole value."""
-        return self.word.span(part, self.start)
 
 
 def is_attribute(raw: str, keyed: dict[str, Field]) -> bool:
@@ -74,43 +31,6 @@ def split_key(word: str) -> tuple[str, int]:
     match = KEY.match(word)
     key = (match[1] or match[2]) if match else word
     return OLD_NAMES.get(key, key), match.end() if match else 0
-
-
-def split_line(line: Line, log: Log) -> list[Word] | None:
-    """Return the words of a line, none for a comment or a blank line; None after an error."""
-    hidden = first_unprintable(line)
-    if hidden >= 0:
-        message = "a carriage return ends a line only together with a line feed"
-        if line.text[hidden] != "\r":
-            message = f"only spaces and tabs separate fields, got {code_point_name(line.text[hidden])}"
-        log.error(line, message, hidden + 1)
-        return None
-    body = line.text[: line.end]
-    slashes = SLASHES.search(body) if "//" in body else None
-    words = words_of(body)
-    blank = next((word.column - 1 for word in words[2:] if word.text.startswith(",")), 0)
-    blank = blank or next((word.end - 1 for word in words[1:-1] if word.text.endswith(",")), 0)
-    if slashes:
-        log.error(line, "a comment begins with '#', got '//'", slashes.start() + 1, 2)
-    elif blank:
-        log.error(line, "no blanks may stand around a comma", blank, 2)
-    return None if slashes or blank else words
-
-
-def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
-    """Return the element whose identifier `word` is; None, with an error and a hint, for none."""
-    code = word.text
-    if code in SPELLINGS:
-        return SPELLINGS[code]
-    glued = GLUED.match(code)
-    if glued and glued[1] in SPELLINGS:
-        log.error(line, f"a blank is missing after '{glued[1]}'", word.column + len(glued[1]))
-        return None
-    message = f"unknown element {quoted(code)}{hint(nearest_element(code))}"
-    if NUMERIC.match(code):
-        message = f"a line begins with one of {', '.join(ELEMENTS)}, got {quoted(code)}"
-    log.error(line, message, word.column, len(code))
-    return None
 
 
 def assign_words(kind: type[Element], line_words: list[Word], line: Line, log: Log) -> list[Slot]:
@@ -234,81 +154,3 @@ def unknown_key_message(kind: type[Element], key: str) -> str:
     if len(key) < LEAST_LIKE and key[:1] != guess[:1]:
         guess = ""
     return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
-
-
-def lacked_by(element: Element, name: str) -> tuple[str, ...]:
-    """Names of the fields without which an attribute has no effect, if the element has none of them.
-
-    Meshes may have them in a file.
-    """
-    needs = NEEDS.get(name, ())
-    return () if isinstance(element, Mesh) or any(getattr(element, each) for each in needs) else needs
-
-
-def tell_useless(element: Element, slots: list[Slot], line: Line, log: Log) -> None:
-    """Add a notice for each attribute of a line that has no effect without another."""
-    for slot in slots:
-        if lacked := lacked_by(element, slot.field.name):
-            keys = " or ".join(f"'{name.removesuffix('_map')}:'" for name in lacked)
-            log.notice(line, f"{slot.title} has no effect without {keys}", *slot.word.span(None))
-
-
-def parse_slots(slots: list[Slot], line: Line, log: Log) -> dict[str, Any]:
-    """Parse the values of the fields, by name; one that is wrong is None, with an error."""
-    return {slot.field.name: parse_slot(slot, line, log) for slot in slots}
-
-
-def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
-    """Parse the value of a field; None, with an error, when it is wrong."""
-    field, text = slot.field, slot.text
-    try:
-        value = field.parse(text)
-        checked = field.check(value)
-        remark = field.remark(value)
-    except FieldError as error:
-        message, span = f"{slot.title} {error}", slot.span(error.part)
-        repair = field.repair(text)
-        if repair is None:
-            log.error(line, message, *span)
-            for each in error.further:
-                log.error(line, f"{slot.title} {each}", *slot.span(each.part))
-            return None
-        log.notice(line, f"{message} (miniRT {repair.deed})", *span)
-        return repair.value
-    if remark and isinstance(field, Direction):
-        log.change(line, remark, text)
-    elif remark:
-        log.notice(line, f"{slot.title} {remark}", *slot.span(None))
-    return value_with_files(slot, checked, line, log) if log.folder else checked
-
-
-def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
-    """Load the mesh that a value names, and try its pictures; an error for each file that cannot be used."""
-    if isinstance(value, MeshFile):
-        triangles = load_file(load_mesh, PictureFile(value.name), "mesh", slot, line, log)
-        for notice in triangles.notices if triangles else ():
-            log.notice(line, f"{slot.title} {quoted(value.name)} {notice}", *slot.span(None))
-        return MeshFile(value.name, triangles)
-    for file in slot.field.pictures(value):
-        load_file(pictures.reader(file), file, "picture", slot, line, log)
-    return value
-
-
-def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: Slot, line: Line, log: Log) -> Any:
-    """Read a file that a value names; None, with an error, when it cannot be used."""
-    try:
-        folder = log.folder or Path()
-        path = file_io.located(folder, file.name)
-        content = read(path)
-        if path != folder / file.name:
-            above = quoted(os.path.relpath(path, folder))
-            log.notice(line, f"{slot.title} is not beside the scene, and is read from {above}", *slot.span(file.part))
-        if os.path.abspath(path) in pictures.transparent:  # noqa: PTH100
-            log.notice(line, f"{slot.title} has transparent parts, which are drawn opaque", *slot.span(file.part))
-        return content
-    except FileError as error:
-        message = f"{slot.title} must be a {sort} file, got {quoted(file.name)}: {error.reason}"
-        if isinstance(slot.field, MeshField):
-            message = f"{slot.title} {quoted(file.name)}: {error.reason}"
-        log.error(line, message, *slot.span(file.part))
-        return None

@@ -79,7 +79,12 @@ class Camera(Element):
         Length, "diameter of the lens; depth of field", keyed=True, default=None, placeholder="diameter", initial=0.2
     )
     focus: float | None = declare(
-        Focus, "distance, along the direction, of what is sharp", keyed=True, default=None, placeholder="distance"
+        Focus,
+        "distance, along the direction, of what is sharp",
+        keyed=True,
+        default=None,
+        placeholder="distance",
+        needs=("lens",),
     )
     left_handed: bool = field(default=False, kw_only=True)
     # Names and values of the fields that the window's user gave a value: see `minirt.viewer.editing.state`.

@@ -1,7 +1,7 @@
 """Fast path of the scene reader: parse many plain lines at once.
 
 A plain line is an identifier, all positional fields, and perhaps attributes and a comment; or a comment alone, or a
-blank line. The diagnosing reader (`minirt.scene.element_reader`) gives the same item for it, without errors or notices,
+blank line. The diagnosing reader (`minirt.scene.line_reader`) gives the same item for it, without errors or notices,
 in a hundred times the time. Its numbers are read by compiled code (`minirt.kernel.plain_lines`), and its attributes,
 which many lines share, once.
 """
@@ -16,11 +16,13 @@ import numpy as np
 
 from minirt.element import Element, positional_fields
 from minirt.kernel.plain_lines import BEHIND_COMMA, MOST, NAME, NOTHING, NUMBER, OTHER, WHOLE
-from minirt.scene.element_reader import attribute_slots, parse_slots, split_line, tell_useless
+from minirt.scene.element_reader import attribute_slots
 from minirt.scene.elements import FurtherCamera
+from minirt.scene.line_reader import split_line
 from minirt.scene.lines import Log, line_from
 from minirt.scene.pages import Crowd, Item
 from minirt.scene.registry import SPELLINGS
+from minirt.scene.value_reader import parse_slots, tell_useless
 
 FEW_LINES = 100  # of a file: the diagnosing reader reads them before compiled code is loaded
 MANY_LINES = 100_000  # of a file: where there is no compiled code, compiling it takes less time than diagnosing them
@@ -94,8 +96,10 @@ def read(sources: list[str], length: int) -> Sequence[Item | None]:
 
 
 def attributes_of(sources: list[str]) -> dict[int, str]:
-    """Return the ends of lines from their first attribute with a value on, by the indices of the lines."""
-    befores = ((line, source, source.partition(":")[0]) for line, source in enumerate(sources) if ":" in source)
+    """Return the ends of lines from their first attribute with a value on, by the indices of the lines; not of a line
+    with a carriage return before its end, which the diagnosing reader refuses even in a comment."""
+    plain = ((line, source) for line, source in enumerate(sources) if ":" in source and "\r" not in source[:-1])
+    befores = ((line, source, source.partition(":")[0]) for line, source in plain)
     return {line: source[before.rfind(" ") + 1 :] for line, source, before in befores if "#" not in before}
 
 

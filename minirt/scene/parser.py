@@ -1,26 +1,24 @@
-"""Parser of scene files: text -> Scene. One run finds all errors of a file. Also the example scenes of the library."""
+"""Parser of scene files: text -> Scene, and back. One run finds all errors of a file."""
 
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element
-from minirt.errors import FileError, Problem, SceneError, nearest
-from minirt.helpers import file_io
+from minirt.errors import Problem, SceneError
 from minirt.helpers.system import gc_paused
-from minirt.scene import fast, files
-from minirt.scene.element_reader import assign_words, identify, parse_slots, split_line, tell_useless
-from minirt.scene.lines import MAX_ERRORS, Line, Log, Word, line_from
+from minirt.scene import fast, files, writer
+from minirt.scene.arguments import check_scene
+from minirt.scene.line_reader import read_line
+from minirt.scene.lines import MAX_ERRORS, Log, line_from
 from minirt.scene.pages import PAGE_LENGTH, Crowd, Item, kinds_of, pages_of
-from minirt.scene.registry import nearest_element
 from minirt.scene.required import check_required
-from minirt.scene.scene import MISSING, Scene
+from minirt.scene.scene import Scene
 
 # A new scene: elements like any others, which one may change and delete.
 NEW = b"""A 0.4 255,255,255
@@ -114,6 +112,17 @@ def loads(text: str | bytes, lenient: bool | str = False) -> Scene:
     return parse(text, lenient=lenient).scene
 
 
+def dumps(scene: Scene) -> str:
+    """Return a scene as the text of a file, the same as `Scene.save` writes.
+
+    Comments and unchanged lines are as they were read.
+
+        print(minirt.dumps(scene))
+    """
+    check_scene(scene, "dumps")
+    return writer.text_of(scene.pages)
+
+
 def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
     """Return all lines of a file, run by run: elements, comments and blank lines.
 
@@ -123,7 +132,7 @@ def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
     # Identifier: a line that has it, or seems to mean it; the first one, of kinds that may stand once.
     seen: dict[str, int] = {}
     if log.lenient:
-        from minirt.scene import dialects
+        from minirt.scene import dialect_files, dialects
 
         colours = dialects.colours_of_materials(sources)
     for start in range(0, len(sources), PAGE_LENGTH):
@@ -135,123 +144,14 @@ def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
             continue
         for at in [at for at, item in enumerate(block) if item is None]:
             line = line_from(start + at + 1, sources[start + at])
-            block[at] = read_leniently(line, seen, log, colours) if log.lenient else read_line(line, seen, log)
-            if len(log.errors) + (dialects.unread_lines(log) if log.lenient else 0) >= MAX_ERRORS:
+            block[at] = dialects.read_leniently(line, seen, log, colours) if log.lenient else read_line(line, seen, log)
+            if len(log.errors) + (dialect_files.unread_lines(log) if log.lenient else 0) >= MAX_ERRORS:
                 log.error(line, "too many errors: the rest of the file is not read", line.end + 1)
                 return runs
         runs.append([item for item in block if item is not None])
     if log.lenient:
         items = [*chain.from_iterable(runs)]
-        dialects.complete(items, seen, log)
+        dialect_files.complete(items, seen, log)
         runs = [items]
     check_required(seen, sources, runs, log)
     return runs
-
-
-def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[str, str]) -> Item | None:
-    """Read any line, in a dialect of another program where it cannot be read as it stands; None after an error.
-
-    A line without a meaning here becomes a comment. `colours` are those of named materials.
-    """
-    from minirt.scene import dialect_tables as tables
-    from minirt.scene import dialects
-
-    known, before, notices = dict(seen), len(log.errors), len(log.notices)
-    item = read_line(line, seen, log)
-    translation = None if item is not None else dialects.translated(line, colours, log.folder, known)
-    if translation is None:
-        return item
-    errors = log.errors[before:]
-    del log.errors[before:], log.notices[notices:]
-    seen.clear()
-    seen.update(known)
-    if translation.text:
-        item = read_line(line_from(line.number, translation.text), seen, log)
-        unread = log.errors[before:]
-        if item is None and (translation := dialects.without_element(line, unread)) is None:
-            log.errors[before:] = errors
-            return None
-        del log.errors[before:]
-    for sort, words in translation.changes:
-        log.change(line, sort, words)
-    is_missing = {tables.MISSING, tables.INCOMPLETE}.intersection(dict(translation.changes))
-    return item or f"{MISSING if is_missing else '# '}{line.text}"
-
-
-def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
-    """Read any line: an element, or the line itself for a comment or a blank line; None after an error."""
-    words = split_line(line, log)
-    if words == []:
-        return line.source
-    kind = identify(words[0], line, log) if words else None
-    if not words or not kind:
-        seen.setdefault(nearest_element((line.text.split() or [""])[0]), line.number)
-        return None
-    return read_element(kind, words, seen.setdefault(kind.code, line.number), line, log)
-
-
-def read_element(kind: type[Element], words: list[Word], first: int, line: Line, log: Log) -> Element | None:
-    """Read the element of a line; None after an error. `first` is the first line with the same identifier."""
-    errors = len(log.errors)
-    if kind.once and first != line.number:
-        message = f"a second {kind.title}: the first is in line {first}, and there may be one"
-        log.error(line, message, *words[0].span(None))
-    slots = assign_words(kind, words, line, log)
-    values = parse_slots(slots, line, log)
-    if len(log.errors) > errors:
-        return None
-    (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
-    conflict = element.conflict()
-    if conflict is None:
-        tell_useless(element, slots, line, log)
-        return element
-    name, message = conflict
-    slot = next(slot for slot in slots if slot.field.name == name)
-    log.error(line, f"{kind.title} {name} {message}", *slot.span(None))
-    return None
-
-
-# Example scenes, which are installed with the library: `minirt.example("demo")`.
-
-PACKAGE = Path(__file__).parents[1]
-FOLDERS = (PACKAGE / "scenes", PACKAGE.parent / "scenes")  # of a wheel, and beside the sources
-FILE = re.compile(r"(?<=[\s:])(?:textures|meshes)/[^\s,#]+")  # that a line of an example names, or its comment
-UNFIT = re.compile(r"[\s,#]")  # in a path: no line of a scene can name it
-
-
-def folder() -> Path:
-    """Return the folder of the example scenes; FileError where none was installed."""
-    for each in FOLDERS:
-        if file_io.is_file(each / "demo.rt"):
-            return each
-    raise FileError(FOLDERS[0], "the example scenes are not installed")
-
-
-def examples() -> list[str]:
-    """Return the names of the example scenes, in alphabetical order.
-
-    FileError where they are not installed.
-
-        minirt.examples()  # ["demo", "eval-camera-elsewhere", ...]
-    """
-    return sorted(path.stem for path in folder().glob("*.rt"))
-
-
-def example(name: str = "opening") -> Scene:
-    """Return an example scene by its name.
-
-    The scene belongs to no file, and names its textures and meshes by their absolute paths, so that it can be saved
-    anywhere. FileError for an unknown name, with the names that are like it.
-
-        minirt.render(minirt.example("gallery-chess"), 640, 480).save("chess.png")
-    """
-    known = examples()
-    if name not in known:
-        near = nearest(name, known, count=3)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"the examples are {', '.join(known)}"
-        raise FileError(name, f"there is no such example scene; {hint}")
-    path = folder() / f"{name}.rt"
-    if UNFIT.search(str(path.parent)):
-        return load(path).scene
-    text = path.read_text(encoding="utf-8")
-    return parse(FILE.sub(lambda named: str(folder() / named[0]), text)).scene

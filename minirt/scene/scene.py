@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from minirt.element import Element
-from minirt.errors import check_whole, counted, did_you_mean
+from minirt.errors import counted, did_you_mean
 from minirt.helpers import file_io
 from minirt.helpers.system import gc_paused
 from minirt.records import Immutable
 from minirt.scene import writer
-from minirt.scene.elements import DEFAULT_SIZE, Ambient, Background, Camera, FurtherCamera, Lamp, Resolution
+from minirt.scene.arguments import check_elements
+from minirt.scene.elements import Ambient, Background, Camera, FurtherCamera, Lamp, Resolution
 from minirt.scene.pages import Answer, Item, Page, pages_of, replace_item, span_of_ids
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -242,50 +243,3 @@ class Scene(Immutable, ElementLists):
         for name in ("items", "elements", "shapes"):
             vars(self).pop(name, None)
         return self
-
-
-def check_elements(function: str, *elements: object) -> None:
-    """TypeError, which names what a function got in place of an element of a scene."""
-    for each in elements:
-        if not isinstance(each, Element):
-            is_list = isinstance(each, list | tuple)
-            found = (
-                f"a {type(each).__name__}: {function}(*elements) takes them one by one" if is_list else f"{each!r:.60}"
-            )
-            raise TypeError(f"{function} takes elements such as minirt.Sphere, got {found}")
-
-
-def check_scene(scene: object, function: str) -> None:
-    """TypeError, which says how to load a scene, where a function got the name of its file."""
-    if isinstance(scene, (str, os.PathLike)):
-        name = os.fspath(scene)
-        raise TypeError(f"minirt.{function} takes a scene, got the name of a file: use minirt.load({name!r})")
-
-
-def dumps(scene: Scene) -> str:
-    """Return a scene as the text of a file, the same as `Scene.save` writes.
-
-    Comments and unchanged lines are as they were read.
-
-        print(minirt.dumps(scene))
-    """
-    check_scene(scene, "dumps")
-    return writer.text_of(scene.pages)
-
-
-def size_of(scene: Scene) -> tuple[int, int]:
-    """Width and height in pixels that a scene asks for, or the default."""
-    return (scene.resolution.width, scene.resolution.height) if scene.resolution else DEFAULT_SIZE
-
-
-def size_for(scene: Scene, width: int | None, height: int | None) -> tuple[int, int]:
-    """The size of a picture of a scene: its own where none is asked for, and of its proportions where one side is.
-    RenderError for an empty one."""
-    own_width, own_height = size_of(scene)
-    if width is not None:
-        width = check_whole("width", width, 1)
-    if height is not None:
-        height = check_whole("height", height, 1)
-    if width is None:
-        width = own_width if height is None else max(1, round(height * own_width / own_height))
-    return width, max(1, round(width * own_height / own_width)) if height is None else height

@@ -12,9 +12,11 @@ from minirt.element import Element, fields_of
 from minirt.fields import Field, MeshFile
 from minirt.helpers import file_io
 from minirt.scene import fast, files
-from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
+from minirt.scene.element_reader import assign_words
+from minirt.scene.line_reader import identify, split_line
 from minirt.scene.lines import BOM, Log, Word, line_from
 from minirt.scene.pages import Crowd, Page
+from minirt.scene.value_reader import Slot, parse_slots
 from minirt.shapes import Mesh
 
 

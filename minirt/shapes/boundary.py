@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.lanes import Vec, cross, dot, two_product, where
-from minirt.shapes.compensated import Pair, minus, plus, quick_two_sum, times, value
+from minirt.lanes import Vec, cross, dot, where
+from minirt.shapes.compensated import Pair, minus, plus, quick_two_sum, times, two_product, value
 
 Roll = tuple[Any, Any]  # cosine and sine of a shape's turn about its own axis; their squares add up to exactly 1
 NO_SLOPE = Vec(0.0, 0.0, 0.0)

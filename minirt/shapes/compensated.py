@@ -8,7 +8,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Number, Vec, fabs, max_norm, maximum, splat, two_product, unit_roundoff, where
+from minirt.lanes import (
+    Number,
+    Vec,
+    fabs,
+    max_norm,
+    maximum,
+    product_error,
+    rounded_product,
+    splat,
+    unit_roundoff,
+    where,
+)
 
 POSITION = 8.0  # unit roundoffs of the largest coordinate, by which a point that was computed may be off its surface
 Pair = tuple[Number, Number]  # a number of twice the precision: its rounded value, and what that lacks
@@ -26,6 +37,11 @@ def quick_two_sum(a: Any, b: Any) -> tuple[Any, Any]:
     """The rounded sum a + b and its rounding error, for |a| >= |b| (Dekker 1971)."""
     total = a + b
     return total, b - (total - a)
+
+
+def two_product(a: Number, b: Number) -> tuple[Number, Number]:
+    """The rounded product a * b and its rounding error."""
+    return rounded_product(a, b), product_error(a, b)
 
 
 def pair(high: Number, low: Number, like: Number) -> Pair:

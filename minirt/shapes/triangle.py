@@ -12,8 +12,6 @@ from __future__ import annotations
 from math import hypot
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from minirt.fields import Colour, Point, Triple, declare, unit
 from minirt.lanes import (
     Mask,
@@ -33,11 +31,11 @@ from minirt.lanes import (
     unit_roundoff,
     where,
 )
-from minirt.lanes import unit as unit_vec
 from minirt.records import record
 from minirt.shapes import boundary as exact
 from minirt.shapes.boundary import Boundary
-from minirt.shapes.compensated import Pair, minus, offset, position_error, times, value
+from minirt.shapes.compensated import position_error
+from minirt.shapes.plane_normals import plane_normal
 from minirt.shapes.shape import Ball, Hit, Position, Shape
 
 GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
@@ -239,35 +237,3 @@ def depth_behind_plane(triangle: Any, height: Number, start: Vec) -> Number:
     away = where(height > 0.0, splat(1.0, height), -1.0)
     slack = BEHIND * unit_roundoff(start.x) * (max_norm(start) + max_norm(triangle.a))
     return away * dot(triangle.normal, start - triangle.a) + slack
-
-
-# A plain cross product of two edges has four correct digits for a sliver with an aspect ratio of 1e-12: the products
-# cancel. So differences, products and sums keep their rounding errors here.
-
-
-def plane_normal(a: Vec, b: Vec, c: Vec) -> Vec:
-    """Cross product of b - a and c - a, exact to a few roundings; its length is twice the area of the triangle."""
-    (x, y, z), (u, v, w) = offset(b, a), offset(c, a)
-    return Vec(cross_component(y, z, v, w), cross_component(z, x, w, u), cross_component(x, y, u, v))
-
-
-def plane_normal_towards(a: Vec, b: Vec, c: Vec, approximate: Vec) -> Vec:
-    """Unit normal of the plane of a triangle, on the side of the `approximate` normal, which is kept where the corners
-    lie on a line."""
-    normal = plane_normal(a, b, c)
-    normal = where(max_norm(normal) > 0.0, normal, approximate)
-    normal = where(dot(normal, approximate) < 0.0, -normal, normal)
-    return unit_vec(normal / max_norm(normal))
-
-
-def cross_component(y: Pair, z: Pair, v: Pair, w: Pair) -> Number:
-    """y w - z v."""
-    return value(minus(times(y, w), times(z, v)))
-
-
-def plane_normals(corners: np.ndarray, approximate: np.ndarray) -> np.ndarray:
-    """Unit normals of triangles whose corners are rows of nine numbers, on the side of the `approximate` normals."""
-    columns = corners.T.copy()
-    a, b, c, side = Vec(*columns[:3]), Vec(*columns[3:6]), Vec(*columns[6:]), Vec(*approximate.T.copy())
-    normal = plane_normal_towards(a, b, c, side)
-    return np.stack([normal.x, normal.y, normal.z], axis=1)

@@ -9,7 +9,7 @@ from fnmatch import fnmatch
 
 from PIL import Image as pillow  # noqa: N813
 
-from minirt.helpers.file_io import TEMPORARY
+from minirt.helpers.file_io.writing import TEMPORARY
 from tests.faults.supervised import CRASHED, KILL, KINDS, SHORT, STICKY, Ended, Fault, run
 from tests.faults.workloads import SCENE, Files, Laboratory, Workload, contents, surroundings
 

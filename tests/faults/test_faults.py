@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from minirt.helpers import file_io
+from minirt.helpers.file_io import writing
 from tests.faults.calls import UNUSABLE
 from tests.faults.judge import Judge
 from tests.faults.supervised import KILL, Fault, run
@@ -71,7 +72,7 @@ def planted(variant: str, patch: pytest.MonkeyPatch) -> None:
     if variant == "in place":
         patch.setattr(file_io, "write", in_place)
     elif variant == "left":
-        patch.setattr(file_io, "delete", lambda *_: None)
+        patch.setattr(writing, "delete", lambda *_: None)
     elif variant == "silent":
         patch.setattr(file_io, "told_errors", lambda *_: suppress(OSError))
     else:

@@ -24,7 +24,7 @@ from minirt import cli
 from minirt.cli import render
 from minirt.cluster import job, journal
 from minirt.errors import MiniRTError
-from minirt.helpers import file_io
+from minirt.helpers.file_io import writing
 from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY
@@ -128,7 +128,7 @@ def surroundings(folder: Path) -> Iterator[pytest.MonkeyPatch]:
         patch.setattr(job, "RAYS", 8 * 16 * 4)
         patch.setattr(journal, "SHARE", 1e9)
         patch.setattr(recovery.threading, "Timer", ImmediateTimer)
-        patch.setattr(file_io, "SWEPT", set())
+        patch.setattr(writing, "SWEPT", set())
         yield patch
 
 

@@ -62,9 +62,9 @@ LONG = f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3"
     ("name", "text", "where", "wrong", "error"),
     [
         ("scenes", LONG, "minirt.fields.scalars.LONGEST", 302, AssertionError),
-        ("scenes", "", "minirt.scene.dialects.complete", lambda items, *_: items.reverse(), AssertionError),
-        ("scenes", "", "minirt.scene.parser.MISSING", "missing: ", AssertionError),  # which is no comment
-        ("names", "", "minirt.helpers.file_io.found", Path.stat, (OSError, ValueError)),
+        ("scenes", "", "minirt.scene.dialect_files.complete", lambda items, *_: items.reverse(), AssertionError),
+        ("scenes", "", "minirt.scene.dialects.MISSING", "missing: ", AssertionError),  # which is no comment
+        ("names", "", "minirt.helpers.file_io.reading.found", Path.stat, (OSError, ValueError)),
         ("names", "", "minirt.meshes.mtl.is_file", Path.is_file, (OSError, ValueError)),
         ("meshes", "", "minirt.meshes.obj_bytes.NOWHERE", 0, AssertionError),
         ("pictures", "", "minirt.materials.pictures.decode_by_pillow", refuse, AssertionError),

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from minirt.fields import MeshFile
-from minirt.kernel import beams, interpreted
+from minirt.kernel import beam_traversal, beams, interpreted
 from minirt.kernel.scene_arrays import Group
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
-from minirt.rendering.packing.bvh import mesh_trees
+from minirt.rendering.packing.mesh_trees import mesh_trees
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import MESH, Mesh
 from tests.meshes.examples import GREY, ball, soup
@@ -73,7 +73,7 @@ def visited(rays: Packet, number: type = np.float64, own: int = -1) -> np.ndarra
     group = Group(arrays.rows[0], None, None, 0, trees)
     active = np.ones(lanes, bool)
     starts = apexes, way, np.full(lanes, own, number)
-    beams.fold_over_mesh(visit, reach, group, 0, starts, active, None, None)
+    beam_traversal.fold_over_mesh(visit, reach, group, 0, starts, active, None, None)
     return found
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from minirt.mlx.memory import Headless
+from minirt.mlx.headless import Headless
 from minirt.mlx.recording import COMMANDS, RecordedLine, add_recording
 from tests import processes
 from tests.paths import PACKAGE, ROOT

@@ -21,7 +21,7 @@ from gmpy2 import const_pi, cos, mpfr, sin
 from minirt.element import fields_of
 from minirt.fields import Angle, Direction, Length, Lengths, Point
 from minirt.lanes import Vec
-from minirt.rendering.queries.certificates import seeded
+from minirt.rendering.queries.nearest_point import seeded
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary, DoubleDouble, unit
 from tests.oracle.numbers import Along, Array, Number, in_digits

@@ -34,7 +34,7 @@ from minirt.rendering.kernels import (
 from minirt.rendering.notes import NO_GENERIC_KERNEL
 from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
-from minirt.rendering.packing.visibility import SMALL
+from minirt.rendering.packing.light_buffers import SMALL
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Light, ParallelLight, Scene, parse

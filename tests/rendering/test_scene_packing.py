@@ -18,7 +18,8 @@ from minirt.materials import Checker, Specular
 from minirt.rendering.frame import frame_rays
 from minirt.rendering.packing import packed_shapes, shape_arrays, visibility
 from minirt.rendering.packing.packed_shapes import extents_from
-from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_shapes
+from minirt.rendering.packing.runs import differing_shapes
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.view import View
 from minirt.rendering.packing.visibility import CHUNK, BinnedShapes, Bins
 from minirt.rendering.renderer import PRECISIONS, Renderer

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import minirt
-from minirt.scene import parser
+from minirt.scene import examples
 from tests.paths import SCENES
 
 
@@ -36,7 +36,7 @@ def test_a_saved_example_looks_the_same_elsewhere(name: str, tmp_path: Path, mon
 def test_a_folder_that_no_line_can_name_keeps_the_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "with blanks"
     folder.symlink_to(SCENES)
-    monkeypatch.setattr(parser, "FOLDERS", (folder,))
+    monkeypatch.setattr(examples, "FOLDERS", (folder,))
     scene = minirt.example("sky")
     assert scene.file == folder / "sky.rt"
     assert np.array_equal(minirt.render(scene, 8, 6).array, minirt.render(minirt.load(SCENES / "sky.rt"), 8, 6).array)
@@ -45,6 +45,6 @@ def test_a_folder_that_no_line_can_name_keeps_the_names(tmp_path: Path, monkeypa
 def test_an_unknown_name_and_missing_scenes_are_errors(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(minirt.FileError, match="did you mean gallery-chess"):
         minirt.example("galery-chess")
-    monkeypatch.setattr(parser, "FOLDERS", (tmp_path,))
+    monkeypatch.setattr(examples, "FOLDERS", (tmp_path,))
     with pytest.raises(minirt.FileError, match="not installed"):
         minirt.example()

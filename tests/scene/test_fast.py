@@ -20,7 +20,7 @@ from minirt.fields import Direction, Field, Three
 from minirt.fields.scalars import FARTHEST, LONGEST, NUMBER, Scalar
 from minirt.kernel import plain_lines
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.scene import describe, element_reader, fast, parse, parser
+from minirt.scene import describe, fast, line_reader, parse
 from minirt.scene.lines import Log, line_from
 from minirt.scene.parser import read_lines
 from tests.scene.conftest import exact, no_plain_lines, read_by_both
@@ -65,7 +65,7 @@ COMPONENTS += ["0" * LONGEST]
 def test_the_fast_path_reads_plain_lines(line: str) -> None:
     (element,) = fast.read([line], MANY)
     log = Log("test.rt", lenient=False)
-    diagnosed = parser.read_line(line_from(1, line), {}, log)
+    diagnosed = line_reader.read_line(line_from(1, line), {}, log)
     assert element is not None
     assert diagnosed is not None
     assert exact(element) == exact(diagnosed)
@@ -75,7 +75,9 @@ def test_the_fast_path_reads_plain_lines(line: str) -> None:
 @pytest.mark.parametrize("line", ["", "\r", " \t", "#", "\t#\r", f" # {SPHERE} // é\x85\v"])
 def test_the_fast_path_reads_comments_and_blank_lines(line: str) -> None:
     log = Log("test.rt", lenient=False)
-    assert list(fast.read([SPHERE, line, SPHERE], MANY))[1] == line == parser.read_line(line_from(2, line), {}, log)
+    assert (
+        list(fast.read([SPHERE, line, SPHERE], MANY))[1] == line == line_reader.read_line(line_from(2, line), {}, log)
+    )
     assert not log.errors + log.notices
 
 
@@ -125,6 +127,7 @@ END = st.lists(st.tuples(st.sampled_from([" ", "\t", "  ", ""]), st.sampled_from
 
 @given(st.lists(st.tuples(START, END), max_size=4), st.booleans())
 @example([("", [" ", "mirror:0.5"])], False)
+@example([(SPHERE, [" mirror:0.5", " #", " \r", " mirror:0.5"])], False)
 @settings(max_examples=500, deadline=None)
 def test_both_readers_agree_on_attributes(lines: list[tuple[str, list[str]]], lenient: bool) -> None:
     with suppress(SceneError):
@@ -189,11 +192,11 @@ def test_plain_lines_skip_the_diagnosing_reader() -> None:
         seen.append(line.number)
         return original(line, log)
 
-    original = element_reader.split_line
-    with patch.object(parser, "split_line", split_line):
+    original = line_reader.split_line
+    with patch.object(line_reader, "split_line", split_line):
         read_lines(sources, Log("test.rt", lenient=False))
     assert seen == [1, 2, 7003]  # the last line is blank
-    with patch.object(parser, "split_line", split_line), patch.object(fast, "read", no_plain_lines):
+    with patch.object(line_reader, "split_line", split_line), patch.object(fast, "read", no_plain_lines):
         seen.clear()
         read_lines(sources, Log("test.rt", lenient=False))
     assert len(seen) == 10_003

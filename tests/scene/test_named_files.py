@@ -260,7 +260,7 @@ def test_a_deleted_working_folder_is_no_error(folder: Path, monkeypatch: pytest.
 
 LOOKS = {"exists", "is_file", "is_dir", "is_symlink", "is_fifo", "stat", "lstat", "samefile", "owner", "resolve"}
 # These handle each OSError, or look at the files of the package.
-MAY_LOOK = {"helpers/file_io.py", "viewer/recovery.py"} | {
+MAY_LOOK = {"helpers/file_io/reading.py", "helpers/file_io/writing.py", "viewer/recovery.py"} | {
     f"kernel/machine_code/{each}.py" for each in ("cache", "fingerprint")
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.errors import Problem, excerpt, quoted
-from minirt.scene import dialects, parser
+from minirt.scene import dialects
 from minirt.scene.lines import MAX_ERRORS, MAX_ERRORS_OF_LINE, line_from
 from minirt.scene.registry import nearest_element
 from tests.scene.bad_lines import BACKGROUNDS, BLANKS, COUNTS, IDENTIFIERS, LIGHTS, NUMBERS, RANGES, SHAPES, VECTORS
@@ -124,8 +124,8 @@ def test_a_lenient_reader_gives_up_a_file_of_many_lines_without_meaning(
 ) -> None:
     """One that names its sort of line in each of them is no scene: 256 KiB of them took half a minute."""
     read: list[int] = []
-    original = parser.read_line
-    monkeypatch.setattr(parser, "read_line", lambda line, *more: read.append(line.number) or original(line, *more))
+    original = dialects.read_line
+    monkeypatch.setattr(dialects, "read_line", lambda line, *more: read.append(line.number) or original(line, *more))
     found = problems("\n".join([AMBIENT, CAMERA, *[line] * 5000]), lenient=True)
     assert found[-1].message == "too many errors: the rest of the file is not read"
     assert max(read) <= MAX_ERRORS + 3

@@ -8,8 +8,8 @@ import pytest
 
 from minirt.fields import Real
 from minirt.scene import Camera, Light, parse
-from minirt.scene.element_reader import Slot, parse_slot
 from minirt.scene.lines import Line, Log, Word
+from minirt.scene.value_reader import Slot, parse_slot
 from minirt.shapes.sphere import Sphere
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, SPHERE, WHOLE, notices, read, scene_with
 

@@ -15,9 +15,21 @@ from numba import njit
 
 from minirt.fields import unit
 from minirt.kernel.compiler.pipeline import FLAGS
-from minirt.lanes import Vec, product_error, rounded_product, two_product
+from minirt.lanes import Vec, product_error, rounded_product
 from minirt.shapes.boundary import DoubleDouble
-from minirt.shapes.compensated import along, divided, minus, pair, pairs, plus, scalar_product, times, two_sum, value
+from minirt.shapes.compensated import (
+    along,
+    divided,
+    minus,
+    pair,
+    pairs,
+    plus,
+    scalar_product,
+    times,
+    two_product,
+    two_sum,
+    value,
+)
 from minirt.shapes.frames import basis
 from minirt.shapes.quadrics import exact_ends, negative_interval
 from tests.oracle.numbers import BITS

@@ -14,7 +14,7 @@ from minirt.kernel.scene_arrays import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.shapes import MESH, Mesh, Triangle, mesh
+from minirt.shapes import MESH, Mesh, Triangle, smooth_triangle
 from tests.meshes.examples import GREY, ball, named, soup
 from tests.shapes.execution_modes import U
 from tests.shapes.regimes import random_directions, unit
@@ -91,7 +91,7 @@ def test_interpolated_normals_of_a_mesh_of_a_sphere_are_nearly_those_of_the_sphe
     corners = shape.rows()[:, :9].reshape(-1, 3, 3)
     points = np.einsum("ij,ijk->ik", shares, corners)
     packed = shape.pack()
-    normals = mesh.shading(packed, Vec(*points.T), packed.normal)
+    normals = smooth_triangle.shading(packed, Vec(*points.T), packed.normal)
     found = np.stack([normals.x, normals.y, normals.z], axis=1)
     outward = unit(points - np.array([3, 4, 5]))
     assert np.abs(np.linalg.norm(found, axis=1) - 1).max() < 1e-15
@@ -105,7 +105,9 @@ def test_barycentric_coordinates_are_those_of_the_point() -> None:
     made = soup(random, 100)
     wanted = random.dirichlet((1, 1, 1), 100)
     points = np.einsum("ij,ijk->ik", wanted, made.rows()[:, :9].reshape(-1, 3, 3))
-    assert np.allclose(np.stack(mesh.barycentric_coordinates(made.pack(), Vec(*points.T)), axis=1), wanted, atol=1e-12)
+    assert np.allclose(
+        np.stack(smooth_triangle.barycentric_coordinates(made.pack(), Vec(*points.T)), axis=1), wanted, atol=1e-12
+    )
 
 
 def test_barycentric_coordinates_stay_within_0_and_1_outside_the_triangle() -> None:
@@ -113,7 +115,7 @@ def test_barycentric_coordinates_stay_within_0_and_1_outside_the_triangle() -> N
     far = 100 * random.normal(size=(100, 3))
     with np.errstate(all="ignore"):
         for made in (soup(random, 100), soup(random, 100, 0.0)):
-            found = np.stack(mesh.barycentric_coordinates(made.pack(), Vec(*far.T)), axis=1)
+            found = np.stack(smooth_triangle.barycentric_coordinates(made.pack(), Vec(*far.T)), axis=1)
             assert (found >= 0).all()
             assert (found[:, 1:] == 0).any(axis=0).all()
             assert np.abs(found.sum(axis=1) - 1).max() < 1e-15
@@ -123,7 +125,7 @@ def test_corner_normals_that_cancel_give_the_normal_of_the_triangle() -> None:
     points, up = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([0.0, 0, 1])
     triangles = Triangles(points, np.array([[0, 1, 2]]), np.array([[[1.0, 0, 0], [-1, 0, 0], up]]))
     packed = Mesh(MeshFile("x.obj", triangles), (0, 0, 0), 1.0, GREY).pack()
-    found = mesh.shading(packed, Vec(np.array([0.5]), np.array([0.0]), np.array([0.0])), packed.normal)
+    found = smooth_triangle.shading(packed, Vec(np.array([0.5]), np.array([0.0]), np.array([0.0])), packed.normal)
     assert [found.x, found.y, found.z] == [0, 0, 1]
 
 
@@ -152,8 +154,10 @@ def test_a_mesh_must_not_reach_too_far() -> None:
         Mesh.from_arrays([[0, 0, 0], [2, 0, 0], [0, 2, 0]], [[0, 1, 2]], scale=1e15, position=(-9e14, 0, 0))
 
 
-def surface_mapping(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:
-    u, v, along_u, along_v = mesh.mapping(packed, Vec(*points.T), Vec(*normals.T))
+def surface_mapping(
+    packed: smooth_triangle.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray
+) -> list[np.ndarray]:
+    u, v, along_u, along_v = smooth_triangle.mapping(packed, Vec(*points.T), Vec(*normals.T))
     return [u, v, *(np.stack([each.x, each.y, each.z], axis=1) for each in (along_u, along_v))]
 
 
@@ -177,7 +181,7 @@ def test_tangents_are_perpendicular_to_the_interpolated_normal() -> None:
     made = named("knot")
     packed, rows = made.pack(), made.rows()
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
-    smooth = mesh.shading(packed, Vec(*points.T), packed.normal)
+    smooth = smooth_triangle.shading(packed, Vec(*points.T), packed.normal)
     normals = np.stack([smooth.x, smooth.y, smooth.z], axis=1)
     _, _, along_u, along_v = surface_mapping(packed, points, normals)
     out = unit(np.cross(along_u, along_v))
@@ -220,6 +224,6 @@ def test_points_are_projected_onto_the_plane_of_the_triangle() -> None:
     rows, random = made.rows(), np.random.default_rng(6)
     points = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), made.parts), rows[:, :9].reshape(-1, 3, 3))
     beside = points + random.normal(size=(made.parts, 1)) * rows[:, 9:12]
-    on, normal = mesh.surface(made.pack(), Vec(*beside.T))
+    on, normal = smooth_triangle.surface(made.pack(), Vec(*beside.T))
     assert np.abs(np.stack([on.x, on.y, on.z], axis=1) - points).max() < 1e-14
     assert np.array_equal(np.stack([normal.x, normal.y, normal.z], axis=1), rows[:, 9:12])

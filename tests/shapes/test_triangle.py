@@ -13,7 +13,8 @@ import pytest
 from minirt.errors import ElementError
 from minirt.kernel.trace import clearance
 from minirt.lanes import Vec
-from minirt.shapes.triangle import PackedTriangle, Triangle, may_meet, plane_normals
+from minirt.shapes.plane_normals import plane_normals
+from minirt.shapes.triangle import PackedTriangle, Triangle, may_meet
 from minirt.shapes.triangle import intersect as watertight
 from tests.shapes.execution_modes import Intersect, U, shoot
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit

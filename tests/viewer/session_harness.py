@@ -10,8 +10,9 @@ from minirt.mlx.memory import Memory
 from minirt.mlx.recording import add_recording
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
+from minirt.viewer.display.jobs import PaintJob
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.display.painter import Painter, PaintJob, paint
+from minirt.viewer.display.painter import Painter, paint
 from tests.viewer.fake import TEXT, FakeRenderer, scene
 
 SIZE = (64, 48)

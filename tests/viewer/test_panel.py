@@ -22,11 +22,12 @@ from minirt.fields import Choice, Direction, Field, Flag, Length, Lengths, MeshF
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.scene import Scene, dump, load, parse
-from minirt.scene.element_reader import lacked_by
 from minirt.scene.registry import ELEMENTS
+from minirt.scene.value_reader import lacked_by
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Painter, PaintJob
+from minirt.viewer.display.jobs import PaintJob
+from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.structure import ATTRIBUTE, choices
@@ -270,7 +271,7 @@ def test_every_attribute_is_switched_on_and_off(kind: type[Element], path: Path)
     user = user_of(kind, path, attributes=False)
     for field in fields_of(kind):
         if field.keyed and field.default is None:
-            if lacked := lacked_by(user.element, field.name):  # it is not alive before the other is there
+            if lacked := lacked_by(user.element, field):  # it is not alive before the other is there
                 user.click(f"{field.title} on")
                 assert not user.state.undo_stack
                 user.click(f"{lacked[0]} on")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from minirt.helpers import file_io
+from minirt.helpers.file_io import writing
 from minirt.scene import Scene, dump, files, load
 from minirt.viewer.recovery import KEPT, FoundChanges, Recovery, Version, find_changes, state_folder
 from tests.guards import must_end, must_not_open
@@ -146,7 +146,7 @@ def test_a_full_disk_gives_one_notice_and_the_next_change_tries_again(recovery, 
     saved = load(path).scene
     keep(recovery, grown(saved, 3.0), saved, path)
     with monkeypatch.context() as patch:
-        patch.setattr(file_io.os, "fsync", full)
+        patch.setattr(writing.os, "fsync", full)
         keep(recovery, grown(saved, 4.0), saved, path)
         keep(recovery, grown(saved, 5.0), saved, path)
     assert caplog.text.count("No space left on device") == 1

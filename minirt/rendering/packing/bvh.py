@@ -1,24 +1,18 @@
-"""Builds the BVH of a scene: bounding boxes, SAH (Wald 2007), wide nodes, and blocks of shapes as its leaves; and the
-trees of meshes, each once for its file, and their triangles, placed in the scene."""
+"""Builds the BVH of a scene: bounding boxes, SAH (Wald 2007), wide nodes, and blocks of shapes as its leaves."""
 
 from __future__ import annotations
 
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from minirt.kernel import beams
 from minirt.kernel.bvh_build import GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, LeafGroup, Tree
 from minirt.kernel.machine_code.library import bound
-from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
-from minirt.meshes import Triangles
-from minirt.meshes.triangles import BLOCK
+from minirt.kernel.scene_arrays import kind_of, row_type
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes import Kind
-from minirt.shapes.mesh import BARYCENTRIC, Mesh
 
 PARTS = 4  # into about so many a thread divides a tree before all threads divide these
 CACHE_LINE = 64  # bytes
@@ -136,117 +130,3 @@ def aligned_copy(numbers: np.ndarray) -> np.ndarray:
     flat = aligned(numbers.size, numbers.dtype)
     flat[...] = numbers.ravel()
     return flat
-
-
-# Trees of meshes.
-
-
-trees: WeakKeyDictionary[Triangles, np.ndarray] = WeakKeyDictionary()  # float32 nodes
-
-
-def pack_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> list[beams.MeshTrees | None]:
-    """Return for each kind of shape of a scene the trees of its meshes, or None for a kind that is no mesh."""
-    return [mesh_trees(shapes, kernel, run) if kind is Mesh else None for kind in shapes.group_numbers]
-
-
-def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> beams.MeshTrees:
-    """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet."""
-    owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
-    meshes: Any = [shapes.shapes[index] for index in owners]
-    nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
-    roots = np.cumsum([0, *map(len, nodes[:-1])]) // beams.NODE
-    first = shapes.first_primitive[owners]
-    rows = shapes.slots[first, 1]
-    numbers = np.zeros(rows[-1] + 1, np.int64)
-    numbers[rows] = np.arange(len(rows))
-    joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
-    return beams.MeshTrees(joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers)
-
-
-def place_of(mesh: Mesh) -> np.ndarray:
-    """Return a row of `minirt.kernel.beams.MeshTrees.places`."""
-    middle, size = space_of(mesh.triangles)
-    (centre,) = mesh.placed(middle[None])
-    apart = np.abs(centre - mesh.position).max()
-    return np.array([*mesh.turned(np.eye(3)).ravel(), *centre, 1.0 / (size * mesh.scale), apart])
-
-
-def space_of(triangles: Triangles) -> tuple[np.ndarray, float]:
-    """Return what is the origin of a tree's space in the mesh's file, and what is 1 there."""
-    low, high = triangles.box
-    return (low + high) / 2, float((high - low).max() / 2)
-
-
-def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.ndarray:
-    """Return the nodes of the tree of a mesh, which is built at the first call."""
-    if triangles not in trees:
-        middle, size = space_of(triangles)
-        boxes = np.zeros((len(triangles), 8))
-        columns = [(triangles.points[:, axis] - middle[axis]) / size for axis in range(3)]
-        for start in range(0, len(boxes), BLOCK):
-            corners = triangles.corners[start : start + BLOCK].T
-            for axis, (a, b, c) in enumerate([numbers[each] for each in corners] for numbers in columns):
-                boxes[start : start + BLOCK, axis] = -np.minimum(np.minimum(a, b), c)
-                boxes[start : start + BLOCK, 3 + axis] = np.maximum(np.maximum(a, b), c)
-        boxes[:, INDEX] = np.arange(len(boxes))
-        nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE, run=run)
-        names = nodes[:, 6]
-        names[names < 0] = len(nodes) - 1 - names[names < 0]
-        places, spare = lanes_of(leaves, beams.WIDE)
-        inside = boxes[places, INDEX].astype(np.int64)
-        del boxes
-        packed = np.zeros((len(nodes) + len(leaves), beams.NODE // beams.WIDE, beams.WIDE), np.float32)
-        packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], names
-        corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[inside]]
-        corners[spare] = beams.HUGE
-        packed[len(nodes) :, :9] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
-        packed[len(nodes) :, -1] = -1 - inside
-        trees[triangles] = aligned_copy(packed)
-    return trees[triangles]
-
-
-# Triangles of meshes.
-
-
-def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTriangles | None:
-    """Return the triangles of all meshes of a scene, or None without any. They are those of the last call where the
-    files are the same; meshes that were edited are placed anew, on all threads by `run`."""
-    if Mesh not in shapes.group_numbers:
-        return None
-    meshes = [shape for shape in shapes.shapes if isinstance(shape, Mesh)]
-    files, sizes = [mesh.triangles for mesh in meshes], [mesh.parts for mesh in meshes]
-    points, rows = np.cumsum([0, *(len(file.points) for file in files)]), np.cumsum([0, *sizes])
-    if shapes.triangles is None:
-        corners = [file.corners + first for file, first in zip(files, points, strict=False)]
-        shapes.triangles = MeshTriangles(
-            points=np.empty((points[-1], 3)),
-            normals=np.empty((rows[-1], 3)),
-            corners=np.concatenate(corners, dtype=np.int32, casting="same_kind"),
-            numbers=np.repeat(np.arange(len(meshes), dtype=np.int32), sizes),
-            turns=np.empty((len(meshes), 9)),
-            shading=joined([file.normals for file in files], sizes, np.zeros(9)),
-            uvs=joined([file.uvs for file in files], sizes, np.array(BARYCENTRIC)),
-        )
-    for number, mesh in enumerate(meshes):
-        if mesh is not shapes.placed.get(number):
-            (first, end), its, file = points[number : number + 2], slice(*rows[number : number + 2]), files[number]
-            shapes.triangles.turns[number] = turn = mesh.turned(np.eye(3)).ravel()
-            source = np.array([*turn, mesh.scale, *mesh.position]), file.points, file.flat_normals, int(first)
-            into = shapes.triangles.corners[its], shapes.triangles.points[first:end], shapes.triangles.normals[its]
-            job = bound(kernel.place_triangles, np.zeros(1, np.int64), *source, *into)
-            if run and mesh.parts >= PARALLEL:
-                run(job)
-            else:
-                job()
-            shapes.placed[number] = mesh
-    triangles: MeshTriangles = shapes.triangles
-    return triangles
-
-
-def joined(parts: list[np.ndarray | None], sizes: list[int], default: np.ndarray) -> np.ndarray:
-    """Join rows of triangles, the default for a file without any; one such row where no file has any."""
-    if all(part is None for part in parts):
-        return default[None]
-    tables = (np.tile(default, (n, 1)) if part is None else part for part, n in zip(parts, sizes, strict=True))
-    rows = [np.ascontiguousarray(table.reshape(len(table), -1)) for table in tables]
-    return rows[0] if len(rows) == 1 else np.concatenate(rows)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.element import Element, fields_of
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
 from minirt.scene import Background, Lamp, Scene
@@ -26,7 +27,6 @@ class Feature(NamedTuple):
     of_shapes: bool = True  # whether it has a row for each shape
     single: bool = False  # whether kernels in single precision have it, too
     dtype: type = np.float64
-    needs: str = ""  # without effect where a shape lacks this feature
     secondary: bool = False  # whether only reflected and refracted rays have it
 
     def rows(self, count: int, number: Any = None) -> np.ndarray:
@@ -40,8 +40,8 @@ class Feature(NamedTuple):
 FEATURES = {
     "specular": Feature("highlights", (0.0, 0.0, 0.0), single=True),
     "reflective": Feature("mirrors and glass", (0.0, 0.0, 1.0), secondary=True),
-    "media": Feature("tinted glass", (0.0, 0.0, 0.0, 1.0, 1.0, 1.0), needs="transparent", secondary=True),
-    "fresnel": Feature("Fresnel's equations", 0.0, needs="reflective", secondary=True),
+    "media": Feature("tinted glass", (0.0, 0.0, 0.0, 1.0, 1.0, 1.0), secondary=True),
+    "fresnel": Feature("Fresnel's equations", 0.0, secondary=True),
     "glow": Feature("glow", 0.0, single=True),
     "checks": Feature("checkerboards", (0.0,) * 4, single=True),
     "textures": Feature("textures", 0, dtype=np.int64),
@@ -59,7 +59,6 @@ FEATURES = {
     "fades": Feature("", (0.0, 0.0), secondary=True),
 }
 WORDS = {name: feature.words for name, feature in FEATURES.items() if feature.words}
-NEEDS = {name: feature.needs for name, feature in FEATURES.items() if feature.needs}
 SECONDARY = frozenset(name for name, feature in FEATURES.items() if feature.secondary)
 MAPS = tuple(name for name in SurfaceMaps._fields if name in FEATURES)
 COORDINATE_MAPS = frozenset(MAPS) - {"placements"}  # features that look up u and v
@@ -67,6 +66,7 @@ APERTURES = frozenset({"soft", "lens"})  # features that one sample a pixel does
 SPREAD = frozenset({"parallel", "soft"})  # features of light sources that are not points: shadow rays share no end
 DEPTH = 8  # reflections and refractions of a ray, at most
 MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
+NEEDS = {name: field.facts.needs for name, field in MATERIALS}
 ATTRIBUTES = attrgetter(*(name for name, _ in MATERIALS))
 PLAIN = (None,) * len(MATERIALS)
 
@@ -123,9 +123,22 @@ def material_features(shape: Shape) -> Iterable[str]:
     if ATTRIBUTES(shape) == PLAIN:
         return ()
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
-    found = {feature for (_, field), value in values if value is not None for feature in field.features_of(value)}
-    if COORDINATE_MAPS.isdisjoint(found):
-        found.discard("placements")
-    elif shape.map_frame():
+    of_materials = {name: field.features_of(value) for (name, field), value in values if value is not None}
+    found = {
+        feature
+        for name, features_of_it in of_materials.items()
+        if not NEEDS[name] or any(map(of_materials.get, NEEDS[name]))
+        for feature in features_of_it
+    }
+    if shape.map_frame() and not COORDINATE_MAPS.isdisjoint(found):
         found.add("placements")
-    return [feature for feature in found if NEEDS.get(feature, feature) in found]
+    return found
+
+
+def fits_single(arrays: SceneArrays) -> bool:
+    """Whether float32 will do: a BVH consists of float64, and float32 cannot count the pixels of a large picture."""
+    return (
+        arrays.bvh is None
+        and arrays.environment is None
+        and (arrays.surface_maps is None or not len(arrays.surface_maps.pictures))
+    )

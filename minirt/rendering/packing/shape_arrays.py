@@ -7,10 +7,10 @@ Primitives are what rays are tested against: one for most shapes, and one for ea
 from __future__ import annotations
 
 from bisect import bisect
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from copy import copy
 from functools import cached_property
-from itertools import accumulate, chain, groupby, islice, takewhile
+from itertools import accumulate, chain
 from typing import Any
 
 import numpy as np
@@ -20,12 +20,12 @@ from minirt.kernel.projection import MARGIN
 from minirt.kernel.scene_arrays import TRIANGLE_ROW, row_type
 from minirt.rendering.packing.features import examined
 from minirt.rendering.packing.packed_shapes import bounding_balls, column, morton_order, pack_shapes, spans
+from minirt.rendering.packing.runs import common, differing_shapes, joined
 from minirt.scene.pages import Crowd
 from minirt.shapes import ALL_KINDS, MESH, Shape
 from minirt.shapes.mesh import Mesh
 
 FIRST = np.arange(1)  # index of the first primitive
-JOINED = 32  # runs, at most
 CROWD = 50_000  # shapes, beyond which lists number them in the order of Morton's curve
 
 
@@ -118,7 +118,9 @@ class ShapeArrays:
             np.zeros(counts[group], TRIANGLE_ROW if kind is MESH else row_type(kind)) for group, kind in enumerate(used)
         )
         self.tints: dict[int, Triple] = {}  # the colours of meshes that are written
-        self.triangles: Any = None  # of meshes, and which are placed, see `minirt.rendering.packing.bvh.place_meshes`
+        self.triangles: Any = (
+            None  # of meshes, and which are placed, see `minirt.rendering.packing.mesh_trees.place_meshes`
+        )
         self.placed: dict[int, Shape] = {}
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
         for group in range(len(used)):
@@ -242,32 +244,3 @@ class ShapeArrays:
             low, high, extents[at] = spans(numbers[:, :9].reshape(-1, 3, 3))
             boxes[at, 0], boxes[at, 1] = low.T, high.T
         return boxes, extents
-
-
-def joined(runs: Sequence[Any], start: int) -> Iterator[tuple[np.ndarray, Sequence[Shape]]]:
-    """Yield runs and the indices of their shapes, from `start` on. Crowds that are packed in columns are joined: a
-    million spheres are packed in half of the time."""
-    for kind, alike in groupby(runs, lambda run: run.kind if isinstance(run, Crowd) and run.kind.columnar else None):
-        while some := [*islice(alike, JOINED if kind else 1)]:
-            run = some[0]
-            if len(some) > 1:
-                columns = {name: np.concatenate([each.columns[name] for each in some]) for name in run.columns}
-                run = Crowd(run.kind, [*chain.from_iterable(each.sources for each in some)], columns)
-            yield np.arange(start, start + len(run)), run
-            start += len(run)
-
-
-def common(runs: Sequence[Sequence[Shape]], others: Sequence[Sequence[Shape]]) -> int:
-    """Count the runs, from the first one on, that are the same objects."""
-    return sum(1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(runs, others, strict=False)))
-
-
-def differing_shapes(
-    old: Iterable[Sequence[Shape]], new: Iterable[Sequence[Shape]]
-) -> Iterator[tuple[int, Shape, Shape]]:
-    """Yield the indices at which runs of the same lengths hold different objects, the old ones and the new ones."""
-    start = 0
-    for before, after in zip(old, new, strict=True):
-        if before is not after and before != after:  # identical objects compare equal at the speed of C
-            yield from ((at, a, b) for at, (a, b) in enumerate(zip(before, after, strict=True), start) if a is not b)
-        start += len(after)

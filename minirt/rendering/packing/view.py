@@ -28,9 +28,10 @@ from minirt.rendering.packing.camera import (
     radius_and_focus,
     slopes_at_edges,
 )
+from minirt.rendering.packing.light_buffers import has_cones
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import STILL, BinnedShapes, Bins, Run, has_cones, screen_grid, square_edge
-from minirt.scene import Camera
+from minirt.rendering.packing.visibility import STILL, BinnedShapes, Bins, Run, screen_grid, square_edge
+from minirt.scene import Camera, Scene
 
 SPARE = 0.25  # of the lists of a camera that moves
 
@@ -146,7 +147,7 @@ class Rounding:
 
 def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> SceneArrays:
     """Return a scene in float32, the eye at the origin, most of which a `rounding` writes; `extents` are those of
-    `minirt.kernel.binning.BinningArrays`, (n, 4)."""
+    `minirt.kernel.rectangles.BinningArrays`, (n, 4)."""
     extents[:, :3] = arrays.colours_and_extents[:, :3]
     light_cones = np.zeros(arrays.light_cones.shape, np.float32)
     if has_cones(*light_cones.shape[:2]):
@@ -181,3 +182,10 @@ def as_single(part: Any) -> Any:
         with np.errstate(over="ignore"):
             return part.astype(np.float32)
     return part
+
+
+def all_but_pose(scene: Scene) -> tuple[Any, ...]:
+    """Return all of a scene, beside its shapes, that a camera leaves as it is when it moves and turns."""
+    seen_by = scene.camera
+    rest = scene.lights, scene.ambient, scene.background, scene.file
+    return *rest, seen_by.fov, seen_by.tone, seen_by.exposure, seen_by.lens

@@ -1,47 +1,36 @@
-"""Visibility culling: bins the shapes that the eye sees into screen tiles, and the shapes that a light sees into the
-cells of its light buffer (Haines and Greenberg, The light buffer: a shadow-testing accelerator, 1986).
+"""Visibility culling: bins the shapes that a point sees into the cells of a grid, such as the tiles of the screen.
+
+`minirt.rendering.packing.light_buffers` does so for lights.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from struct import pack_into
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from minirt.helpers import system
-from minirt.kernel.binning import CHUNK, RADIX, BinningArrays
+from minirt.kernel.binning import RADIX
 from minirt.kernel.frame import tile_count
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import Grid
-from minirt.kernel.shadow_rays import CIRCLE
+from minirt.kernel.rectangles import CHUNK, BinningArrays
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
-# Vectors across, down and forward of the six faces of a cube, in the order of `light_buffer_cell` in
-# `minirt.kernel.shadow_rays`.
-FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-# The most shapes, and the cells along an edge of a light's cube with which building and using the lists was measured to
-# take least. A mesh, which has a tree of its own, is one shape.
-SMALL = 8
-CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (1_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 # The most shapes, and pixels along an edge of the squares of the screen with which drawing was measured to take least.
 SQUARES_BY_SHAPES = ((50_000, TILE), (500_000, TILE // 2), (np.inf, TILE // 4))
 
 RECTANGLE = 32  # bytes of a rectangle of cells, and of its places in a sorted list
-COARSEST = 16  # cells along an edge of a light buffer that memory limits
-QUICKLY_BUILT = 2**28  # bytes of lists that are built within seconds
-MOST_CONES = QUICKLY_BUILT // 80  # of all lights: 40 bytes each, and a copy
 MOST_MEMBERS = 2**24  # of all cells that have every shape
 LITTLE = 1 / 64  # of lists to spare, in which shapes may move
 PARALLEL = 4096  # shapes from which on several threads project them
 
-
-NO_EXTENTS, NO_CONES = np.zeros((0, 4), np.float32), np.zeros((0, 5))
+NO_EXTENTS = np.zeros((0, 4), np.float32)
 NO_TABLES = np.zeros((0, 5), np.int64), np.zeros(0, np.int64), np.zeros(5)
 STILL = Followers(np.zeros(14), np.zeros((2, 0)), np.zeros(0), *NO_TABLES)  # arrays of which none follows
 # Fields of `BinningArrays`, and of `ShapeArrays`.
@@ -56,17 +45,6 @@ class BinnedShapes(NamedTuple):
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
     bins: Bins | None = None  # which binned them, if any
-
-
-def has_cones(lights: int, shapes: int) -> bool:
-    """Whether the bounding cones as seen from lights are made; else all are zeros, whose memory the system does not
-    allocate, and which hold all directions: cosines of angles from no axis are 0."""
-    return lights == 1 or lights * shapes <= MOST_CONES
-
-
-def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
-    """Choose the cells along an edge of the cube around a light; 1 where trying all shapes is faster than a lookup."""
-    return next(cells for most, cells in CELLS_BY_SHAPES if len(shape_arrays.listed) <= most)
 
 
 def screen_grid(half_width: float, half_height: float, place: Place, square: int = TILE) -> Grid:
@@ -87,54 +65,6 @@ def square_edge(shape_arrays: ShapeArrays, packet_width: int) -> int:
     it that is not smaller than a packet."""
     count = len(shape_arrays.listed)
     return max(packet_width, next(edge for most, edge in SQUARES_BY_SHAPES if count <= most))
-
-
-@cache
-def cube_grid(cells: int) -> Grid:
-    """The six faces of the cube around a light as a grid, so many cells along an edge.
-
-    Intervals grow by the radius of the circle around a cell. On the way from its middle to its rim |v| sqrt(1 + x^2),
-    see `minirt.kernel.projection.margin_around`, grows by less than 5 / cells; 0.01 cells are for rounding to float32.
-    """
-    half, margin = cells / 2, CIRCLE / 2 * (1 + 5 / cells) + 0.01
-    return Grid(FACES, cells, cells, half, half, half, half, margin, 6 * cells * cells)
-
-
-def seen_by_light(
-    kernel: Any,
-    shape_arrays: ShapeArrays,
-    light: np.ndarray,
-    cells: int,
-    skipped: np.ndarray,
-    radius: float = 0.0,
-    reach: float = np.inf,
-    copies: int = 1,
-    run: Run | None = None,
-    spare: Bins | None = None,
-) -> BinnedShapes:
-    """Bin the shapes within some reach into the light buffer of a light of some radius, without the planes that are
-    `skipped` (p,).
-
-    `spare` bins are used again where they fit. `TooLargeError` where there is no room for so many copies of its lists.
-    """
-    grid = cube_grid(cells)
-    fits = spare and spare.fit(shape_arrays, grid, radius, reach)
-    bins = spare if spare and fits else Bins(kernel, shape_arrays, grid, radius, reach=reach)
-    bins.seen.shown[:], bins.shown, bins.copies = 1 - skipped, skipped.tobytes(), copies
-    bins.largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    bins.see_from(tuple(light.tolist()), run)
-    if cells == 1:
-        return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
-    return BinnedShapes(bins.starts, bins.members[: bins.starts[-1, -1]], bins.seen.cones, bins)
-
-
-def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:
-    """Put all shapes into one cell; where there are more cells, none at all, because the kernel traverses a BVH."""
-    every = in_all_cells(shape_arrays, 1, skipped)
-    if cells == 1:
-        return every
-    starts = np.zeros((len(shape_arrays.tables), 6 * cells * cells + 1), np.int32)
-    return every._replace(starts=starts, members=every.members[:0])
 
 
 class Bins:

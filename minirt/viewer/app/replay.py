@@ -18,7 +18,7 @@ from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Pixels
+from minirt.viewer.display.jobs import Pixels
 
 FPS = 12  # frames per second of an animation
 TICKS = 60  # per second of simulated time

@@ -18,7 +18,8 @@ from minirt.rendering.queries.pick import Picked
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene
 from minirt.viewer.bindings import Keymap
-from minirt.viewer.display.painter import Painted, Painter, Pixels
+from minirt.viewer.display.jobs import Painted, Pixels
+from minirt.viewer.display.painter import Painter
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen, give_back_memory
 from minirt.viewer.editing.dragging import DragStart

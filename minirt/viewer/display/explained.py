@@ -16,8 +16,8 @@ from minirt.rendering.queries.explanation import Explanation, numbers, shares, w
 from minirt.rendering.queries.ray_tree import COLOURS, LightPart, RayNode
 from minirt.scene import Scene
 from minirt.scene.elements import linear_combination
+from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.display.lists import ListBox
-from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.projection import Pixel, Projection, projection_of
 from minirt.viewer.language import GAP
 

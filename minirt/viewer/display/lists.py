@@ -10,7 +10,7 @@ import numpy as np
 from minirt.mlx import Button
 from minirt.mlx.canvas import blend
 from minirt.mlx.text import draw_text, measure
-from minirt.viewer.display.painter import Pixels
+from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.language import translated
 
 TITLE_COLOUR, ROW_COLOUR = 0xFFD75F, 0xC0C0C0  # also of the chosen row, and of the others

@@ -15,9 +15,9 @@ from minirt.scene.elements import linear_combination
 from minirt.scene.names import element_name
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
+from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.display.lists import draw_on_dark
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
-from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.colours import own_colour
 from minirt.viewer.editing.dragging import MOVE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.dragging import SIZE as RESIZE

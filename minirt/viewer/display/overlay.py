@@ -8,8 +8,8 @@ from enum import IntEnum
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
+from minirt.viewer.display.jobs import Painted, Pixels
 from minirt.viewer.display.lists import MARGIN, PADDING, draw_on_dark
-from minirt.viewer.display.painter import Painted, Pixels
 from minirt.viewer.display.words import bracketed, short_numbers, title_in_words, value_in_words, values_in_words
 from minirt.viewer.editing.state import MoveAxes, State
 from minirt.viewer.editing.values import Value, values

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from minirt.rendering.packing.features import FEATURES, features
+from minirt.rendering.packing.features import FEATURES, features, fits_single
 from minirt.rendering.renderer import Renderer
-from minirt.rendering.scene_packing import fits_single
 from minirt.scene import Scene
 
 JUDGED = 16  # pictures of a movement after which its scene is judged again, which takes 1 to 5 ms

@@ -8,7 +8,8 @@ from statistics import median_low
 from typing import Any
 
 from minirt.scene import Scene
-from minirt.viewer.display.painter import Painted, Painter, PaintJob, Pixels
+from minirt.viewer.display.jobs import Painted, PaintJob, Pixels
+from minirt.viewer.display.painter import Painter
 
 FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
 DIVISORS = (1, 2, 3, 4, 6, 8, 12)  # of width and height

@@ -21,10 +21,10 @@ from minirt.viewer.bindings import Keymap, key_groups
 from minirt.viewer.display import overlay, tool_row
 from minirt.viewer.display.explained import Explained, draw_explained
 from minirt.viewer.display.ground import ground_lines
+from minirt.viewer.display.jobs import Painted, Pixels
 from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, wrap
-from minirt.viewer.display.painter import Painted, Pixels
 from minirt.viewer.display.tool_row import Tool, draw_tools, tool_at
 from minirt.viewer.editing.dragging import shows_handles
 from minirt.viewer.editing.state import State

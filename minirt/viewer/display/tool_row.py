@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from minirt.mlx.canvas import blend
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import keys_of
+from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.display.lists import PADDING, TITLE_COLOUR, darken, draw_on_dark
-from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.dragging import MOVE, SIZE, TURN
 from minirt.viewer.language import GAP, translated
 

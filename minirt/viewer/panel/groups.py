@@ -13,7 +13,7 @@ from minirt.element import Element, fields_of
 from minirt.errors import ElementError
 from minirt.fields import Angle, Colour, Direction, Field, Point
 from minirt.scene import Camera, Scene
-from minirt.scene.element_reader import lacked_by
+from minirt.scene.value_reader import lacked_by
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import seen_fields
@@ -67,7 +67,7 @@ class Groups:
     def attribute(self, field: Field) -> None:
         """Show the box of an attribute, with its rows, or the reason why it cannot be had or has no effect."""
         there = getattr(self.rows.element, field.name) is not None
-        lacked = lacked_by(self.rows.element, field.name)
+        lacked = lacked_by(self.rows.element, field)
         if lacked:
             names = f" {translated('or')} ".join(translated(each.replace("_", " ")) for each in lacked)
             reason = f"{translated('no effect without')} {names}"

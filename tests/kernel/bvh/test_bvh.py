@@ -10,7 +10,7 @@ import pytest
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel import bvh_build, bvh_nodes, bvh_single_rays, bvh_traversal, functions
+from minirt.kernel import bvh_build, bvh_collapse, bvh_nodes, bvh_single_rays, functions, ray_batches
 from minirt.kernel.bvh_nodes import (
     GROUPS,
     LEVELS,
@@ -43,7 +43,7 @@ class Interpreted:
     """The functions that build a tree, interpreted."""
 
     divide = staticmethod(bvh_build.divide)
-    collapse = staticmethod(bvh_build.collapse)
+    collapse = staticmethod(bvh_collapse.collapse)
 
 
 def build_tree(shapes: list[Shape], kernel: Any = functions) -> Tree:
@@ -317,8 +317,8 @@ def grazing_rays(seed: int) -> tuple[list[Shape], Array, Array]:
 def wrong_hits(scene: Tree, shapes: list[Shape], rays: tuple[Array, Array]) -> int:
     """Count the rays that hit something else than without boxes, both interpreted."""
     result, expected = (
-        trace(scene, *rays, bvh_traversal.trace_rays),
-        trace(brute_force(shapes), *rays, bvh_traversal.trace_rays),
+        trace(scene, *rays, ray_batches.trace_rays),
+        trace(brute_force(shapes), *rays, ray_batches.trace_rays),
     )
     return int((result[1] != expected[1]).sum())
 
@@ -357,7 +357,7 @@ def axis_rays() -> tuple[list[Shape], tuple[Array, Array]]:
 
 def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.MonkeyPatch) -> None:
     shapes, rays = axis_rays()
-    for result in (trace(build_tree(shapes), *rays), trace(build_tree(shapes), *rays, bvh_traversal.trace_rays)):
+    for result in (trace(build_tree(shapes), *rays), trace(build_tree(shapes), *rays, ray_batches.trace_rays)):
         assert result[1].tolist() == np.repeat(range(6), 4).tolist()
         assert np.array_equal(result[0], np.full(24, 9.5))
     tree = build_tree(shapes)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel import bvh_traversal
+from minirt.kernel import bvh_traversal, ray_batches
 from minirt.kernel.bvh_nodes import WIDTH
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS, Cylinder
@@ -48,7 +48,7 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int, is_cohere
     result, expected = trace(tree, *rays), trace(without_boxes(tree), *rays)
     # And the tree without boxes misses no shape that one without nodes hits.
     few = [part[: 4 * WIDTH] for part in rays]
-    assert np.array_equal(trace(brute_force(shapes), *few, bvh_traversal.trace_rays)[1], expected[1][: 4 * WIDTH])
+    assert np.array_equal(trace(brute_force(shapes), *few, ray_batches.trace_rays)[1], expected[1][: 4 * WIDTH])
     assert (expected[1] >= 0).mean() > 0.05
     assert np.array_equal(result[1], expected[1])
     hit = expected[1] >= 0

@@ -9,13 +9,8 @@ import pytest
 
 from minirt.kernel.shading.lights import TOGETHER, LightGrid, incident_light, sources_in_reach
 from minirt.lanes import Vec
-from minirt.rendering.packing import lights, visibility
-from minirt.rendering.packing.lights import (
-    Colours,
-    light_grid,
-    positions_and_intensities,
-    spot_parameters,
-)
+from minirt.rendering.packing import light_buffers, lights
+from minirt.rendering.packing.lights import Colours, light_grid, positions_and_intensities, spot_parameters
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Lamp, ParallelLight, Scene, SpotLight
 from minirt.shapes import Plane, Sphere
@@ -113,9 +108,9 @@ def test_light_that_fades_is_culled_without_changing_a_bit(precision: str, monke
         return linear
 
     def reaching(share: float) -> None:
-        monkeypatch.setattr(visibility, "seen_by_light", lambda *at: binned(*at[:6], share * at[6], *at[7:]))
+        monkeypatch.setattr(light_buffers, "seen_by_light", lambda *at: binned(*at[:6], share * at[6], *at[7:]))
 
-    culled, binned = picture(), visibility.seen_by_light
+    culled, binned = picture(), light_buffers.seen_by_light
     reaching(inf)
     monkeypatch.setattr(lights, "MANY", 10**6)
     assert np.array_equal(picture(), culled)

@@ -16,7 +16,7 @@ from minirt.lanes import Vec
 from minirt.materials import Bump
 from minirt.meshes import Triangles
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes import Mesh, Sphere, mesh
+from minirt.shapes import Mesh, Sphere, smooth_triangle
 from tests.meshes.examples import ball, named
 from tests.shapes.regimes import random_directions, unit
 
@@ -53,12 +53,14 @@ def test_smooth_points_lie_above_the_sphere_by_no_more_than_the_facets_lie_below
     for splits in range(5):
         shape = smooth_ball(splits)
         rows = shape.rows().repeat(9, axis=0)
-        packed = mesh.PackedMeshTriangle._make([*(Vec(*rows.T[i : i + 3]) for i in range(0, 21, 3)), *rows.T[21:]])
+        packed = smooth_triangle.PackedMeshTriangle._make(
+            [*(Vec(*rows.T[i : i + 3]) for i in range(0, 21, 3)), *rows.T[21:]]
+        )
         corners = rows[:, :9].reshape(-1, 3, 3)
         points = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), len(corners)), corners)
         for side in (1.0, -1.0):
             facing = Vec(side * packed.normal.x, side * packed.normal.y, side * packed.normal.z)
-            found = stacked(mesh.smooth_point(packed, Vec(*points.T), facing))
+            found = stacked(smooth_triangle.smooth_point(packed, Vec(*points.T), facing))
             if side < 0:
                 assert np.array_equal(found, points)  # from within, the facets lie before the sphere
             else:

@@ -18,7 +18,7 @@ from minirt.kernel.scene_arrays import kind_of, read
 from minirt.kernel.shadow_rays import CACHED, CIRCLE, is_close, light_buffer_cell, remember_cell
 from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
-from minirt.rendering.packing import shape_arrays, visibility
+from minirt.rendering.packing import light_buffers, shape_arrays, visibility
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import PRECISIONS, Renderer
 from minirt.rendering.scene_packing import FEW, Packing
@@ -115,7 +115,7 @@ def crowd(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> No
     if request.param:
         monkeypatch.setattr(shape_arrays, "CROWD", 0)
         monkeypatch.setattr(visibility, "SQUARES_BY_SHAPES", ((np.inf, TILE // 4),))
-        monkeypatch.setattr(visibility, "CELLS_BY_SHAPES", ((visibility.SMALL, 1), (np.inf, 256)))
+        monkeypatch.setattr(light_buffers, "CELLS_BY_SHAPES", ((light_buffers.SMALL, 1), (np.inf, 256)))
 
 
 @pytest.mark.parametrize(("kernel", "make", "seed"), BY_KERNEL)
@@ -176,7 +176,7 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(kernel: An
 
 @pytest.mark.parametrize("edge", [16, 32, 512])
 def test_cells_list_what_is_in_the_circles_around_them(edge: int) -> None:
-    random, grid, cached, met = np.random.default_rng(edge), visibility.cube_grid(edge), np.zeros(CACHED), 0
+    random, grid, cached, met = np.random.default_rng(edge), light_buffers.cube_grid(edge), np.zeros(CACHED), 0
     for way in random_directions(random, 1000):
         ball = np.array([[*way, 1e-9]])
         listed = [projected_rectangle(np.zeros(3), grid, face, ball, 0, 1, 0.0) for face in range(6)]
@@ -277,7 +277,7 @@ def cone_from_origin(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]
     arrays = ShapeArrays()
     arrays.update((Sphere((0, 0, 0), 1, (1, 2, 3)),))
     arrays.balls, arrays.first_ball = balls, np.array([0, len(balls)])
-    bins = visibility.Bins(kernel, arrays, visibility.cube_grid(2))
+    bins = visibility.Bins(kernel, arrays, light_buffers.cube_grid(2))
     bins.see_from(np.zeros(3))
     return bins.seen.cones[0, :3], float(bins.seen.cones[0, 3])
 
@@ -306,8 +306,8 @@ def test_too_many_cones_of_lights_take_no_memory_and_give_the_same_picture(
 ) -> None:
     lit = parse(SCENE + "\n".join([*BALLS, *(f"l {x},6,-6 0.1 255,255,255" for x in range(6))]), "x.rt").scene
     lights, found = [], []
-    for most in (visibility.MOST_CONES, 1):
-        monkeypatch.setattr(visibility, "MOST_CONES", most)
+    for most in (light_buffers.MOST_CONES, 1):
+        monkeypatch.setattr(light_buffers, "MOST_CONES", most)
         renderer, light = Renderer(threads=1, precision=precision), np.zeros((48, 64, 3))
         assert renderer.render(lit, np.empty((48, 64, 4), np.uint8), 1, light)
         assert renderer.packing.last is not None
@@ -320,7 +320,7 @@ def test_too_many_cones_of_lights_take_no_memory_and_give_the_same_picture(
 
 
 def test_lights_that_are_deleted_bring_the_cones_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(visibility, "MOST_CONES", 6 * (len(BALLS) + 1))
+    monkeypatch.setattr(light_buffers, "MOST_CONES", 6 * (len(BALLS) + 1))
     packing, lamps = Packing(), [f"dl 0.{y},-1,0 0.1 255,255,255" for y in range(1, 7)]
     lit = parse(SCENE + "\n".join([*BALLS, *lamps]), "x.rt").scene
     assert not packing.pack(lit, 64, 48).light_cones.any()
@@ -330,7 +330,7 @@ def test_lights_that_are_deleted_bring_the_cones_back(monkeypatch: pytest.Monkey
 def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     expected, cells = light_of(scene())
     monkeypatch.setattr(system, "SMALL", 0)
-    monkeypatch.setattr(visibility, "QUICKLY_BUILT", 20_000)
+    monkeypatch.setattr(light_buffers, "QUICKLY_BUILT", 20_000)
     coarse, fewer = light_of(scene())
     assert fewer < cells
     assert np.array_equal(coarse, expected)

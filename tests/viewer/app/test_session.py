@@ -15,10 +15,10 @@ from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.app import commands
 from minirt.viewer.app.session import Session
+from minirt.viewer.display.jobs import Painted, PaintJob
 from minirt.viewer.display.marks import GOLD, bgra
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.display.painter import Painted, PaintJob
 from minirt.viewer.display.refinement import FRAME_TIME
 from minirt.viewer.display.screen import Screen
 from minirt.viewer.editing.state import State, initial_state

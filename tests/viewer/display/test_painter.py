@@ -10,7 +10,8 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.display import painter as painter_module
-from minirt.viewer.display.painter import BackgroundPainter, Painted, PaintJob, paint
+from minirt.viewer.display.jobs import Painted, PaintJob
+from minirt.viewer.display.painter import BackgroundPainter, paint
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 

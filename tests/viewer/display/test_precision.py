@@ -9,7 +9,8 @@ import pytest
 
 from minirt.rendering.renderer import Renderer
 from minirt.scene import Scene, parse
-from minirt.viewer.display.painter import BackgroundPainter, Painted
+from minirt.viewer.display.jobs import Painted
+from minirt.viewer.display.painter import BackgroundPainter
 from minirt.viewer.display.precision import MovingPrecision
 from minirt.viewer.display.refinement import Refinement
 from tests.paths import ROOT

@@ -10,7 +10,7 @@ import pytest
 from minirt.mlx import Key
 from minirt.mlx.memory import Memory, MemoryWindow
 from minirt.viewer.app.judging import PictureJudge
-from minirt.viewer.display.painter import Painted, PaintJob
+from minirt.viewer.display.jobs import Painted, PaintJob
 from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
 from tests.viewer.fake import MARK, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness

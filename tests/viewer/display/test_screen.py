@@ -11,8 +11,8 @@ import pytest
 
 from minirt.mlx.text import measure
 from minirt.viewer.app import session
+from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, HudLevel, text_size
-from minirt.viewer.display.painter import Pixels
 from minirt.viewer.display.screen import GRID_COLOUR
 from minirt.viewer.editing.state import initial_state
 from tests.processes import run
