@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from minirt.element import Element, fields_of
-from minirt.fields import Colour, Direction, Field, Point, Three
+from minirt.fields import Colour, Direction, Field, Point
 from minirt.scene.writer import field_text
 from minirt.viewer.editing.colours import colour_word, own_colour
 from minirt.viewer.editing.state import State
@@ -44,18 +44,15 @@ def next_in_line(state: State, step: int, whole: bool = False) -> Value:
     After a part of a triple that is its next part, unless the `whole` triple was meant.
     """
     active, every = state.active, values(state.element)
-    alike = [
-        each
-        for each in every
-        if (each.channel is None) == (active.channel is None) and (each.channel or 0) < Three.width
-    ]
-    siblings = [each for each in alike if each.field == active.field]
-    index = siblings.index(active) + step if active in siblings and not whole else -1
-    if 0 <= index < len(siblings):
-        return siblings[index]
-    fields = [each for each in values_in_words(state).values() if any(value.field == each for value in every)]
+    parts = {field: words.count(",") + 1 for words, field in values_in_words(state).items()}  # that the line shows
+    shown = [each for each in every if (each.part or 0) < parts.get(each.field, 0)]
+    alike = [each for each in shown if (each.field, each.channel is None) == (active.field, active.channel is None)]
+    index = alike.index(active) + step if active in alike and not whole else -1
+    if 0 <= index < len(alike):
+        return alike[index]
+    fields = [field for field in parts if any(each.field == field for each in shown)]
     following = fields[(fields.index(active.field) + step) % len(fields)]
-    return next(each for each in every if each.field == following)
+    return next(each for each in shown if each.field == following)
 
 
 def order(field: Field) -> int:

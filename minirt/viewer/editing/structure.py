@@ -43,6 +43,7 @@ from minirt.viewer.language import GAP
 ELEMENT, ATTRIBUTE = "add", "attribute"  # what was added: kinds of changes, see `State.change`
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 STACKED = 1.5  # times the usual size on top of another shape: of a shape of the same kind
+FURTHER = "further "  # begins the titles of lights and cameras after the first
 APART = 1.2  # breadths of selected shapes from their middle to that of their copies
 SHOULDER = 0.6  # of the scene's size: how far the lamp that the first shape brings is beside and above the camera
 LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
@@ -51,7 +52,7 @@ LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 def duplicate(state: State, _amount: float, now: float) -> State:
     """Insert a copy after each selected element, and select the copies, which are beside the originals.
 
-    The active value stays: it is the next one to be changed, as it was of the original.
+    A coordinate that is active stays so, as that of the next copy will be changed, too; else the first value is active.
     """
     scene, copies, way, active = state.scene, dict[int, Element](), way_beside(state), state.active
     for index in sorted(state.chosen, reverse=True):
@@ -65,10 +66,11 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     what = names_of_chosen(state)
     others = frozenset(index_of(scene, copies[index]) for index in state.others)
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
-    state = replace(state, others=others).with_active(active)
+    state = replace(state, others=others, value_index=0)
+    state = state.with_active(active) if isinstance(active.leaf, Point) else state
     message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
     if position_value(state.element) and not others:
-        begun = "" if isinstance(active.leaf, Point) else f"{active.name}, Tab, "
+        begun = "" if isinstance(state.active.leaf, Point) else f"{state.active.name}, Tab, "
         message += f"{GAP}type = {begun}x y z"
     return state.with_message(message)
 
@@ -122,7 +124,8 @@ def choices(state: State, group: str) -> Iterator[tuple[str, State]]:
     Each comes with its title. Those that need a missing file, or cannot be so small or far away, are left out.
     """
     if group == ELEMENT:
-        ways = [(kind.title, partial(with_element, state, kind)) for kind in addable_kinds(state.scene)]
+        kinds = addable_kinds(state.scene)  # of a light and a further one, only one can be added
+        ways = [(kind.title.removeprefix(FURTHER), partial(with_element, state, kind)) for kind in kinds]
     else:
         absent = [each for each in fields_of(type(state.element)) if getattr(state.element, each.name) is None]
         ways = [(field.title, partial(with_attribute, state, field)) for field in absent if field.keyed]

@@ -221,6 +221,9 @@ def test_tab_sets_what_is_typed_and_begins_the_next_value() -> None:
     parts = played(*SPHERE, "text =", "press Tab", "text 5", "press Tab", "text 6", "press Tab")
     assert parts.state.scene.spheres[0].centre == (5, 6, 0)
     assert title(parts).startswith("centre: z, now 0: _")
+    wood = "A 0.2 255,255,255\nC 0,2,9 0,-0.1,-1 60\nL 5,5,5 0.6\nsp 0,0,0 2 255,0,0 wood:0.3\n"
+    walk = [title(played("press Tab", "press Tab", "text =", *["press Tab"] * count, text=wood)) for count in range(4)]
+    assert [each.partition(",")[0] for each in walk] == ["diameter", "wood size", "centre: x", "centre: y"]
     back = "down Shift", "press Tab", "up Shift", "text 9", "press Return"
     assert played(*SPHERE, "text 3", "press Tab", *back).state.scene.spheres[0].diameter == 9
     refused = played(*SPHERE, "text 0", "press Tab")

@@ -253,7 +253,9 @@ def test_handles_are_shown_while_the_pointer_is_near_the_selected_element() -> N
     assert (typing[:, 400:] == far[:, 400:]).all()
 
 
-def test_a_copy_keeps_the_active_value() -> None:
-    copied = played("press Tab", "press Tab", "press V", "press V", "press Ctrl+D", text=PAIR)
-    assert copied.state.active == played("press Tab", "press Tab", "press V", "press V", text=PAIR).state.active
-    assert copied.state.message == "a copy of sphere 1, beside the original    type = colour: red, Tab, x y z"
+@pytest.mark.parametrize(("steps", "active"), [(0, "diameter"), (2, "diameter"), (6, "centre: y")])
+def test_a_copy_keeps_a_coordinate_active(steps: int, active: str) -> None:
+    copied = played("press Tab", "press Tab", *["press V"] * steps, "press Ctrl+D", text=PAIR)
+    assert copied.state.active.name == active
+    begun = "" if steps == 6 else "diameter, Tab, "
+    assert copied.state.message == f"a copy of sphere 1, beside the original    type = {begun}x y z"
