@@ -24,7 +24,7 @@ from minirt.report.pictures import Step
 from minirt.report.variants import Variant
 from minirt.scene import Scene
 
-FEW, PAIRS = 5, 15  # of frames, of the scene as it is and of the variant, in turn: at least, and at most
+LEAST_PAIRS, PAIRS = 5, 15  # of frames, of the scene as it is and of the variant, in turn: at least, and at most
 
 
 class Part(NamedTuple):
@@ -50,7 +50,7 @@ class Ablation:
     """Measures variants of a scene against the scene as it is."""
 
     def __init__(self, scene: Scene, width: int, height: int, threads: int, seconds: float) -> None:
-        """`seconds` that the frames of a variant take, at most, unless `FEW` take longer."""
+        """`seconds` that the frames of a variant take, at most, unless `LEAST_PAIRS` take longer."""
         self.scene, self.threads, self.seconds = scene, threads, seconds
         self.pixels = np.zeros((height, width, 4), np.uint8)
         self.draw = frame(Renderer(threads), scene, self.pixels)
@@ -59,7 +59,7 @@ class Ablation:
     def parts(self, variants: Sequence[Variant], step: Step) -> Iterator[Part]:
         """Yield the scene as it is, and each variant; `step` is called with the name of each before it is measured."""
         self.draw()
-        runs = [run for (run,) in take_turns([self.draw], FEW, PAIRS, self.seconds)]
+        runs = [run for (run,) in take_turns([self.draw], LEAST_PAIRS, PAIRS, self.seconds)]
         if not all(variant.without for variant in variants):
             step("compiling the scene as it is")
             self.compile_s = compile_seconds(self.scene)
@@ -77,7 +77,7 @@ class Ablation:
         compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
         draw()
-        turns = take_turns([self.draw, draw], FEW, PAIRS, self.seconds)
+        turns = take_turns([self.draw, draw], LEAST_PAIRS, PAIRS, self.seconds)
         changes = [change(base, other) for base, other in turns]
         low, high = of_median(changes)
         return Part(

@@ -20,7 +20,7 @@ from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.queries.stiffness import coincident, stiff_shapes
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.threads import usable_cores
-from minirt.report.ablation import PAIRS, Ablation
+from minirt.report.ablation import LEAST_PAIRS, PAIRS, Ablation
 from minirt.report.against import read
 from minirt.report.diagram import require_packages
 from minirt.report.document import PAGE, summary, write_files
@@ -36,7 +36,8 @@ from minirt.shapes import ALL_KINDS
 SEED = 20240607
 CULLING = ("brute force", "uniform")  # knobs whose pictures must be the same
 NOTHING = "Interrupted before anything was measured; no report was written."
-COMPILING, CERTIFYING = 15.0, 3.0  # seconds that a kernel, and the certificates of hits, are expected to take
+# Seconds that a kernel, the errors of a picture and the certificates of hits are expected to take.
+COMPILING, JUDGING, CERTIFYING = 15.0, 0.25, 3.0
 
 
 class Plan(NamedTuple):
@@ -47,11 +48,12 @@ class Plan(NamedTuple):
     least_error: float  # asked of automatic sampling
     pixels: int  # in which errors are measured, at most; crops that represent larger pictures
     seconds: float  # for the run times of all settings together
-    longest: float  # seconds of processor time of a thread, see `SettingRenderer`
+    longest: float  # seconds of processor time of a thread, see `SettingRenderer`; less where all would take too long
+    total: float = inf  # seconds that all may take, unless that left no more than one run of two samples
 
 
 FULL = Plan(1024, 64, 0.0005, 2**20, 60.0, 2.0)
-QUICK = Plan(256, 32, 0.001, 2**17, 12.0, 0.4)
+QUICK = Plan(256, 32, 0.001, 2**17, 6.0, 0.4, 30.0)
 
 
 class Measurement:
@@ -79,7 +81,10 @@ class Measurement:
     def announcement(self) -> str:
         """Compile a kernel that can draw the scene if there is none, and tell what begins and how long it takes."""
         missing = self.stage.missing_kernels(self.wanted)
-        self.start, self.seconds = perf_counter(), self.expected(self.stage.frame_seconds())
+        once = self.stage.frame_seconds()
+        while self.expected(once) > self.plan.total and self.stage.longest > 2 * once:
+            self.stage.longest /= 1.25
+        self.start, self.seconds = perf_counter(), self.expected(once)
         time = f"about {in_words(self.seconds)} where nothing else runs"
         if missing:
             time += f", and up to {in_words(missing * COMPILING)} to compile {counted(missing, 'kernel')}"
@@ -88,11 +93,13 @@ class Measurement:
 
     def expected(self, once: float) -> float:
         """Return the seconds that all is expected to take; `once` is the time of a frame."""
-        plan, share = self.plan, min(1.0, self.plan.pixels / (self.size[0] * self.size[1]))
+        plan, longest = self.plan, self.stage.longest
+        share = min(1.0, plan.pixels / (self.size[0] * self.size[1]))
         works = [once * setting.knob.work(setting.value) for setting in self.wanted]
-        drawn = sum(work for work in works if work <= LEFT_OUT * plan.longest)
-        turns = max(plan.seconds, FEW * sum(work for work in works if work <= plan.longest))
-        parts = sum(2 * PAIRS * once + (0.0 if each.without else COMPILING) for each in self.variants)
+        drawn = sum(work + JUDGING for work in works if work <= LEFT_OUT * longest)
+        turns = max(plan.seconds, FEW * sum(work for work in works if work <= longest))
+        part = max(2 * LEAST_PAIRS * once, min(2 * PAIRS * once, plan.seconds / len(works)))
+        parts = sum(part + (0.0 if each.without else COMPILING) for each in self.variants)
         return once * share * plan.samples + drawn + turns + CERTIFYING + parts
 
     def run(self, other: Findings | None) -> None:

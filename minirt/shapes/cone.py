@@ -58,10 +58,9 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
     in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
     interval around that plane. The result is cut to the heights between apex and base: as with the cylinder there is no
-    crack at the rim, and none at the apex. A steep ray meets the double cone in every case; for one along the axis
-    rounding may deny that, and the whole interval between apex and base is left. For a ray beside a generator t is
-    counted from the height of the apex: its deepest point is known badly, and where it passes the apex closely its
-    distance from there counts.
+    crack at the rim, and none at the apex. A ray that is steeper, or hardly flatter, counts t from the plane between
+    the nappes: its deepest point is known badly, and from there a hit beside the apex would be known as badly as one at
+    the base.
     """
     p, d = own_point(cone, origin), own_direction(cone, direction)
     rise = cone.slope * d.z
@@ -71,10 +70,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
     b = p.x * d.x + p.y * d.y - reach * rise
     per_a = 1.0 / a
     first, last = quadrics.slab(p.z, d.z, 0.0, cone.height)
-    parallel = fabs(a) <= quadrics.PARALLEL * steepness
-    start = quadrics.clamped_minimum(per_a, b, first, last)
-    if rarely(parallel):
-        start = where(parallel, -p.z * (1.0 / d.z), start)
+    steep = a < quadrics.PARALLEL * steepness
+    start = where(steep, -p.z * (1.0 / d.z), quadrics.clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = cone.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise

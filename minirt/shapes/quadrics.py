@@ -48,7 +48,7 @@ from minirt.shapes.compensated import (
 )
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
-PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a straight line of the surface differs
+PARALLEL = 2.0**-2  # share of its steepness by which a ray may be flatter than the side that it is still beside
 SQUARED = 64.0  # squares of the unit roundoff by which a pair of about 1 may be off
 BESIDE = 4.0  # unit roundoffs of a distance, within which two intervals meet
 SHELL = (

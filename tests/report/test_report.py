@@ -46,7 +46,7 @@ DOCUMENTS = {"report.html", "report.md", "report.json", "diagram.svg", "referenc
 
 def plan_little(patch: pytest.MonkeyPatch) -> Clock:
     """Use a plan with little work, and a simulated clock that only rendering moves on."""
-    plan = QUICK._replace(samples=64, most=4, least_error=0.01, seconds=0.0, longest=inf, pixels=8 * SIDE**2)
+    plan = QUICK._replace(samples=64, most=4, least_error=0.01, seconds=0.0, longest=inf, total=inf, pixels=8 * SIDE**2)
     patch.setattr(measure, "QUICK", plan)
     return simulate_clock(patch)
 

@@ -12,10 +12,10 @@ import pytest
 
 import minirt
 from minirt.scene import Camera, Scene
-from minirt.shapes import KINDS, Kind, Shape
+from minirt.shapes import KINDS, Cone, Kind, Shape, quadrics
 from tests.seeds import RUN
 from tests.shapes.execution_modes import Intersect, compiled, on_arrays, surfaces
-from tests.shapes.regimes import Array
+from tests.shapes.regimes import GREY, Array, log_uniform, random_directions, random_perpendiculars, unit
 from tests.stability import mutants
 from tests.stability.rays import ANY, Pose, pose, rays, sent_on
 from tests.stability.verdicts import BOUND, off, wrong
@@ -77,3 +77,26 @@ def test_answers_are_exact_and_no_surface_is_hit_again(kind: Kind) -> None:
 def test_a_wrong_formula_is_found(name: str, kind: Kind) -> None:
     with np.errstate(all="ignore"):  # its answers may be anything
         assert any(complaints(kind, mutants.EVERY[name][0], seed=RUN + i, shapes=4) for i in range(12)), RUN
+
+
+def off_beside_apexes(seed: int) -> float:
+    """The greatest backward error of hits beside the apexes of cones, of rays nearly along generators."""
+    random, found = np.random.default_rng(seed), []
+    for _ in range(64):
+        axis, height, slope = random_directions(random), log_uniform(random, 1e-6, 1e6), log_uniform(random, 0.1, 10)
+        cone = Cone((0, 0, 0), tuple(axis.tolist()), float(2 * slope * height), float(height), GREY)
+        aside = random_perpendiculars(random, np.tile(axis, (RAYS, 1)))
+        lean = log_uniform(random, 2.0**-9, 0.5, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
+        directions = unit(axis - slope * np.sqrt(1 + lean) * aside)
+        through = slope * height * log_uniform(random, 1e-6, 1, RAYS, 1) * aside
+        origins = through - height * random.choice([0, 0.1, 1, 30], (RAYS, 1)) * directions
+        t = on_arrays([cone], origins[None], directions[None])[0]
+        errors = off(cone, origins, directions, np.where(np.isfinite(t), t, np.nan))
+        found.append(np.nanmax(errors, initial=0.0))
+    return max(found)
+
+
+def test_hits_beside_an_apex_are_exact_for_rays_nearly_along_the_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert off_beside_apexes(RUN) <= BOUND, RUN
+    monkeypatch.setattr(quadrics, "PARALLEL", 2.0**-8)
+    assert off_beside_apexes(RUN) > BOUND, RUN

@@ -6,9 +6,9 @@ samples by contrast. Where they are far from those of the probes, a pilot of few
 Its error corrects the plan, and all other packets are drawn: in portions where a time is given, since each tells how
 fast the next one is.
 
-What an estimate may be wrong by is added before it is compared with the goal. Probes take a tenth of the time, and no
-pixel takes more than `MOST_SAMPLES`. The picture depends on the error that is asked for alone, or on how fast the
-portions were.
+What an estimate may be wrong by is added before it is compared with the goal, and its standard error before it is
+told. Probes take a fifth of the time at most, and no pixel takes more than `MOST_SAMPLES`. The picture depends on the
+error that is asked for alone, or on how fast the portions were.
 
 Limit: features smaller than a pixel that no sample met may be missing in the picture and in the estimate.
 """
@@ -26,8 +26,7 @@ from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, SampleTable, plan_of
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.sampling.packets import Packets, cost
 
-PROBES = 0.1  # share of samples that probes take
-LEAST_PROBES = 4  # in a sweep
+PROBES = 0.2  # share of samples that probes take, at most
 REFERENCES = 2  # samples of a probe beside those that are drawn, as a multiple of them
 FAR = 2.0  # ratio of planned samples to those of the last probes from which on there is another pilot
 PILOTS = 4  # at most
@@ -63,7 +62,7 @@ class AutoSampler:
         start = perf_counter()
         goal = error * error * self.numbers  # infinite for a huge error
         packets = self.packets
-        probes = packets.choose(max(PROBES / (1 + REFERENCES) * packets.count, LEAST_PROBES))
+        probes = packets.choose(PROBES / (1 + REFERENCES) * packets.count)
         errors = self.sweep(probes, np.zeros(len(probes), np.uint8), is_probed=True)
         self.carry_out(self.positions[:1], ALL_PACKETS, NO_ERRORS, packets.count)
         packets.learn(self.classify(), probes, errors)
@@ -104,8 +103,7 @@ class AutoSampler:
         chances = packets.chances(samples)
         wanted = packets.count + cost(samples, packets.sizes)
         each = REFERENCES * float(packets.sizes * chances @ samples)
-        number = max(float(PROBES * wanted - self.probed) / each, LEAST_PROBES)
-        pilot = packets.choose(number, chances)
+        pilot = packets.choose(float(PROBES * wanted - self.probed) / each, chances)
         packets.correct(samples, pilot, self.sweep(pilot, packets.wanted(samples)[pilot], is_probed=True))
 
     def draw_more(self, some: np.ndarray, samples: np.ndarray) -> None:

@@ -99,8 +99,9 @@ def estimated_error(
 # Measured on scenes drawn at random: c grows about threefold from class to class.
 EXPECTED = 3.0 ** np.arange(1 - CLASSES, 1)  # ratios of c, to that of the highest class
 EDGE_ERROR = 0.04  # c of the highest class, for each pixel of a packet; about the upper quartile
+LEAST_PROBES, MOST_PROBES = 4, 1000  # in a sweep
 PRIOR = 4.0  # probes that what is expected counts as: c of a class, or the sum of the errors of a pilot
-SPREAD = 4.0  # standard deviation of the error of a packet by what is expected of it, at least
+SPREAD = 2.0  # standard deviation of the error of a packet by what is expected of it, at least
 CERTAINTY = 2.0  # standard errors of the estimate that are added to it
 EVENLY = 0.6  # share of the pilot that is chosen evenly
 LEAST_SHARE = 1 / 4  # of what uniform samples would be, for each packet
@@ -168,9 +169,9 @@ class Packets:
         self.doubt = 0.0  # standard error of the estimated sum of squared errors, as a share of it
 
     def choose(self, number: float, chances: np.ndarray | None = None) -> np.ndarray:
-        """Choose about so many packets at random, evenly or in proportion to the chances of classes: one of each run of
-        packets whose chances have the same sum."""
-        number = max(1, min(round(number), self.count))
+        """Choose about so many packets at random for probes, evenly or in proportion to the chances of classes: one of
+        each run of packets whose chances have the same sum."""
+        number = min(max(round(number), LEAST_PROBES), MOST_PROBES, self.count)
         places = (np.arange(number) + self.random[:number]) / number
         if chances is None:
             return (places * self.count).astype(np.int64)
@@ -224,8 +225,9 @@ class Packets:
         return (places_of(samples)[self.classes] + self.random).astype(np.uint8)
 
     def outcome(self) -> tuple[float, int, float]:
-        """The average number of samples of a packet, the greatest, and the sum of squared errors."""
+        """The average number of samples of a packet, the greatest, and the sum of squared errors with its standard
+        error."""
         found = np.bincount(self.levels * np.int64(CLASSES) + self.classes, minlength=len(COUNTS) * CLASSES)
         found = found.reshape(-1, CLASSES)  # packets of each level and class
         mean = float(COUNTS @ found.sum(axis=1)) / self.count
-        return mean, int(COUNTS[self.levels.max()]), float(COUNTS**-ERROR_EXPONENT @ found @ self.c)
+        return mean, int(COUNTS[self.levels.max()]), float(COUNTS**-ERROR_EXPONENT @ found @ self.c) * (1 + self.doubt)

@@ -16,8 +16,8 @@ from minirt.rendering.frame import COUNTS
 from minirt.rendering.outcome import MOST_SAMPLES, Outcome
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.sampling import packets as sampling
-from minirt.rendering.sampling.auto import LEAST_PROBES, PROBES, REFERENCES, AutoSampler
-from minirt.rendering.sampling.packets import CLASSES, Packets
+from minirt.rendering.sampling.auto import PROBES, REFERENCES, AutoSampler
+from minirt.rendering.sampling.packets import CLASSES, LEAST_PROBES, Packets
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Cylinder, Plane, Sphere
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
@@ -101,7 +101,7 @@ def test_the_true_error_is_as_requested_and_as_estimated(name: str, requested: f
     true = rms(np.clip(linear, 0, 1) - reference(name))
     assert reached.error <= requested
     assert reached.error / true > 0.6  # so small a picture has few probes, and doubt leans to one side
-    assert reached.error / true < 3 or reached.most == 1  # what is expected weighs as much as probes of one sample
+    assert reached.error / true < 3 or reached.samples < 1.1  # what is expected weighs as much as probes of one sample
     assert true < EXCESS * requested
     assert true > requested / 5 or reached.most <= 4
     assert 1 <= reached.samples <= reached.most
@@ -221,7 +221,7 @@ def excesses(seed: int, pictures: int = 120) -> np.ndarray:
         drawn = COUNTS[grid.levels]
         shares.append(sampler.probed / (grid.count + drawn.sum() + LEAST_PROBES * REFERENCES * drawn.max()))
         found.append(sqrt((c * COUNTS[grid.levels] ** -1.5).mean()) / goal)
-    assert np.median(shares) < 0.12, "probes take a tenth"
+    assert np.median(shares) < 1.1 * PROBES, "probes take more than their share"
     return np.array(found)
 
 
