@@ -144,7 +144,12 @@ BINDINGS = (
     once(BUILD, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
     once(CHANGE, "grow", "increase the active value", "+", "Shift+wheel up"),
     once(CHANGE, "shrink", "decrease the active value", "-", "Shift+wheel down"),
-    once(CHANGE, "type value", "type the active value: 3.5 Enter, or = -3 Enter, = *=2 Enter, = +=0.5 Enter; Tab: and the next", "="),
+    once(
+        CHANGE,
+        "type value",
+        "type the active value: 3.5 Enter, or = -3 Enter, = *=2 Enter; Tab: and the next",
+        "=",
+    ),
     once(CHANGE, "next value", "next value: diameter, height, colour, ..., position, direction", "V"),
     once(CHANGE, "previous value", "previous value", "Shift+V"),
     once(CHANGE, "choose colour", "colour, from a list of words", "U"),

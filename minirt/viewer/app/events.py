@@ -97,9 +97,8 @@ class EventDispatcher:
                 is_busy = session.pressed or (self.panel and self.panel.is_open)
                 near = not is_busy and screen.is_on_tab(x, y, NEAR)
                 tool = None if session.pressed or screen.list_box else screen.tool_at(x, y)
-                if (near, tool) != (screen.has_tab, screen.tool):
-                    screen.has_tab, screen.tool = near, tool
-                    session.refresh()
+                screen.has_tab, screen.tool = near, tool
+                session.refresh()  # handles may come or go, too
             case _:
                 handler(*arguments)
 

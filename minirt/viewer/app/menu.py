@@ -15,7 +15,7 @@ MENU = {  # its rows: actions, and what they are called there
     "add": "add here >",
     "choose colour": "colour >",
     SECOND_COLOUR: "second colour >",
-    "add attribute": "add an attribute >",
+    "add attribute": "material or attribute >",
     "duplicate": "duplicate",
     "delete": "delete",
     "drop": "drop onto what lies beneath",

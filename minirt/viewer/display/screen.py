@@ -22,6 +22,7 @@ from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, TEXT_COLOUR, HudLevel, wrap
 from minirt.viewer.display.tool_row import Tool, draw_tools, tool_at
+from minirt.viewer.editing.handles import shows_handles
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value
 from minirt.viewer.language import translated
@@ -134,7 +135,8 @@ class Screen:
         scale, size = self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        handles = self.handles and not keys_held and not self.list_box  # which may be about something small
+        is_free = not keys_held and not self.list_box  # which may be about something small
+        handles = self.handles and is_free and shows_handles(state, self.window.pointer, self.size, scale)
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
         row = self.explained, handles, self.handles, self.handle_kind, self.tool
         contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout

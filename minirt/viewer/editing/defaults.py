@@ -60,13 +60,13 @@ def one_digit(length: float) -> float:
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
     """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
 
-    What has no surface hangs in front of a surface there, at the size of a new shape, so that a lamp lights it.
+    What has no surface hangs half of the size of a new shape in front of a surface there, so that a lamp lights it.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     right, up, _ = camera_frame(state.scene.camera)
     middle = aim.point
     if aim.normal and not issubclass(kind, Shape):
-        middle = linear_combination(1.0, aim.point, aim.size, aim.normal)
+        middle = linear_combination(1.0, aim.point, aim.usual / 2, aim.normal)
     radius = one_digit(aim.size) / 2 if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]

@@ -9,8 +9,9 @@ from minirt.element import Element
 from minirt.fields import Length, Lengths, Triple
 from minirt.scene.elements import Camera, linear_combination
 from minirt.viewer.editing.motion import WORLD_AXES
-from minirt.viewer.editing.projection import Pixel, Projection, extent
+from minirt.viewer.editing.projection import Pixel, Projection, extent, projection_of
 from minirt.viewer.editing.rigid import can_turn
+from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value, values
 
 AXES = tuple(WORLD_AXES.values())
@@ -19,6 +20,7 @@ LEAST = 200  # pixels of a window with room for handles
 REACH, NEAR = 64.0, 8.0  # pixels, times the scale: of arrows, and from a handle to a pointer that grabs it
 BOX, RING, SQUARE = 1.35, 0.75, 0.4  # times REACH: distance of boxes, radius of rings, distance of the square
 CORNERS = 48  # of a ring
+AROUND = 2.0  # times REACH: from an element to a pointer for which its handles are shown
 
 
 class Handle(NamedTuple):
@@ -61,6 +63,19 @@ def handles_of(element: Element, view: Projection, scale: float, several: bool =
     for (axis, (x, y, z)), value in zip(enumerate(AXES), lengths, strict=False):
         add(SIZE, axis, (BOX * x, BOX * y, BOX * z), value=value)
     return [each for each in found if kind in ("", each.kind) or (kind == MOVE and each.kind == SLIDE)]
+
+
+def shows_handles(state: State, pointer: tuple[int, int], size: tuple[int, int], scale: float) -> bool:
+    """Whether the pointer is so near to the selected element that its handles are shown, or on no pixel so far.
+
+    While it is elsewhere they would hide small things.
+    """
+    view, around = projection_of(state.scene.camera, *size), extent(state.element)
+    middle = view.pixel(around[0]) if around else None
+    if not around or not middle or pointer == (0, 0):
+        return True
+    radius = around[1] * view.width / (2 * view.depth(around[0]) * hypot(*view.right))
+    return hypot(pointer[0] - middle[0], pointer[1] - middle[1]) < AROUND * REACH * scale + radius
 
 
 def handle_at(handles: list[Handle], x: float, y: float, scale: float) -> Handle | None:

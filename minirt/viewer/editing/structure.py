@@ -13,7 +13,7 @@ from math import copysign
 
 from minirt.element import Element, fields_of
 from minirt.errors import ElementError
-from minirt.fields import Field, MeshField, Triple
+from minirt.fields import Field, MeshField, Point, Triple
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Lamp, Scene
 from minirt.scene.names import element_name, named_block, own_name, renamed
@@ -33,8 +33,11 @@ APART = 1.2  # breadths of selected shapes from their middle to that of their co
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """Insert a copy after each selected element, and select the copies, which are beside the originals."""
-    scene, copies, way = state.scene, dict[int, Element](), way_beside(state)
+    """Insert a copy after each selected element, and select the copies, which are beside the originals.
+
+    The active value stays: it is the next one to be changed, as it was of the original.
+    """
+    scene, copies, way, active = state.scene, dict[int, Element](), way_beside(state), state.active
     for index in sorted(state.chosen, reverse=True):
         element = state.scene.elements[index]
         # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
@@ -46,9 +49,11 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     what = names_of_chosen(state)
     others = frozenset(index_of(scene, copies[index]) for index in state.others)
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
-    state = replace(state, others=others, value_index=0)
+    state = replace(state, others=others).with_active(active)
     message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
-    message += f"{GAP}type = x y z: its position" if position_value(state.element) and not others else ""
+    if position_value(state.element) and not others:
+        begun = "" if isinstance(active.leaf, Point) else f"{active.name}, Tab, "
+        message += f"{GAP}type = {begun}x y z"
     return state.with_message(message)
 
 

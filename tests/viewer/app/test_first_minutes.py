@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from minirt.fields import Triple
 from minirt.mlx.text import measure
@@ -109,7 +110,7 @@ def test_three_numbers_are_the_position_where_one_number_is_active() -> None:
 
 @pytest.mark.parametrize(("beside", "value"), [((0, -4), "diameter"), ((0, 4), "x"), ((1, -4), "z"), ((1, 4), "z")])
 def test_a_click_on_a_number_of_the_line_on_top_begins_to_type_it(beside: tuple[int, int], value: str) -> None:
-    """`beside`: columns from the start (0) or the end (1) of the words of the centre; a comma is part of what it ends."""
+    """`beside`: columns from the start (0) or the end (1) of the words of the centre; a comma ends a value."""
     lines = "resize 1280x720", "press Tab", "press Tab"
     session = played(*lines, text=PAIR)
     shown = [title_in_words(session.state.element), *values_in_words(session.state)]
@@ -236,3 +237,23 @@ def test_undo_after_lists_and_several_leads_to_the_bytes_of_the_start() -> None:
     session = play(*lines, *["press Ctrl+Z"] * 4)
     opened: Scene = scene()
     assert dump(session.state.scene) == dump(opened) == TEXT
+
+
+def test_handles_are_shown_while_the_pointer_is_near_the_selected_element() -> None:
+    def frame(*lines: str) -> NDArray[np.uint8]:
+        session = played("resize 640x480", "press Tab", "press Tab", *lines, text=PAIR)
+        return session.screen.frame[100:].copy()
+
+    near, far = frame("move 250,230"), frame("move 600,400")
+    assert (near != far).any()
+    assert (near == frame("move 260,220")).all()
+    assert (far == frame("move 600,380")).all()
+    assert (near == frame()).all(), "while the pointer was nowhere so far"
+    typing = frame("move 250,230", "text 2")
+    assert (typing[:, 400:] == far[:, 400:]).all()
+
+
+def test_a_copy_keeps_the_active_value() -> None:
+    copied = played("press Tab", "press Tab", "press V", "press V", "press Ctrl+D", text=PAIR)
+    assert copied.state.active == played("press Tab", "press Tab", "press V", "press V", text=PAIR).state.active
+    assert copied.state.message == "a copy of sphere 1, beside the original    type = colour: red, Tab, x y z"
