@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.compare import lighting
-from minirt.compare.geometry import Seen, changed_scene, on_cap, see, slopes
+from minirt.compare.changed_shapes import changed_scene
+from minirt.compare.geometry import Seen, on_cap, see, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.search import CAMERA, GEOMETRIC, Case, differences
 from minirt.compare.table import FREE, OURS, TABLE, Guess

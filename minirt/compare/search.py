@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from minirt.compare import lighting
-from minirt.compare.geometry import SHAPES, Floats, Seen, changed_scene, frame, see, see_each, slopes
+from minirt.compare.changed_shapes import SHAPES, changed_scene
+from minirt.compare.geometry import Floats, Seen, frame, see, see_each, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene

@@ -16,7 +16,7 @@ from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.scene_arrays import read
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame import frame_rays
-from minirt.rendering.packing import packed_shapes, shape_arrays, visibility
+from minirt.rendering.packing import packed_shapes, runs, shape_arrays, visibility
 from minirt.rendering.packing.packed_shapes import extents_from
 from minirt.rendering.packing.runs import differing_shapes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -139,7 +139,7 @@ def test_adding_and_removing_pack_only_the_page_that_they_change(
 
 def test_shapes_that_nobody_asks_for_are_packed_without_being_made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fast, "MANY_LINES", 0)
-    monkeypatch.setattr(shape_arrays, "JOINED", 2)
+    monkeypatch.setattr(runs, "JOINED", 2)
     lines = [f"sp {i},0,9 1 {i % 256},0,255" for i in range(4 * PAGE_LENGTH)]
     first = ["A 1 1,1,1", "C 0,0,0 0,0,1 70", "L 0,9,0 1 255,255,255", "pl 0,-9,0 0,1,0 9,9,9"]
     scene = parse("\n".join([*first, *["#"] * (PAGE_LENGTH - len(first)), *lines])).scene

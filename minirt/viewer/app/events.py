@@ -9,15 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from minirt.errors import MlxError
-from minirt.mlx.events import MODIFIER_KEYS, Button, Event
+from minirt.mlx.events import Button, Event
 from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.explaining import choose_row
-from minirt.viewer.app.holding import advance, hold, release
+from minirt.viewer.app.holding import advance
 from minirt.viewer.app.judging import PictureJudge
+from minirt.viewer.app.keyboard import Keyboard
 from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import Mouse
-from minirt.viewer.app.open_help import HELP, help_takes
+from minirt.viewer.app.open_help import help_takes
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import BEGUN, EMPTY, Typing
 from minirt.viewer.bindings import Binding
@@ -32,7 +33,6 @@ NO_PANEL = "the panel needs a window of its own, and slimgui: pip install 'minir
 BESIDE = 30  # pixels from the pointer on a tool to the list that it opens
 BELOW = 3  # sizes of text from the top to a list beside the panel
 NEAR = 3.0  # sizes of the tab of the panel: a pointer so close to it shows it
-REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
 
 class EventDispatcher:
@@ -44,14 +44,14 @@ class EventDispatcher:
         self.typing = Typing(session)
         self.judge = PictureJudge(session)
         self.choosing = Choosing(session, self.perform)
+        self.keyboard = Keyboard(session, self.typing, self.choosing, self.perform)
         self.panel: Panel | None = None  # once it was opened
-        self._unbound: int | None = None  # the key without a binding that is down: it types the next character
         self._tick_hook = self.as_hook(self.on_tick)
         mlx, window = session.mlx, session.window
         handlers: dict[Event, Callable[..., None]] = {
             Event.EXPOSE: session.update,
-            Event.KEY_PRESS: self.on_press,
-            Event.KEY_RELEASE: self.on_release,
+            Event.KEY_PRESS: self.keyboard.on_press,
+            Event.KEY_RELEASE: self.keyboard.on_release,
             Event.BUTTON_PRESS: self.on_button,
             Event.BUTTON_RELEASE: lambda button, _x, _y: self.mouse.on_release(button),
             Event.MOTION_NOTIFY: self.mouse.on_motion,
@@ -63,7 +63,7 @@ class EventDispatcher:
         }
         for event, handler in handlers.items():
             mlx.mlx_hook(window, event, 0, self.as_hook(partial(self.offer, event, handler)), None)
-        mlx.mlx_text_hook(window, self.as_hook(partial(self.offer, "text", self.on_press)))
+        mlx.mlx_text_hook(window, self.as_hook(partial(self.offer, "text", self.keyboard.on_press)))
         mlx.mlx_drop_hook(window, self.as_hook(self.on_drop))
         mlx.mlx_resize_hook(window, self.as_hook(self.on_resize))
         mlx.mlx_wake_hook(session.display, self.as_hook(self.on_wake))
@@ -123,27 +123,6 @@ class EventDispatcher:
         elif not (is_open and tool.action in LISTS):
             self.choosing.perform_at((x + BESIDE, y), tool.action)
 
-    def on_press(self, code: int | str) -> None:
-        """A key goes down, or a character was typed."""
-        session = self.session
-        if isinstance(code, str):  # one or more characters; Shift may be part of typing them
-            for character in code:
-                self.on_character(character)
-            return
-        session.keymap.follow(session.window.letter_at)
-        session.screen.tool = None
-        pressed = session.keymap.find(code, session.modifiers)
-        self._unbound = None if pressed or code in MODIFIER_KEYS else code
-        if help_takes(session, code, pressed) or self.typing.takes(code) or self.choosing.takes(code, pressed):
-            return
-        if pressed:  # any other key that does something closes them
-            self.typing.end()
-            self.choosing.end()
-            if pressed.held:
-                hold(session, pressed, code)
-            else:
-                self.perform(pressed)
-
     def on_button(self, button: int, x: int, y: int) -> None:
         """A mouse button goes down, or the wheel turns."""
         if self.session.screen.help:
@@ -154,31 +133,6 @@ class EventDispatcher:
         self.typing.end()
         self.choosing.end()
         self.mouse.on_press(button, x, y)
-
-    def on_character(self, character: str) -> None:
-        """A character was typed: of a value, or one that a binding names."""
-        session = self.session
-        if self.typing.text:
-            self.typing.on_text(character)
-            return
-        binding, key = session.keymap.find(character), self._unbound
-        if session.screen.help and (not binding or binding.action != HELP):
-            return
-        if character.isascii() and character.isdigit():
-            self.choosing.end()
-            self.typing.begin(character)
-        elif binding:
-            self.choosing.end()
-            if binding.action not in REPEATED or key is None:
-                self.perform(binding)
-            elif key not in session.held_keys:
-                hold(session, binding, key, is_typed=True)
-
-    def on_release(self, code: int) -> None:
-        """A key goes up: its last steps are done, and a still picture is requested."""
-        release(self.session, code)
-        self._unbound = None if code == self._unbound else self._unbound
-        self.session.update()
 
     def on_tick(self) -> None:
         """A sixtieth of a second passed while a key is held, the panel is busy, or words wait for their picture."""

@@ -16,7 +16,8 @@ from minirt.viewer.bindings import Binding
 from minirt.viewer.display.marks import LENGTH as ARROW_LENGTH
 from minirt.viewer.display.marks import SIZE, Icon, arrow_tip, arrows, visible_icons
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, handle_at, handles_of, pull
+from minirt.viewer.editing.dragging import DRAGS, PIXEL_CENTRE, DragStart, pull
+from minirt.viewer.editing.handles import handle_at, handles_of
 from minirt.viewer.editing.motion import APPROACHING, approach, in_reach, look_at
 from minirt.viewer.editing.placing import AHEAD, aim, aim_at_top
 from minirt.viewer.editing.projection import Aim, position_of

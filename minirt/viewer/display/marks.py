@@ -19,8 +19,8 @@ from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.display.lists import draw_on_dark
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.editing.colours import own_colour
-from minirt.viewer.editing.dragging import MOVE, SLIDE, TURN, Handle, handles_of
-from minirt.viewer.editing.dragging import SIZE as RESIZE
+from minirt.viewer.editing.handles import MOVE, SLIDE, TURN, Handle, handles_of
+from minirt.viewer.editing.handles import SIZE as RESIZE
 from minirt.viewer.editing.motion import WORLD_AXES
 from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, position_of, projection_of, subtract
 from minirt.viewer.editing.state import MoveAxes, State, can_edit

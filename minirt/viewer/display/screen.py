@@ -1,32 +1,28 @@
-"""Screen: compose picture, marks and text, or a page of the help, into a frame, and bring it to the window.
-
-The help is the table of keys, grouped by what one wants to do, in columns that fit the window.
-"""
+"""Screen: compose picture, marks and text, or a page of the help, into a frame, and bring it to the window."""
 
 from __future__ import annotations
 
 import ctypes
 import sys
-from collections.abc import Iterator
 from contextlib import suppress
-from functools import lru_cache, partial
-from itertools import zip_longest
+from functools import partial
 
 import numpy as np
 
 from minirt.mlx import Mlx, MlxImage, Window
 from minirt.mlx.canvas import stretch
 from minirt.mlx.text import draw_text, measure
-from minirt.viewer.bindings import Keymap, key_groups
+from minirt.viewer.bindings import Keymap
 from minirt.viewer.display import overlay, tool_row
 from minirt.viewer.display.explained import Explained, draw_explained
 from minirt.viewer.display.ground import ground_lines
+from minirt.viewer.display.help_pages import draw_help, help_pages
 from minirt.viewer.display.jobs import Painted, Pixels
 from minirt.viewer.display.lists import ListBox, draw_list
 from minirt.viewer.display.marks import draw_marks
-from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, HudLevel, wrap
+from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, TEXT_COLOUR, HudLevel, wrap
 from minirt.viewer.display.tool_row import Tool, draw_tools, tool_at
-from minirt.viewer.editing.dragging import shows_handles
+from minirt.viewer.editing.handles import shows_handles
 from minirt.viewer.editing.state import State
 from minirt.viewer.editing.values import Value
 from minirt.viewer.language import translated
@@ -40,10 +36,6 @@ click on a value in the line on top: type it"""
 BEYOND = "outside of the saved picture"
 GRID_COLOUR = (84, 75, 68, 255)  # BGRA
 LEAST_LINES = 12  # sizes of text: in a lower window the line on top covers too much of the picture to take its clicks
-READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
-INDENT = "  "  # of keys below their title
-
-Column = tuple[str, str]  # lines of keys, titles among them, and of their help
 
 
 class Screen:
@@ -233,79 +225,3 @@ def darken_beyond(pixels: Pixels, width: int, size: int) -> None:
     text_width, text_height = measure(words := translated(BEYOND), size)
     if text_height < border and text_width + 2 * MARGIN < pixels.shape[1]:
         draw_text(pixels, pixels.shape[1] - text_width - MARGIN, height - border, words, TEXT_COLOUR, size=size)
-
-
-def draw_help(pixels: Pixels, layout: str, search: str, max_size: int, number: int) -> None:
-    """Draw a page of the help, counted from 1, over the darkened picture: the rows that contain what is searched."""
-    pixels >>= 2  # 20 times as fast as the three colours alone
-    pixels[..., 3] = 255
-    height, width = pixels.shape[:2]
-    size, pages = help_pages(layout, search, width, height, max_size)
-    number = min(number, len(pages))
-    x = MARGIN
-    for column in pages[number - 1]:
-        for text, colour in zip(column, (MESSAGE_COLOUR, TEXT_COLOUR), strict=True):
-            x += draw_text(pixels, x, MARGIN, text, colour, size=size)[0] + size
-    footer = f"search: {search}_" if search else "type to search    Esc, H, click: back to the picture"
-    if len(pages) > 1:
-        footer += f"    page {number} of {len(pages)}: arrows, wheel"
-    line = overlay.fit_width(translated(footer), width, size)
-    draw_text(pixels, MARGIN, height - MARGIN // 2 - measure(line, size)[1], line, MESSAGE_COLOUR, size=size)
-
-
-@lru_cache(maxsize=8)
-def help_pages(layout: str, search: str, width: int, height: int, max_size: int) -> tuple[int, list[list[Column]]]:
-    """Arrange the table with as few pages as readable text allows, in the largest text of so many pages.
-
-    Returns the size of the text in pixels, and the columns of each page.
-    """
-    least = min(max_size, max(READABLE[0], round(READABLE[1] * max_size), MIN_TEXT_SIZE))
-    fewest = len(arrange(layout, search, width, height, least))
-    arranged = ((size, arrange(layout, search, width, height, size)) for size in range(max_size, least - 1, -1))
-    return next((size, pages) for size, pages in arranged if len(pages) <= fewest)
-
-
-def arrange(layout: str, search: str, width: int, height: int, size: int) -> list[list[Column]]:
-    """Fill columns from top to bottom, and pages from left to right; the last line of a page says how to go on."""
-    line = measure(" ", size)[1]
-    columns = filled_columns(layout, search, width, size, (height - MARGIN * 3 // 2 - line) // line)
-    pages: list[list[Column]] = [[]]
-    for column in columns:
-        if pages[-1] and width_of([*pages[-1], column], size) > width - 2 * MARGIN:
-            pages.append([])
-        pages[-1].append(column)
-    return pages
-
-
-def filled_columns(layout: str, search: str, width: int, size: int, capacity: int) -> Iterator[Column]:
-    """Yield columns of at most `capacity` lines, but at least 3; no title is the last line of one."""
-    lines: list[tuple[str, str]] = []
-    for title, rows in key_groups(layout, search, translated):
-        for index, row in enumerate(rows):
-            block = wrapped(row, width, size)
-            if index == 0:
-                block = [*([("", "")] if lines else []), *([(title, "")] if title else []), *block]
-            if lines and len(lines) + len(block) > max(3, capacity):
-                yield joined(lines)
-                lines, block = [], [line for line in block if any(line)]
-            lines += block
-    yield joined(lines)
-
-
-def wrapped(row: tuple[str, str], width: int, size: int) -> list[tuple[str, str]]:
-    """Return the lines of a row whose texts are wrapped where they take more than their share of a narrow window."""
-    share = (width - 2 * MARGIN - 2 * size) // 5
-    widths = (part * share + 2 * MARGIN for part in (2, 3))
-    keys, help = (wrap(text, each, size).split("\n") for text, each in zip(row, widths, strict=True))
-    keys = [INDENT + keys[0].strip(), *(2 * INDENT + line.strip() for line in keys[1:])]
-    return list(zip_longest(keys, help, fillvalue=""))
-
-
-def joined(lines: list[tuple[str, str]]) -> Column:
-    """Return lines as a column."""
-    return "\n".join(keys for keys, _ in lines), "\n".join(help for _, help in lines)
-
-
-def width_of(columns: list[Column], size: int) -> int:
-    """Width of columns in pixels, with the blanks to their right."""
-    return sum(measure(text, size)[0] + size for column in columns for text in column)

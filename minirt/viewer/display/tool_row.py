@@ -17,7 +17,7 @@ from minirt.mlx.text import measure
 from minirt.viewer.bindings import keys_of
 from minirt.viewer.display.jobs import Pixels
 from minirt.viewer.display.lists import PADDING, TITLE_COLOUR, darken, draw_on_dark
-from minirt.viewer.editing.dragging import MOVE, SIZE, TURN
+from minirt.viewer.editing.handles import MOVE, SIZE, TURN
 from minirt.viewer.language import GAP, translated
 
 Stroke = tuple[tuple[float, float], ...]  # corners, right and down in a square from 0 to 1

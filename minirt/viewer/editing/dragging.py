@@ -1,4 +1,4 @@
-"""Drags of the pointer: move or turn an element, orbit, pan or turn the camera; the handles of the selected element.
+"""Drags of the pointer: move or turn an element by itself or by a handle; orbit, pan or turn the camera.
 
 All functions are pure and start from the state at the press of the button, so that the result depends on the current
 position of the pointer alone, and nothing drifts. A drag is undone as a whole.
@@ -9,31 +9,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from math import atan2, copysign, cos, degrees, hypot, pi, sin
+from math import atan2, copysign, degrees, hypot
 from typing import NamedTuple
 
 from minirt.element import Element
-from minirt.fields import Length, Lengths, Triple, clamp_length
+from minirt.fields import Triple, clamp_length
 from minirt.rendering.queries.pick import pick
 from minirt.scene.elements import Camera, linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
+from minirt.viewer.editing.handles import AXES, SLIDE, TURN, Handle
 from minirt.viewer.editing.motion import RIGHT, UPWARD, WORLD_AXES
 from minirt.viewer.editing.placing import aim, dropped, keep_standing, lowest_along, middle_of, settled
-from minirt.viewer.editing.projection import (
-    UP,
-    Pixel,
-    Projection,
-    dot,
-    extent,
-    position_of,
-    projection_of,
-    scene_centre,
-    subtract,
-)
-from minirt.viewer.editing.rigid import can_turn, shifted
+from minirt.viewer.editing.projection import UP, Pixel, Projection, dot, position_of, scene_centre, subtract
+from minirt.viewer.editing.rigid import shifted
 from minirt.viewer.editing.state import State
-from minirt.viewer.editing.values import Value, leading_decimal, values
+from minirt.viewer.editing.values import leading_decimal
 from minirt.viewer.language import GAP
 
 PIXEL_CENTRE = 0.5  # pixels
@@ -42,26 +33,6 @@ SNAP_ANGLE = 15.0  # degrees
 LEVEL = 1e-6  # in place of the slope of a level ray
 FINE = 0.1  # of a pixel or a degree, with Shift
 TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
-
-# Handles: arrows along the axes move the element, a square in two; rings turn it, boxes resize it.
-
-AXES = tuple(WORLD_AXES.values())
-MOVE, TURN, SIZE, SLIDE = "move", "turn", "size", "slide"  # kinds of handles
-LEAST = 200  # pixels of a window with room for handles
-REACH, NEAR = 64.0, 8.0  # pixels, times the scale: of arrows, and from a handle to a pointer that grabs it
-BOX, RING, SQUARE = 1.35, 0.75, 0.4  # times REACH: distance of boxes, radius of rings, distance of the square
-CORNERS = 48  # of a ring
-AROUND = 2.0  # times REACH: from an element to a pointer for which its handles are shown
-
-
-class Handle(NamedTuple):
-    """Handle of the selected element: a drag of it moves, turns or resizes the element."""
-
-    kind: str
-    axis: int  # of the scene
-    centre: Triple  # of the element
-    points: tuple[Pixel, ...]  # its place in the picture, or a ring's
-    value: Value | None = None  # of the element, that a box changes
 
 
 class DragStart(NamedTuple):
@@ -234,55 +205,3 @@ DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
     "orbit": orbit,
     "pan": pan,
 }
-
-
-def handles_of(element: Element, view: Projection, scale: float, several: bool = False, kind: str = "") -> list[Handle]:
-    """The handles of an element in the picture; none of a camera, or where the picture does not show its middle.
-
-    `several`: other elements turn about it, even if it looks the same from all sides. `kind`: those of a kind alone,
-    MOVE with SLIDE.
-    """
-    around = None if isinstance(element, Camera) else extent(element)
-    if not around or not view.pixel(around[0]) or min(view.width, view.height) < LEAST:
-        return []
-    centre = around[0]
-    reach = REACH * scale * view.depth(centre) * 2 * hypot(*view.right) / view.width
-    found: list[Handle] = []
-
-    def add(kind: str, axis: int, *offsets: Triple, value: Value | None = None) -> None:
-        pixels = tuple(filter(None, (view.pixel(linear_combination(1.0, centre, reach, each)) for each in offsets)))
-        found.extend([Handle(kind, axis, centre, pixels, value)] if pixels else [])
-
-    angles = [2 * pi * corner / CORNERS for corner in range(CORNERS + 1)]
-    for axis, way in enumerate(AXES):
-        add(MOVE, axis, way)
-        if several or can_turn(element):
-            u, v = AXES[axis - 2], AXES[axis - 1]
-            add(TURN, axis, *(linear_combination(RING * cos(angle), u, RING * sin(angle), v) for angle in angles))
-    add(SLIDE, 1, (SQUARE, 0.0, SQUARE))
-    own = [each for each in values(element) if each.inner is None]
-    single = Lengths if any(isinstance(each.leaf, Lengths) for each in own) else Length
-    lengths = (each for each in own if isinstance(each.leaf, single) and not isinstance(each.current(element), tuple))
-    for (axis, (x, y, z)), value in zip(enumerate(AXES), lengths, strict=False):
-        add(SIZE, axis, (BOX * x, BOX * y, BOX * z), value=value)
-    return [each for each in found if kind in ("", each.kind) or (kind == MOVE and each.kind == SLIDE)]
-
-
-def shows_handles(state: State, pointer: tuple[int, int], size: tuple[int, int], scale: float) -> bool:
-    """Whether the pointer is so near to the selected element that its handles are shown, or on no pixel so far.
-
-    While it is elsewhere they would hide small things.
-    """
-    view, around = projection_of(state.scene.camera, *size), extent(state.element)
-    middle = view.pixel(around[0]) if around else None
-    if not around or not middle or pointer == (0, 0):
-        return True
-    radius = around[1] * view.width / (2 * view.depth(around[0]) * hypot(*view.right))
-    return hypot(pointer[0] - middle[0], pointer[1] - middle[1]) < AROUND * REACH * scale + radius
-
-
-def handle_at(handles: list[Handle], x: float, y: float, scale: float) -> Handle | None:
-    """The handle nearest to a pointer that grabs it; None if there is none."""
-    near = [(min(hypot(a - x, b - y) for a, b in each.points), each) for each in handles]
-    distance, found = min(near, key=lambda pair: pair[0], default=(NEAR * scale, None))
-    return found if distance < NEAR * scale else None

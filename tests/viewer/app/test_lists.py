@@ -11,7 +11,7 @@ from minirt.viewer.app.menu import MENU
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox, layout_of
 from minirt.viewer.display.tool_row import TOOLS, layout, tool_at
-from minirt.viewer.editing.dragging import MOVE, SIZE, SLIDE, TURN, handles_of
+from minirt.viewer.editing.handles import MOVE, SIZE, SLIDE, TURN, handles_of
 from tests.viewer.fake import TEXT, played, scene
 
 SIZE_OF_WINDOW = 640, 480

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import minirt
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
+from minirt.viewer.display.help_pages import Column, draw_help, help_pages, width_of
 from minirt.viewer.display.jobs import Painted, PaintJob
 from minirt.viewer.display.overlay import (
     MARGIN,
@@ -29,7 +30,6 @@ from minirt.viewer.display.overlay import (
     text_size,
     wrap,
 )
-from minirt.viewer.display.screen import Column, draw_help, help_pages, width_of
 from minirt.viewer.display.words import colour_word
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state

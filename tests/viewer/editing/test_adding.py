@@ -17,11 +17,12 @@ from minirt.scene import Scene, load
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Box, Cylinder, Mesh, Shape, Sphere, Triangle
 from minirt.shapes.frames import basis
+from minirt.viewer.editing.defaults import default_element
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.placing import SHARE, aim, dropped, middle_of, stand
 from minirt.viewer.editing.projection import looked_at_distance, projection_of
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.editing.structure import ELEMENT, addable_kinds, choices, default_element
+from minirt.viewer.editing.structure import ELEMENT, addable_kinds, choices
 from tests.viewer.fake import scene
 
 HEAD = "A 0.2 255,255,255\nC 0,3,10 0,-0.2,-1 60\nL 5,9,5 0.6\n"

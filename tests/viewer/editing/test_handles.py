@@ -11,7 +11,7 @@ import pytest
 from minirt.scene import Camera
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.marks import AXIS_COLOURS, arrow_tip, arrows, bgra
-from minirt.viewer.editing.dragging import MOVE, SIZE, SLIDE, TURN, Handle, handles_of
+from minirt.viewer.editing.handles import MOVE, SIZE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.projection import Projection, projection_of, subtract
 from minirt.viewer.editing.state import State
 from tests.viewer.fake import played

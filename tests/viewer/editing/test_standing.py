@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.fields import Triple
-from minirt.viewer.editing.dragging import SIZE, handles_of
+from minirt.viewer.editing.handles import SIZE, handles_of
 from minirt.viewer.editing.projection import position_of, projection_of
 from minirt.viewer.editing.state import State
 from tests.viewer.fake import played, scene
