@@ -102,9 +102,10 @@ class Packing:
         """Whether the arrays of the last scene are those of this one, or have followed its camera."""
         if scene is last:
             return True
-        depends_on_place = arrays.lens is not None or arrays.eye_medium is not None
-        if not self.view or depends_on_place or all_but_pose(scene) != all_but_pose(last):
+        if not self.view or arrays.lens is not None or all_but_pose(scene) != all_but_pose(last):
             return False
+        if arrays.eye_medium is not None:
+            arrays.eye_medium[:] = materials.medium_at(scene.camera, self.cache["tinted"])
         return self.view.follow(scene.camera, self.run)
 
     def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
@@ -148,6 +149,7 @@ class Packing:
         trees = cached("trees", pack_trees, shapes, self.kernel, self.run)
         triangles = cached("triangles", place_meshes, shapes, self.kernel, self.run)
         of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
+        tinted = cached("tinted", materials.tinted, shapes) if "media" in used else []
         paint: Any = scene.background and scene.background.paint
         environment_key = "environment", paint, colours
         environment = (
@@ -172,7 +174,7 @@ class Packing:
             light_grid=cached(grid_key, lights.light_grid, emitted, spots),
             soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,
-            eye_medium=materials.medium_at(numbers[:3], shapes.shapes, colours) if "media" in used else None,
+            eye_medium=materials.medium_at(scene.camera, tinted) if "media" in used else None,
             smooth=cached("smooth", shapes.smooth) if "smooth" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
