@@ -30,6 +30,7 @@ from minirt.scene import Lamp, Scene
 from minirt.shapes import Mesh, Shape
 
 FEW = 4  # lights whose bins are used again
+IN_DOUBLE = "double precision: single supports neither images nor a BVH, as mirrors and glass need"
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
 
 
@@ -240,10 +241,13 @@ class Packing:
         if not self.last:
             return []
         scene, _, arrays = self.last
-        sentences = list(notes(scene, self.shape_arrays, arrays))
-        if self.precision == "single" and not fits_single(arrays):
-            sentences.insert(0, "double precision: single supports neither images nor a BVH")
-        return sentences
+        return list(notes(scene, self.shape_arrays, arrays))
+
+    @property
+    def computed_in(self) -> str:
+        """The precision of the last scene, and why it is double where single was asked for."""
+        is_other = self.precision == "single" and self.last is not None and not fits_single(self.last[2])
+        return IN_DOUBLE if is_other else f"{self.precision} precision"
 
 
 def fits_single(arrays: SceneArrays) -> bool:
