@@ -8,8 +8,9 @@ from minirt.lanes import Number, Vec, lane, minimum, rarely, save_vec, splat, wi
 
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
-LAST = 3 * 3 * TILE * TILE  # behind the light of a tile's packets, of three estimates each: that of the last rays
-SUMS = LAST + 3 * TILE  # numbers of all these
+WIDEST = 32  # rays of a packet, at most
+LAST = 3 * 3 * TILE * WIDEST  # behind the light of `TILE` packets, of three estimates each: that of the last rays
+SUMS = LAST + 3 * WIDEST  # numbers of all these
 OPAQUE = 0xFF000000  # alpha of a pixel
 CHANNELS = 4  # bytes of a pixel
 
