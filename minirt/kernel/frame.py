@@ -5,7 +5,16 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, fetch_add, store_estimate, store_packet
+from minirt.kernel.pixels import (
+    LAST,
+    PACKET_HEIGHT,
+    TILE,
+    LightSums,
+    add_to_pixels,
+    fetch_add,
+    store_estimate,
+    store_packet,
+)
 from minirt.kernel.scene_arrays import SceneArrays, vector
 from minirt.kernel.shading.lights import parts_of_lights, remember_part, remember_sample, sampled_eye
 from minirt.kernel.shading.patterns import remember_spacing
@@ -23,7 +32,7 @@ def ray_direction(camera: Any, x: float, y: float) -> Vec:
 
 
 def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
-    """Trace one sample of each pixel of the packet whose upper left pixel is x, y; `rays` are the sample's offsets."""
+    """Trace rays of the packet of pixels whose upper left one is x, y; `rays` are their offsets."""
     origin = vector(scene.camera, 0)
     if scene.lens is not None:
         origin = sampled_eye(scene, rays)
@@ -32,6 +41,25 @@ def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: in
     corner = ray_direction(scene.camera, x + scene.camera[12], y + scene.camera[13])
     direction = corner + load_vec(rays, 0)
     return incoming_radiance(scene, memory, tile, origin, unit(direction))
+
+
+def mean_radiance(
+    rows: Any, scene: SceneArrays, memory: Any, tile: int, rays: Any, row: int, x: int, y: int, light: LightSums
+) -> Vec:
+    """Trace all samples of a packet, whose rays begin at a row of `rays`, until the counter `rows` cancels the frame;
+    return the mean for each pixel, of the parts of light sources so far."""
+    zero = splat(0.0, load(rays[0], 0))
+    radiance = Vec(zero, zero, zero)
+    for turn in range(light.samples):
+        if rarely(rows[0] >= CANCELLED):
+            break
+        radiance = packet_radiance(scene, memory, tile, rays[row + turn], x, y)
+        radiance = without_non_finite(radiance, memory)
+        if rarely(light.samples * light.parts > 1):
+            add_to_pixels(radiance, light, turn)
+    if rarely(light.samples * light.parts > 1):
+        radiance = load_vec(light.sums, light.place) / (light.samples * light.parts)
+    return radiance
 
 
 def without_non_finite(radiance: Vec, memory: Any) -> Vec:
@@ -61,65 +89,60 @@ def frame(
     Any number of threads may do so at the same time, each with its own `memory` (see
     `minirt.kernel.shadow_rays.unoccluded` and `minirt.kernel.shading.lights`) and its own `sums` of samples of a tile
     (`SUMS` numbers). `pixels` (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it
-    has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of a packet's rays, less the direction
-    through the packet's upper left corner; where the scene has a lens or light sources with a size it is longer, see
-    `minirt.kernel.shading.lights`. `plan` (k, 5) has for each packet to draw its column and row among the packets,
+    has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of rays, less the direction through the upper
+    left corner of their packet; where the scene has a lens or light sources with a size it is longer, see
+    `minirt.kernel.shading.lights`. The samples of a pixel follow each other: traced together they meet the same shapes
+    more often than those of neighbours. `plan` (k, 5) has for each packet to draw its column and row among the packets,
     its first row in `rays`, its number of samples, and the first row of two reference estimates, each of as many
     samples, 0 for none. Without rows all packets take all rows of `rays`. `errors` (k,) receives the squared errors of
     packets with references, see `squared_error`. A counter set to `CANCELLED` from outside ends the frame at the next
     packet.
     """
     height, across = pixels.shape
-    packet_width = width(rays) // PACKET_HEIGHT
+    count = width(rays)
+    packet_width = count // PACKET_HEIGHT
     columns = TILE // packet_width
-    packets = columns * TILE // PACKET_HEIGHT  # of a tile
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
     is_planned = rarely(plan.shape[0] > 0)
     parts = parts_of_lights(scene)
     has_parts = scene.square < TILE
     end = plan.shape[0] if is_planned else height
+    estimates = 3 if is_planned else 1
     while True:
         top = fetch_add(rows, TILE)
         if top >= end:
             return
+        packets = min(TILE, end - top) if is_planned else columns * TILE // PACKET_HEIGHT
         for left in range(0, 1 if is_planned else across, TILE):
             tile = tile_at(scene, left, 0 if is_planned else top, across)
             empty = not has_environment(scene) and is_empty(scene, tile)
-            # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
-            # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, each in
-            # any tile, take all of their samples one after the other.
-            for outer in range(min(TILE, end - top) if is_planned else rays.shape[0] * parts):
-                item = top + outer if is_planned else -1
-                inners = planned_rays(plan, item) * parts if is_planned else packets
-                for inner in range(inners):
-                    y, x = top + inner // columns * PACKET_HEIGHT, left + inner % columns * packet_width
-                    turn, part = outer // parts, outer % parts
-                    estimate, row, sample, samples, place = 0, turn, turn, rays.shape[0], 3 * inner * width(rays)
-                    if is_planned:
-                        y, x = plan[item, 1] * PACKET_HEIGHT, plan[item, 0] * packet_width
-                        part = inner % parts
-                        estimate, row, sample, samples = planned(plan, item, inner // parts)
-                        place = estimate * ESTIMATE
-                    if y >= height or x >= across:
-                        continue
-                    if rarely(rows[0] >= CANCELLED):
-                        return
-                    if rarely(has_parts or (is_planned and inner == 0)):
-                        tile = tile_at(scene, x, y, across)
-                        empty = not has_environment(scene) and is_empty(scene, tile)
-                    if empty:
-                        radiance = background_light(scene, zero > 0.0, black, black)
-                        store_packet(pixels, linear, sums, place, x, y, radiance)
-                        continue
-                    remember_spacing(scene, memory, samples, estimate)
-                    remember_part(scene, memory, part, parts)
-                    sample, samples = sample * parts + part, samples * parts
-                    radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
-                    if rarely(samples > 1):
-                        radiance = accumulate(radiance, sums, place, sample) / samples
-                    if sample == samples - 1:
-                        store_estimate(pixels, linear, errors, sums, place, x, y, radiance, item)
+            for number in range(parts * packets * estimates):
+                turn, estimate = number // estimates, number % estimates
+                part, packet = turn // packets, turn % packets
+                item, row, samples = -1, 0, rays.shape[0]
+                y, x = top + packet // columns * PACKET_HEIGHT, left + packet % columns * packet_width
+                if is_planned:
+                    item = top + packet
+                    y, x = plan[item, 1] * PACKET_HEIGHT, plan[item, 0] * packet_width
+                    row, samples = planned(plan, item, estimate)
+                if y >= height or x >= across or samples == 0:
+                    continue
+                if rarely(has_parts or is_planned):
+                    tile = tile_at(scene, x, y, across)
+                    empty = not has_environment(scene) and is_empty(scene, tile)
+                if empty:
+                    radiance = background_light(scene, zero > 0.0, black, black)
+                    store_packet(pixels, linear, sums, LAST, x, y, radiance)
+                    continue
+                remember_part(scene, memory, part, parts)
+                remember_spacing(scene, memory, samples, estimate)
+                light = LightSums(sums, (3 * packet + estimate) * 3 * count, samples, part, parts)
+                radiance = mean_radiance(rows, scene, memory, tile, rays, row, x, y, light)
+                if rarely(rows[0] >= CANCELLED):
+                    return
+                if part == parts - 1:
+                    store_estimate(pixels, linear, errors, light, x, y, radiance, item, estimate)
 
 
 def tile_at(scene: SceneArrays, x: int, y: int, across: int) -> int:
@@ -127,18 +150,13 @@ def tile_at(scene: SceneArrays, x: int, y: int, across: int) -> int:
     return y // scene.square * tile_count(across, scene.square) + x // scene.square
 
 
-def planned_rays(plan: Any, item: int) -> int:
-    """Return the number of rays that each pixel of a packet takes by plan."""
-    return int(plan[item, 3] * (1 if plan[item, 4] == 0 else 3))
-
-
-def planned(plan: Any, item: int, turn: int) -> tuple[int, int, int, int]:
-    """Return what a packet takes when a pixel has taken `turn` rays before: the number of the estimate, the row of
-    `rays`, the number of the sample in that estimate, and the number of its samples."""
+def planned(plan: Any, item: int, estimate: int) -> tuple[int, int]:
+    """Return the first row in `rays` of an estimate of a packet, and its number of samples, which is 0 where the plan
+    has no references."""
     first, samples, reference = plan[item, 2], plan[item, 3], plan[item, 4]
-    estimate = turn // samples
-    row = first + turn if estimate == 0 else reference + turn - samples
-    return estimate, row, turn - estimate * samples, samples
+    if estimate == 0:
+        return int(first), int(samples)
+    return int(reference + (estimate - 1) * samples), int(samples if reference > 0 else 0)
 
 
 def tile_count(pixels: int, square: int = TILE) -> int:

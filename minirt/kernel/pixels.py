@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
-from minirt.lanes import Number, Vec, lane, load_vec, minimum, rarely, save_vec, width
+from minirt.lanes import Number, Vec, lane, minimum, rarely, save_vec, splat, width
 
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
-SUMS = 3 * TILE * TILE  # numbers of a tile's light
-ESTIMATE = SUMS // 4  # those after which the light of the next estimate of a planned packet is kept
+WIDEST = 32  # rays of a packet, at most
+LAST = 3 * 3 * TILE * WIDEST  # behind the light of `TILE` packets, of three estimates each: that of the last rays
+SUMS = LAST + 3 * WIDEST  # numbers of all these
 OPAQUE = 0xFF000000  # alpha of a pixel
 CHANNELS = 4  # bytes of a pixel
 
@@ -21,12 +22,33 @@ def fetch_add(counter: Any, amount: int) -> int:
     return before
 
 
-def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
-    """Add the radiance of a sample to that of the samples before it, which `sums` holds from index `start` on."""
-    if sample > 0:
-        radiance = radiance + load_vec(sums, start)
-    save_vec(radiance, sums, start)
-    return radiance
+class LightSums(NamedTuple):
+    """The light of a packet of pixels while its samples are added up."""
+
+    sums: Any  # of many packets
+    place: int  # of this one in `sums`: red of all its pixels, then green, then blue
+    samples: int  # of a pixel
+    part: int  # of the light sources, of some `parts`, that shines
+    parts: int
+
+
+def add_to_pixels(radiance: Vec, light: LightSums, turn: int) -> None:
+    """Add the radiance of rays to that of their pixels. Of all samples, those of a pixel one after the other, these are
+    the ones of a `turn`."""
+    sums, place, samples = light.sums, light.place, light.samples
+    zero, count = splat(0.0, radiance.x), width(radiance.x)
+    if turn == 0 and light.part == 0:
+        save_vec(Vec(zero, zero, zero), sums, place)
+    save_vec(radiance, sums, LAST)
+    pixel = turn * count // samples
+    begin, end = 0, (pixel + 1) * samples - turn * count  # the rays that are that pixel's
+    while begin < count:
+        end = min(end, count)
+        red, green, blue = sums[place + pixel], sums[place + count + pixel], sums[place + 2 * count + pixel]
+        for i in range(LAST + begin, LAST + end):
+            red, green, blue = red + sums[i], green + sums[i + count], blue + sums[i + 2 * count]
+        sums[place + pixel], sums[place + count + pixel], sums[place + 2 * count + pixel] = red, green, blue
+        pixel, begin, end = pixel + 1, end, end + samples
 
 
 def to_byte_range(channel: Number) -> Number:
@@ -35,23 +57,24 @@ def to_byte_range(channel: Number) -> Number:
 
 
 def store_estimate(
-    pixels: Any, linear: Any, errors: Any, sums: Any, place: int, x: int, y: int, radiance: Vec, item: int
+    pixels: Any, linear: Any, errors: Any, light: LightSums, x: int, y: int, radiance: Vec, item: int, estimate: int
 ) -> None:
-    """Store the radiance of a packet, and where references tell its squared error, that error. Its `place` in `sums` is
-    that of an estimate where `item`, the packet's row in the plan, is not negative; it is negative without a plan."""
-    if item < 0 or place == 0:
-        store_packet(pixels, linear, sums, place, x, y, radiance)
+    """Store the radiance of a packet, or in its place in the sums that of an `estimate`, of which the first, 0, is the
+    packet's. Where two references tell its squared error, store that for the packet's row in the plan, `item`."""
+    sums, place, count = light.sums, light.place, width(radiance.x)
+    if estimate == 0:
+        store_packet(pixels, linear, sums, LAST, x, y, radiance)
     if rarely(item >= 0):
         save_vec(radiance, sums, place)
-        if place == 2 * ESTIMATE:
-            errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
+        if estimate == 2:
+            errors[item] = squared_error(sums, place - 6 * count, pixels.shape[0] - y, pixels.shape[1] - x, count)
 
 
-def squared_error(sums: Any, height: int, across: int, count: int) -> float:
+def squared_error(sums: Any, place: int, height: int, across: int, count: int) -> float:
     """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its `count` pixels and channels.
 
-    `sums` has the light and two reference estimates. Where the references are independent and have
-    no bias, the product of the differences from each of them has the squared error as its mean, however large their own
+    `sums` has from `place` on the light and two reference estimates. Where the references are independent and have no
+    bias, the product of the differences from each of them has the squared error as its mean, however large their own
     errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
     """
     packet_width = count // PACKET_HEIGHT
@@ -59,8 +82,8 @@ def squared_error(sums: Any, height: int, across: int, count: int) -> float:
     for number in range(3 * count):
         pixel = number % count
         if pixel // packet_width < height and pixel % packet_width < across:
-            light = min(sums[number], 1.0)
-            one, other = min(sums[ESTIMATE + number], 1.0), min(sums[2 * ESTIMATE + number], 1.0)
+            at = place + number
+            light, one, other = min(sums[at], 1.0), min(sums[at + 3 * count], 1.0), min(sums[at + 6 * count], 1.0)
             total += (light - one) * (light - other)
     return total
 

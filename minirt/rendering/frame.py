@@ -79,12 +79,14 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
 def frame_rays(arrays: Any, samples: int) -> np.ndarray:
     """Return the rays of each of some samples of a packed scene. One sample is that from the centre of a lens, and of
     the centres of lights."""
-    rays = camera.packet_rays(arrays.camera[6:12], sample_positions(samples))
+    lanes = width(arrays.camera)
+    places = camera.by_pixel(camera.packet_places(lanes, sample_positions(samples)), samples)
+    rays = camera.packet_rays(arrays.camera[6:12], places)
     if not camera.has_apertures(arrays):
         return rays
-    lanes, variants = width(rays), camera.variants_of(samples) if samples > 1 else 1
-    places = np.zeros((1, lanes, 4)) if samples == 1 else camera.aperture_places(samples, variants, lanes, 0)
-    return camera.with_apertures(np.tile(rays, (variants, 1)), places, arrays.lens)
+    variants = camera.variants_of(samples) if samples > 1 else 1
+    discs = np.zeros((1, lanes, 4)) if samples == 1 else camera.aperture_places(samples, variants, lanes, 0)
+    return camera.with_apertures(np.tile(rays, (variants, 1)), camera.by_pixel(discs, samples), arrays.lens)
 
 
 def frame_arguments(
@@ -131,9 +133,9 @@ REFERENCE_ROWS = 256  # of the table, for one number of samples, that more than 
 
 
 class SampleTable:
-    """Sample positions (rows, pixels of a packet, 2) for packets of some levels, and where each level begins.
+    """Places of samples in a packet (rows, rays, 2) for packets of some levels, and where each level begins.
 
-    `with_places` gives each sample places in the discs of lens and lights, too: (rows, pixels, 6). Drawn samples then
+    `with_places` gives each sample places in the discs of lens and lights, too: (rows, rays, 6). Drawn samples then
     have variants, too: see `minirt.rendering.packing.camera`. There are no more variants than packets.
     """
 
@@ -169,17 +171,18 @@ class SampleTable:
 
 @lru_cache(32)
 def positions_of(count: int, drawn: int, pairs: int, pixels: int, with_places: bool) -> np.ndarray:
-    """The positions of variants of drawn samples and of their references, or also the places in lens and lights."""
+    """The places of variants of drawn samples and of their references in a packet, or also those in lens and lights."""
     # Shifts of both references of each pair, independent and the same at each call.
     shifts = random_numbers(2 * pairs * pixels * 2).reshape(2 * pairs, pixels, 2)
     lattice = sample_positions(count)
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
     positions = np.tile(sample_positions(count)[:, None], (drawn, pixels, 1)), references.reshape(-1, pixels, 2)
-    if not with_places:
-        return np.concatenate(positions)
-    places = camera.aperture_places(count, drawn, pixels, 1), camera.aperture_places(count, 2 * pairs, pixels, 2)
-    return np.concatenate([np.concatenate(positions), np.concatenate(places)], axis=-1)
+    parts = [camera.packet_places(pixels, np.concatenate(positions))]
+    if with_places:
+        discs = camera.aperture_places(count, drawn, pixels, 1), camera.aperture_places(count, 2 * pairs, pixels, 2)
+        parts.append(np.concatenate(discs))
+    return camera.by_pixel(np.concatenate(parts, axis=-1), count)
 
 
 @cache

@@ -90,7 +90,8 @@ class FrameRunner:
             if frame.scene is not self.arrays:
                 self.memories = [thread_memory(frame.scene) for _ in range(self.threads)]
             self.choice, self.arrays = self.kernels.choose(frame), frame.scene
-            self.words = [words_of((*each, self.choice.scene)) for each in self.memories]
+            scene = words_of(self.choice.scene)
+            self.words = [words_of(each) + scene for each in self.memories]
             if before is None or self.choice.entry is not before.entry:
                 self.pace = inf
         assert self.choice

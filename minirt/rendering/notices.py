@@ -32,6 +32,10 @@ def notices_about(
     try:
         if single:
             from minirt.rendering.queries.stiffness import lost_in_single
+            from minirt.rendering.scene_packing import IN_DOUBLE
+
+            if single.computed_in == IN_DOUBLE:
+                yield IN_DOUBLE
 
             for each in lost_in_single(scene, single, *size):
                 yield f"single precision cannot show {each}"
@@ -54,7 +58,7 @@ def measurements(
     renderer = settings.renderer
     place = f"region {','.join(map(str, settings.region))}, " if settings.region else ""
     sampling = "" if settings.samples == "auto" else f"{counted(settings.samples, 'sample')} a pixel, "
-    threads = f"{counted(renderer.threads, 'thread')}, {renderer.precision} precision"
+    threads = f"{counted(renderer.threads, 'thread')}, {renderer.packing.computed_in.partition(':')[0]}"
     yield f"{size[0]}x{size[1]}, {place}{sampling}{threads}: {seconds * 1e3:.1f} ms"
     yield f"rays whose light is not finite: {not_finite}"
     once = settings.replace(samples=1, error=None, time=None, linear=True, dither=False)

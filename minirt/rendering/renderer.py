@@ -76,7 +76,7 @@ class Renderer:
     def about(self) -> list[str]:
         """Sentences about how the last picture was rendered and what its kernel lacks."""
         with self.busy:
-            return [f"{counted(self.threads, 'thread')}, {self.precision} precision", *self.notes]
+            return [f"{counted(self.threads, 'thread')}, {self.packing.computed_in}", *self.notes]
 
     @property
     def notes(self) -> list[str]:

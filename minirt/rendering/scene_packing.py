@@ -31,6 +31,7 @@ from minirt.scene import Lamp, Scene
 from minirt.shapes import Mesh, Shape
 
 FEW = 4  # lights whose bins are used again
+IN_DOUBLE = "double precision: single supports neither images nor a BVH, as mirrors and glass need"
 TILES, LIGHT_BUFFERS, BOXES, BVH = "tiles", "light buffers", "boxes", "BVH"
 
 
@@ -103,9 +104,10 @@ class Packing:
         """Whether the arrays of the last scene are those of this one, or have followed its camera."""
         if scene is last:
             return True
-        depends_on_place = arrays.lens is not None or arrays.eye_medium is not None
-        if not self.view or depends_on_place or all_but_pose(scene) != all_but_pose(last):
+        if not self.view or arrays.lens is not None or all_but_pose(scene) != all_but_pose(last):
             return False
+        if arrays.eye_medium is not None:
+            arrays.eye_medium[:] = materials.medium_at(scene.camera, self.cache["tinted"])
         return self.view.follow(scene.camera, self.run)
 
     def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
@@ -149,6 +151,7 @@ class Packing:
         trees = cached("trees", pack_trees, shapes, self.kernel, self.run)
         triangles = cached("triangles", place_meshes, shapes, self.kernel, self.run)
         of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
+        tinted = cached("tinted", materials.tinted, shapes) if "media" in used else []
         paint: Any = scene.background and scene.background.paint
         environment_key = "environment", paint, colours
         environment = (
@@ -173,7 +176,7 @@ class Packing:
             light_grid=cached(grid_key, lights.light_grid, emitted, spots),
             soft=lights.sizes(sources) if "soft" in used else None,
             lens=lens,
-            eye_medium=materials.medium_at(numbers[:3], shapes.shapes, colours) if "media" in used else None,
+            eye_medium=materials.medium_at(scene.camera, tinted) if "media" in used else None,
             smooth=cached("smooth", shapes.smooth) if "smooth" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
@@ -239,7 +242,10 @@ class Packing:
         if not self.last:
             return []
         scene, _, arrays = self.last
-        sentences = list(notes(scene, self.shape_arrays, arrays))
-        if self.precision == "single" and not fits_single(arrays):
-            sentences.insert(0, "double precision: single supports neither images nor a BVH")
-        return sentences
+        return list(notes(scene, self.shape_arrays, arrays))
+
+    @property
+    def computed_in(self) -> str:
+        """The precision of the last scene, and why it is double where single was asked for."""
+        is_other = self.precision == "single" and self.last is not None and not fits_single(self.last[2])
+        return IN_DOUBLE if is_other else f"{self.precision} precision"

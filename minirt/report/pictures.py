@@ -18,7 +18,14 @@ from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width as lanes_of
 from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.kernels import ray_query
-from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
+from minirt.rendering.packing.camera import (
+    aperture_places,
+    by_pixel,
+    has_apertures,
+    packet_places,
+    packet_rays,
+    with_apertures,
+)
 from minirt.rendering.renderer import Renderer
 from minirt.report import metrics
 from minirt.report.bench import Run, is_disturbed, take_turns, timed
@@ -71,10 +78,11 @@ def reference(scene: Scene, crops: Crops, samples: int, seed: int, step: Step = 
         for start in range(0, len(places), PASS):
             some = places[start : start + PASS]
             traced = renderer.packing.pack(scene, crops.width, crops.height)
-            rays, lanes = packet_rays(traced.camera[6:12], some), lanes_of(traced.camera)
+            lanes = lanes_of(traced.camera)
+            rays = packet_rays(traced.camera[6:12], by_pixel(packet_places(lanes, some), len(some)))
             if has_apertures(traced):
-                discs = aperture_places(len(places), 1, lanes, 2 * seed + half)
-                rays = with_apertures(rays, discs[start : start + PASS], traced.lens)
+                discs = aperture_places(len(places), 1, lanes, 2 * seed + half)[start : start + PASS]
+                rays = with_apertures(rays, by_pixel(discs, len(some)), traced.lens)
             counter = renderer.runner.reset_counter()  # so that it can be cancelled
             frame = frame_arguments(traced, pixels, linear=linear, counter=counter)._replace(rays=rays)
             if crops.chosen is not None:

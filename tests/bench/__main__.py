@@ -87,7 +87,8 @@ def available_errors(paths: list[Path], setting: Setting) -> tuple[list[str], li
         return [], [f"errors: {reason}"]
 
 
-OWN = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
+YARDSTICKS = [partial(Yardstick, precision="double"), partial(Yardstick, precision="single")]
+OWN = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), *YARDSTICKS]
 MOVED = [partial(MovedShape, precision="double"), partial(MovedShape, precision="single")]
 PEERS = [Embree, Mitsuba, Tachyon, PovRay]
 WIDTH, HEIGHT = 1280, 720
@@ -108,14 +109,14 @@ def main(quick: bool) -> None:
     print(f"{processor()}, {usable_cores()} threads each.")
     print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {rounds} rounds")
     print("in which the systems take turns; the second figure is a multiple of the first row.\n", flush=True)
-    four = scenes.compared(folder)
-    compared = take_turns(systems, four, rounds, seconds)
+    compared_scenes = scenes.compared(folder)
+    compared = take_turns(systems, compared_scenes, rounds, seconds)
     print(table(compared), end="\n\n", flush=True)
 
     harder = take_turns(with_moved, scenes.harder(folder), rounds, seconds)
     print(table(harder), end="\n\n", flush=True)
 
-    started, start_reasons = starts.measured(setting, four[:3], start_rounds)
+    started, start_reasons = starts.measured(setting, compared_scenes[:3], start_rounds)
     print(f"Whole programs, until their picture of {starts.WIDTH}x{starts.HEIGHT} pixels is in a file or in a window.")
     print(f"Median of {start_rounds} starts; a cold one finds an empty cache of kernels.\n")
     print(table(started, "ms to a picture"), end="\n\n", flush=True)
@@ -124,7 +125,7 @@ def main(quick: bool) -> None:
     growth = take_turns(own, grown, grown_rounds, seconds)
     print(table(growth, "spheres in view"), end="\n\n")
 
-    antialiased, error_reasons = available_errors(four[:2], setting)
+    antialiased, error_reasons = available_errors(compared_scenes[:2], setting)
     for each in antialiased:
         print(each, end="\n\n", flush=True)
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from random import Random
 
 HERE = Path(__file__).parent
-TRIANGLES = 100_000  # of the mesh on which all systems are compared
-MESHES = {"mesh-10k": 10_000, "mesh-1M": 1_000_000}
+TRIANGLES = {"mesh": 100_000, "mesh-1M": 1_000_000}  # of the meshes on which all systems are compared
+MESHES = {"mesh-10k": 10_000}
 COUNTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
 
 FOV, ASPECT = 70.0, 16 / 9
@@ -102,10 +102,10 @@ def write(path: Path, lines: Iterator[str]) -> Path:
     return path
 
 
-def compared(folder: Path) -> list[Path]:
-    """Return the four scenes on which all systems are compared; generated ones are written into the folder."""
+def compared(folder: Path, meshes: Mapping[str, int] = TRIANGLES) -> list[Path]:
+    """Return the scenes on which all systems are compared; generated ones are written into the folder."""
     many = write(folder / "tenthousand.rt", tenthousand())
-    return [HERE / "one.rt", HERE / "fifty.rt", many, waves(folder, TRIANGLES)]
+    return [HERE / "one.rt", HERE / "fifty.rt", many, *(waves(folder, count, name) for name, count in meshes.items())]
 
 
 def harder(folder: Path, meshes: Mapping[str, int] = MESHES) -> list[Path]:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
 import minirt
+from minirt.rendering.renderer import PRECISIONS
 from tests.bench import scenes
 from tests.bench.measure import MissingError, Setting, System
 from tests.bench.peers.embree import Embree
@@ -34,7 +38,7 @@ BESIDE_THE_EYE = "cy 1,1,-18 0,0.05,1 1 30 220,90,60\n"
 LAMPS = ["0,0.5,0", "-30,40,-20", "2,0,-4"]  # beside and among the shapes
 
 
-def made(kind: type[System], folder: Path) -> System:
+def made(kind: Callable[[Setting], Any], folder: Path) -> Any:
     """Return a system; the test is skipped where it is not installed."""
     try:
         return kind(Setting(WIDTH, HEIGHT, 2, folder))
@@ -86,9 +90,10 @@ def test_tachyon_shows_as_much_light(name: str, tmp_path: Path) -> None:
     assert np.abs(picture.mean(axis=(0, 1)) - ours.mean(axis=(0, 1))).max() < 1
 
 
-def test_the_yardstick_shows_the_compared_scenes_with_any_lamp(tmp_path: Path) -> None:
-    yardstick = made(Yardstick, tmp_path)
-    *paths, mesh = scenes.compared(tmp_path)
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_the_yardstick_shows_the_compared_scenes_with_any_lamp(precision: str, tmp_path: Path) -> None:
+    yardstick = made(partial(Yardstick, precision=precision), tmp_path)
+    *paths, mesh = scenes.compared(tmp_path, {"mesh": 1000})
     paths.append(scenes.grown(tmp_path, 1000))
     for number, lamp in enumerate(LAMPS):
         paths.append(tmp_path / f"lamp-{number}.rt")

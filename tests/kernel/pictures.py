@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.kernel import frame
 from minirt.kernel import interpreted as interpreted_functions
-from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, sample_positions, thread_memory
-from minirt.rendering.packing.camera import packet_rays
+from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, frame_rays, thread_memory
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
@@ -81,7 +80,7 @@ def interpreted(
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
     traced = Packing(interpreted_functions, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
-        rays = packet_rays(traced.camera[6:12], sample_positions(samples))
+        rays = frame_rays(traced, samples)
         memory = thread_memory(traced)
         frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, NO_ERRORS, *memory, traced)
     return words.view(np.uint8).reshape(height, width, 4), light

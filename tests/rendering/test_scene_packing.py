@@ -14,7 +14,7 @@ from PIL import Image
 
 from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.scene_arrays import read
-from minirt.materials import Checker, Specular
+from minirt.materials import Checker, Glass, Specular, Tint
 from minirt.rendering.frame import frame_rays
 from minirt.rendering.packing import packed_shapes, runs, shape_arrays, visibility
 from minirt.rendering.packing.packed_shapes import extents_from
@@ -294,6 +294,22 @@ def test_arrays_follow_a_camera_that_moves_and_turns(precision: str, monkeypatch
         sum(follows(seed + i, precision) for i in range(40))
 
 
+def test_the_medium_of_the_eye_follows_it_into_tinted_glass_and_out() -> None:
+    balls = [Sphere((0, 0, z), 2, (9, 9, 9), glass=Glass(1.5, 0.9), tint=Tint((255, z, 9), 1.0)) for z in (5, 6, 9)]
+    scene, packing, media, kept = Scene((EYE, Plane((0, -9, 0), (0, 1, 0), (9, 9, 9)), *balls)), Packing(), [], 0
+    before = packing.pack(scene, 24, 16)
+    for z in (0, 4.5, 5.5, 6.5, 7.5, 9, 12):
+        moved = scene.replace(scene.camera, position=(0, 0, z))
+        arrays = packing.pack(moved, 24, 16)
+        kept, before = kept + (arrays is before), arrays  # others where lists of shapes in view need more room
+        assert np.array_equal(arrays.eye_medium, Packing().pack(moved, 24, 16).eye_medium)
+        media.append(arrays.eye_medium[1])
+    within = [media[1], media[2], media[3], media[5]]
+    assert min(within) > 0.0 == media[0] == media[4] == media[6]
+    assert media[2] == media[1] + media[3]
+    assert kept > len(media) / 2
+
+
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_a_moving_camera_takes_one_compiled_call_and_none_of_numpy(
     precision: str, monkeypatch: pytest.MonkeyPatch
@@ -325,7 +341,7 @@ def test_single_precision_draws_checkers_but_no_pictures(tmp_path: Path) -> None
     ):
         packing = Packing(precision="single")
         assert packing.pack(Scene((EYE, shape), tmp_path / "scene.rt"), 24, 16).camera.dtype == number
-        assert any("double precision" in each for each in packing.notes) is (number is np.float64)
+        assert packing.computed_in.startswith("double precision" if number is np.float64 else "single precision")
 
 
 # Shapes as structure of arrays: differences are found, and an edit writes only the shapes that it changes.

@@ -10,7 +10,7 @@ neighbouring pixels, and the dimensions of one pixel, have nothing in common.
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import chain
 from math import cos, pi, radians, sin, tan
 from operator import index
@@ -21,7 +21,6 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fields import Triple, clamp, upright
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
-from minirt.lanes import width
 from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 
@@ -128,26 +127,29 @@ def pixel_rays(camera: Camera, width: int, height: int) -> list[float]:
     return [*camera.position, *chain.from_iterable(zip(*columns, strict=True))]
 
 
-def packet_rays(steps: np.ndarray, samples: np.ndarray) -> np.ndarray:
-    """The directions of the rays of a packet for each sample, (k, 3 * width), as differences from the direction through
-    the upper left corner of the packet.
+def packet_rays(steps: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The directions of rays of a packet, (k, 3 * width), as differences from the direction through the upper left
+    corner of the packet.
 
-    `steps` (6,) are the changes in `pixel_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where
-    each pixel of a packet has its own.
+    `steps` (6,) are the changes in `pixel_rays`; `places` are those of `packet_places`.
     """
-    differences: np.ndarray = steps.reshape(2, 3).T @ packet_places(width(steps), samples)
-    return differences.reshape(len(samples), -1).astype(steps.dtype)
+    differences: np.ndarray = steps.reshape(2, 3).T @ places.swapaxes(1, 2)
+    return differences.reshape(len(places), -1).astype(steps.dtype)
 
 
 def packet_places(rays: int, samples: np.ndarray) -> np.ndarray:
-    """The x and y of each ray of a packet for each sample, in pixels from its upper left corner, (k, 2, rays)."""
-    return packet_pixels(rays) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
+    """The x and y of samples of all pixels of a packet, in pixels from its upper left corner, (k, rays, 2).
+
+    `samples` are positions in a pixel, (k, 2), or (k, rays, 2) where each pixel of a packet has its own.
+    """
+    row, column = np.divmod(np.arange(rays), rays // PACKET_HEIGHT)
+    places: np.ndarray = np.stack([column, row], axis=-1) + samples.reshape(len(samples), -1, 2)
+    return places
 
 
-@cache
-def packet_pixels(rays: int) -> np.ndarray:
-    """The x and y of the pixel of each ray within a packet, (2, rays)."""
-    return np.stack(np.divmod(np.arange(rays), rays // PACKET_HEIGHT)[::-1]).astype(np.float64)
+def by_pixel(places: np.ndarray, samples: int) -> np.ndarray:
+    """Arrange the numbers of samples, (k, rays, n), so that all `samples` of a pixel follow each other."""
+    return places.reshape(-1, samples, *places.shape[1:]).swapaxes(1, 2).reshape(places.shape)
 
 
 # The lens: a disc in the image plane, through whose points the eye looks at what is in focus.

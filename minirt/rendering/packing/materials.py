@@ -23,7 +23,7 @@ from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERI
 from minirt.rendering.packing.lights import Colours, colours_of
 from minirt.rendering.packing.ray_casting import cast
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.scene import Scene
+from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.frames import basis
 from minirt.shapes.shape import UPRIGHT, Flat, Oriented, union_of_bounds
@@ -193,11 +193,18 @@ class Reader:
 TOWARDS = Vec(*np.array([0.5773, 0.2113, 0.7887]) / np.linalg.norm([0.5773, 0.2113, 0.7887]))  # any direction will do
 
 
-def medium_at(point: np.ndarray, shapes: Iterable[Shape], colours: Colours) -> np.ndarray:
-    """Return the absorption of red, green and blue at a point, in halvings for each scene unit."""
-    total = np.zeros(3)
-    for shape in shapes:
-        if ATTRIBUTES(shape) != PLAIN and shape.tint and shape.glass and shape.glass.share and encloses(shape, point):
+def tinted(primitives: ShapeArrays) -> list[Shape]:
+    """Return the shapes of tinted glass."""
+    shapes = (shape for shape in primitives.shapes if ATTRIBUTES(shape) != PLAIN)
+    return [shape for shape in shapes if shape.tint and shape.glass and shape.glass.share]
+
+
+def medium_at(camera: Camera, tinted: Iterable[Shape]) -> np.ndarray:
+    """Return the absorption of red, green and blue at the eye, in halvings for each scene unit, by the shapes of tinted
+    glass."""
+    total, eye, colours = np.zeros(3), np.array(camera.position), colours_of(camera)
+    for shape in tinted:
+        if shape.tint and encloses(shape, eye):
             total += shape.tint.absorption(colours)
     return total
 

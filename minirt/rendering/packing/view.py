@@ -81,8 +81,9 @@ class View:
         followed = self.rounding.rounded(rays.reshape(-1, 1), (OTHER,)).reshape(1, -1) if is_single else rays
         self.rays = None if arrays.lens is not None else followed
         tables = [(a.ctypes.data, *a.shape, first, b.ctypes.data) for a, first, b in self.rounding.tables]
-        places, shifts = packet_places(width(single.camera), sample_positions(1))[0], np.append(np.zeros(4), MARGIN)
-        rounding = np.array(tables, np.int64).reshape(-1, 5), np.array(self.rounding.kinds, np.int64), shifts
+        places = np.ascontiguousarray(packet_places(width(single.camera), sample_positions(1))[0].T)
+        kinds, shifts = np.array(self.rounding.kinds, np.int64), np.append(np.zeros(4), MARGIN)
+        rounding = np.array(tables, np.int64).reshape(-1, 5), kinds, shifts
         bins.followers, bins.pack = Followers(arrays.camera, places, rays[0], *rounding), None
         bins.kernel.follow(bins.followers)
         return single

@@ -40,13 +40,17 @@ HERE = Path(__file__).parent
 
 
 class Yardstick(System):
-    name = "C++ yardstick"
-    how = "frames on the same terms as miniRT's, in single precision"
+    """The yardstick in a precision: the same source, whose lanes are as many as a register holds."""
+
+    how = "frames on the same terms as miniRT's, lists of lamps kept"
     lacks = MESH, MIRROR, GLASS
 
-    def __init__(self, setting: Setting) -> None:
+    def __init__(self, setting: Setting, precision: str = "single") -> None:
         super().__init__(setting)
-        self.program = compiled(setting.folder / "yardstick", [*HERE.glob("*.cpp")], [*HERE.glob("*.h")], self.name)
+        self.name = f"yardstick, {precision}"
+        flags = ["-DDOUBLE"] if precision == "double" else []
+        target = setting.folder / f"yardstick-{precision}"
+        self.program = compiled(target, [*HERE.glob("*.cpp")], [*HERE.glob("*.h")], self.name, *flags)
 
     def run(self, path: Path, *arguments: str) -> dict[str, float]:
         """Run the program on a scene file and return the figures that it prints."""

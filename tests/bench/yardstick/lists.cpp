@@ -5,9 +5,9 @@
 namespace {
 
 // Slopes of the tangents from the origin to a disc of a radius around (x, z).
-std::pair<float, float> tangents(float x, float z, float radius) {
-    float below = z * z - radius * radius;
-    float spread = radius * std::sqrt(x * x + below);
+std::pair<Real, Real> tangents(Real x, Real z, Real radius) {
+    Real below = z * z - radius * radius;
+    Real spread = radius * std::sqrt(x * x + below);
     return {(x * z - spread) / below, (x * z + spread) / below};
 }
 
@@ -20,9 +20,9 @@ Rectangle rectangle(const View& view, const Shape& shape) {
     bool around = false;
     for (int i = 0; i < balls; i++) {
         Point place = shape.centre + (i ? -shape.half : shape.half) * shape.axis - view.at;
-        float x = dot(place, view.right), y = dot(place, view.up), z = dot(place, view.forward);
+        Real x = dot(place, view.right), y = dot(place, view.up), z = dot(place, view.forward);
         behind += z <= -shape.radius;
-        around |= z <= shape.radius * 1.0001f;
+        around |= z <= shape.radius * Real(1.0001);
         if (around) continue;
         auto [left, right] = tangents(x, z, shape.radius);
         auto [bottom, top] = tangents(y, z, shape.radius);
@@ -42,7 +42,7 @@ std::vector<Seen> all_seen_from(Point point, const std::vector<Shape>& shapes) {
 }
 
 std::vector<int> nearest_first(const std::vector<Seen>& shapes) {
-    std::vector<std::pair<float, int>> order;
+    std::vector<std::pair<Real, int>> order;
     order.reserve(shapes.size());
     for (size_t i = 0; i < shapes.size(); i++) order.emplace_back(shapes[i].near, int(i));
     std::sort(order.begin(), order.end());

@@ -7,7 +7,7 @@ struct View { // from a point: an orthonormal frame
 };
 
 struct Rectangle { // of slopes x / z and y / z in a view
-    float left = INFINITY, right = -INFINITY, bottom = INFINITY, top = -INFINITY;
+    Real left = INFINITY, right = -INFINITY, bottom = INFINITY, top = -INFINITY;
 };
 
 struct Cells { // of a grid, both ends included; none where last < first

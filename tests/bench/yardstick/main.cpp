@@ -1,5 +1,5 @@
 // The yardstick: a miniRT written by hand with SIMD intrinsics, to show how fast one can be. It renders planes, spheres,
-// cylinders and point lights in float32, by the same method as the program, and nothing else.
+// cylinders and point lights in float32, or with -DDOUBLE in float64, by the same method as the program, and nothing else.
 //
 //     yardstick scene.rt [--size WxH] [--threads N] [--seconds S] [--ppm picture.ppm]
 //

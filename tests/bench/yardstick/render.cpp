@@ -6,7 +6,7 @@ namespace {
 
 constexpr int TILE = 16; // pixels along an edge
 constexpr int ACROSS = 4, DOWN = Lanes::count / ACROSS;
-constexpr float FAR = 1e30f;
+constexpr Real FAR = Real(1e30);
 
 View view_of(const Scene& scene) {
     bool upright = std::fabs(scene.forward.x) + std::fabs(scene.forward.z) > 0;
@@ -25,30 +25,30 @@ struct Surface {
     }
 };
 
-inline Rays normal_of(const Seen& shape, const Entry& entry, const Rays& direction, float per_radius) {
+inline Rays normal_of(const Seen& shape, const Entry& entry, const Rays& direction, Real per_radius) {
     if (!shape.is_cylinder) return Lanes(per_radius) * (shape.from + entry.t * direction);
     Lanes rise = dot(shape.axis, direction);
     Rays side = Lanes(per_radius) * (shape.from + entry.t * (direction - rise * shape.axis));
-    Point cap = (shape.along < 0 ? -1.0f : 1.0f) * shape.axis; // the one that is seen
+    Point cap = (shape.along < 0 ? -Real(1.0) : Real(1.0)) * shape.axis; // the one that is seen
     return where(entry.on_cap, all(cap), side);
 }
 
-inline Lanes level(Lanes light) { return floor(min(light, 1.0f) * 255.0f + 0.5f); }
+inline Lanes level(Lanes light) { return floor(min(light, Real(1.0)) * Real(255.0) + Real(0.5)); }
 
 } // namespace
 
 Renderer::Renderer(const Scene& scene, int width, int height)
     : scene(scene), width(width), height(height), across(width / TILE), down(height / TILE), view(view_of(scene)),
-      slope_x(scene.slope), slope_y(scene.slope * float(height) / float(width)) {
+      slope_x(scene.slope), slope_y(scene.slope * Real(height) / Real(width)) {
     for (const Plane& plane : scene.planes) heights.push_back(dot(plane.normal, scene.eye - plane.at));
     for (const Lamp& lamp : scene.lamps) shadows.emplace_back(scene, lamp);
     eye.shapes = all_seen_from(scene.eye, scene.shapes);
     if (std::any_of(eye.shapes.begin(), eye.shapes.end(), is_inside))
         throw std::runtime_error("the eye is inside of a shape: the yardstick does not render that");
-    float columns[Lanes::count], rows[Lanes::count];
+    Real columns[Lanes::count], rows[Lanes::count];
     for (int i = 0; i < Lanes::count; i++) {
-        columns[i] = float(i % ACROSS) + 0.5f;
-        rows[i] = float(i / ACROSS) + 0.5f;
+        columns[i] = Real(i % ACROSS) + Real(0.5);
+        rows[i] = Real(i / ACROSS) + Real(0.5);
     }
     column = load(columns);
     row = load(rows);
@@ -58,8 +58,8 @@ void Renderer::find_what_tiles_show() {
     eye.shapes = all_seen_from(scene.eye, scene.shapes);
     std::vector<Cells> covered;
     covered.reserve(scene.shapes.size());
-    auto cell = [](float slope, float most, int cells) { // slopes from -most to most
-        return int(std::floor(std::clamp((slope / most + 1) * 0.5f * float(cells), -1.0f, float(cells))));
+    auto cell = [](Real slope, Real most, int cells) { // slopes from -most to most
+        return int(std::floor(std::clamp((slope / most + 1) * Real(0.5) * Real(cells), -Real(1.0), Real(cells))));
     };
     for (const Shape& shape : scene.shapes) {
         Rectangle r = rectangle(view, shape);
@@ -85,18 +85,18 @@ void Renderer::render(Picture& picture) {
 
 // Pixels as numbers 0xRRGGBB. Directions are not normalised: their depth is 1.
 inline Lanes Renderer::packet(int tile, int left, int top) const {
-    Lanes x = (column + float(left)) * (2 * slope_x / float(width)) - slope_x;
-    Lanes y = slope_y - (row + float(top)) * (2 * slope_y / float(height));
+    Lanes x = (column + Real(left)) * (2 * slope_x / Real(width)) - slope_x;
+    Lanes y = slope_y - (row + Real(top)) * (2 * slope_y / Real(height));
     Rays direction = view.forward + x * view.right + y * view.up;
-    Lanes squared = x * x + y * y + 1.0f, per_squared = reciprocal(squared);
+    Lanes squared = x * x + y * y + Real(1.0), per_squared = reciprocal(squared);
     Surface nearest;
     for (size_t i = 0; i < scene.planes.size(); i++) {
         const Plane& plane = scene.planes[i];
         Lanes t = -heights[i] * reciprocal(dot(plane.normal, direction));
         Mask nearer = (Lanes(AT_LEAST) < t) & (t < nearest.t);
-        nearest.take(nearer, t, all((heights[i] < 0 ? -1.0f : 1.0f) * plane.normal), plane.colour);
+        nearest.take(nearer, t, all((heights[i] < 0 ? -Real(1.0) : Real(1.0)) * plane.normal), plane.colour);
     }
-    float farthest = INFINITY; // that a point of a shape may be and still be seen
+    Real farthest = INFINITY; // that a point of a shape may be and still be seen
     const int* last = eye.members.data() + eye.start[tile + 1];
     for (const int* each = eye.members.data() + eye.start[tile]; each < last; each++) {
         const Seen& shape = eye.shapes[*each];
@@ -111,7 +111,7 @@ inline Lanes Renderer::packet(int tile, int left, int top) const {
     Mask hit = nearest.t < FAR;
     if (!any(hit)) return 0;
     Rays light = nearest.colour * light_at(view.at + nearest.t * direction, nearest.normal, hit);
-    Lanes pixel = (level(light.x) * 256.0f + level(light.y)) * 256.0f + level(light.z);
+    Lanes pixel = (level(light.x) * Real(256.0) + level(light.y)) * Real(256.0) + level(light.z);
     return where(hit, pixel, 0);
 }
 

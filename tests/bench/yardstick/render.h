@@ -26,8 +26,8 @@ private:
     const Scene& scene;
     int width, height, across, down; // the picture in pixels and in tiles
     View view;
-    float slope_x, slope_y;       // at the edges of the picture
-    std::vector<float> heights;   // of the eye above the planes
+    Real slope_x, slope_y;       // at the edges of the picture
+    std::vector<Real> heights;   // of the eye above the planes
     std::vector<Shadows> shadows; // of every lamp
     Lists eye;
     Lanes column, row; // of the pixels in a packet

@@ -7,13 +7,13 @@
 namespace {
 
 // Numbers of a line, separated by blanks and commas.
-std::vector<float> numbers(const char* text) {
-    std::vector<float> found;
+std::vector<Real> numbers(const char* text) {
+    std::vector<Real> found;
     for (;;) {
         while (*text == ' ' || *text == '\t' || *text == ',' || *text == '\r') text++;
         if (*text == '\0' || *text == '#') return found;
         char* end;
-        found.push_back(strtof(text, &end));
+        found.push_back(Real(strtod(text, &end)));
         if (end == text) throw std::runtime_error("no number at: " + std::string(text));
         text = end;
     }
@@ -21,41 +21,41 @@ std::vector<float> numbers(const char* text) {
 
 // Takes the numbers of a line from left to right.
 struct Fields {
-    std::vector<float> all;
+    std::vector<Real> all;
     size_t next = 0;
 
     bool left() const { return next < all.size(); }
-    float number() { return left() ? all[next++] : throw std::runtime_error("too few numbers"); }
+    Real number() { return left() ? all[next++] : throw std::runtime_error("too few numbers"); }
     Point point() {
-        float x = number(), y = number(), z = number();
+        Real x = number(), y = number(), z = number();
         return {x, y, z};
     }
     Point direction() { return unit(point()); }
-    Point colour() { return 1 / 255.0f * point(); }
+    Point colour() { return 1 / Real(255.0) * point(); }
 };
 
 void read_line(Scene& scene, const std::string& code, Fields fields) {
     if (code == "A") {
-        float brightness = fields.number();
+        Real brightness = fields.number();
         scene.ambient = brightness * fields.colour();
     } else if (code == "C") {
         scene.eye = fields.point();
         scene.forward = fields.direction();
-        scene.slope = std::tan(fields.number() * float(M_PI) / 360);
+        scene.slope = std::tan(fields.number() * Real(M_PI) / 360);
     } else if (code == "L" || code == "l") {
         Point at = fields.point();
-        float brightness = fields.number();
+        Real brightness = fields.number();
         scene.lamps.push_back({at, brightness * (fields.left() ? fields.colour() : Point{1, 1, 1})});
     } else if (code == "pl") {
         Point at = fields.point(), normal = fields.direction();
         scene.planes.push_back({at, normal, fields.colour()});
     } else if (code == "sp") {
         Point centre = fields.point();
-        float radius = fields.number() / 2;
+        Real radius = fields.number() / 2;
         scene.shapes.push_back({centre, {0, 1, 0}, radius, 0, fields.colour(), false});
     } else if (code == "cy") {
         Point centre = fields.point(), axis = fields.direction();
-        float radius = fields.number() / 2, half = fields.number() / 2;
+        Real radius = fields.number() / 2, half = fields.number() / 2;
         scene.shapes.push_back({centre, axis, radius, half, fields.colour(), true});
     } else {
         throw std::runtime_error("unknown element");

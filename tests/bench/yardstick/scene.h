@@ -15,14 +15,14 @@ struct Plane {
 
 struct Shape { // a sphere, or a cylinder with both caps
     Point centre, axis;
-    float radius, half; // of its height; 0 for a sphere
+    Real radius, half; // of its height; 0 for a sphere
     Point colour;
     bool is_cylinder;
 };
 
 struct Scene {
     Point eye{}, forward{0, 0, 1};
-    float slope = 1; // x / z at the right edge of the picture
+    Real slope = 1; // x / z at the right edge of the picture
     Point ambient{};
     std::vector<Lamp> lamps;
     std::vector<Plane> planes;

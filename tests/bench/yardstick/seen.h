@@ -2,22 +2,22 @@
 #pragma once
 #include "scene.h"
 
-constexpr float AT_LEAST = 1e-3f; // t of a hit
+constexpr Real AT_LEAST = Real(1e-3); // t of a hit
 
 struct alignas(64) Seen {
     Point from;  // the point relative to the centre; for a cylinder, the part across its axis
-    float power; // |from|^2 - radius^2
+    Real power; // |from|^2 - radius^2
     Point axis;  // of a cylinder
-    float along; // the part of the point relative to the centre along it
-    float half;  // of its height
-    float near;  // no point of the shape is nearer
+    Real along; // the part of the point relative to the centre along it
+    Real half;  // of its height
+    Real near;  // no point of the shape is nearer
     int index;
     bool is_cylinder;
 };
 
 inline Seen seen_from(Point point, const Shape& shape, int index) {
     Point from = point - shape.centre;
-    float along = dot(from, shape.axis);
+    Real along = dot(from, shape.axis);
     Seen seen{from, 0, shape.axis, along, shape.half, 0, index, shape.is_cylinder};
     seen.near = length(from) - std::hypot(shape.radius, shape.half);
     if (shape.is_cylinder) seen.from = from - along * shape.axis;
@@ -58,7 +58,7 @@ inline Entry enter_cylinder(const Seen& tube, const Rays& direction, Lanes squar
     Lanes t = 0;
     Mask on_cap{};
     if (any(hit)) {
-        Lanes root = sqrt(discriminant), per_a = reciprocal(max(a, 1e-8f)), per_rise = reciprocal(rise);
+        Lanes root = sqrt(discriminant), per_a = reciprocal(max(a, Real(1e-8))), per_rise = reciprocal(rise);
         Lanes side = (Lanes(0) - b - root) * per_a, other_side = (root - b) * per_a;
         Lanes bottom = (-tube.half - tube.along) * per_rise, top = (tube.half - tube.along) * per_rise;
         Lanes cap = min(bottom, top), other_cap = max(bottom, top);

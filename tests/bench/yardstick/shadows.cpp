@@ -5,15 +5,15 @@
 
 namespace {
 
-constexpr float WIDEST = 50;                                  // slope that a grid may reach to
-constexpr float CELLS = 2.56f, FEWEST_ACROSS = 64, MOST_ACROSS = 1024; // along an edge, for each sqrt(shape)
+constexpr Real WIDEST = 50;                                  // slope that a grid may reach to
+constexpr Real CELLS = Real(2.56), FEWEST_ACROSS = 64, MOST_ACROSS = 1024; // along an edge, for each sqrt(shape)
 
 // View from the light to the middle of all shapes.
 View towards(Point at, const std::vector<Shape>& shapes) {
     Point sum{};
     for (const Shape& shape : shapes) sum = sum + (shape.centre - at);
     Point forward = unit(sum);
-    Point right = unit(cross(forward, std::fabs(forward.y) < 0.9f ? Point{0, 1, 0} : Point{1, 0, 0}));
+    Point right = unit(cross(forward, std::fabs(forward.y) < Real(0.9) ? Point{0, 1, 0} : Point{1, 0, 0}));
     return {at, right, cross(right, forward), forward};
 }
 
@@ -21,8 +21,8 @@ View towards(Point at, const std::vector<Shape>& shapes) {
 
 Shadows::Shadows(const Scene& scene, const Lamp& lamp) : lamp(lamp) {
     for (const Plane& plane : scene.planes) {
-        float height = dot(plane.normal, lamp.at - plane.at);
-        sides.push_back({(height < 0 ? -1.0f : 1.0f) * plane.normal, std::fabs(height)});
+        Real height = dot(plane.normal, lamp.at - plane.at);
+        sides.push_back({(height < 0 ? -Real(1.0) : Real(1.0)) * plane.normal, std::fabs(height)});
     }
     lists.shapes = all_seen_from(lamp.at, scene.shapes);
     if (std::any_of(lists.shapes.begin(), lists.shapes.end(), is_inside))
@@ -42,9 +42,9 @@ void Shadows::make_grid(const std::vector<Shape>& shapes) {
                   std::max(window.top, r.top)};
         if (!(-WIDEST < r.left && r.right < WIDEST && -WIDEST < r.bottom && r.top < WIDEST)) return;
     }
-    across = int(std::clamp(CELLS * std::sqrt(float(shapes.size())), FEWEST_ACROSS, MOST_ACROSS));
-    per_cell_x = float(across) / (window.right - window.left) * 0.99999f;
-    per_cell_y = float(across) / (window.top - window.bottom) * 0.99999f;
+    across = int(std::clamp(CELLS * std::sqrt(Real(shapes.size())), FEWEST_ACROSS, MOST_ACROSS));
+    per_cell_x = Real(across) / (window.right - window.left) * Real(0.99999);
+    per_cell_y = Real(across) / (window.top - window.bottom) * Real(0.99999);
     std::vector<Cells> covered;
     for (const Rectangle& r : rectangles)
         covered.push_back({int((r.left - window.left) * per_cell_x), int((r.right - window.left) * per_cell_x),
@@ -62,7 +62,7 @@ inline Mask Shadows::beyond_planes(Mask asked, const Rays& way) const {
 
 inline Mask Shadows::past(const int* first, const int* last, Mask asked, const Rays& way, Lanes squared,
                           Lanes per_squared) const {
-    float farthest = std::sqrt(largest(asked, squared));
+    Real farthest = std::sqrt(largest(asked, squared));
     for (const int* each = first; each < last; each++) {
         const Seen& shape = lists.shapes[*each];
         if (shape.near > farthest) break;
@@ -80,14 +80,14 @@ Mask Shadows::unoccluded(Mask asked, const Rays& way, Lanes squared, Lanes per_s
     Lanes depth = dot(view.forward, way), per_depth = reciprocal(depth);
     Lanes x = (dot(view.right, way) * per_depth - window.left) * per_cell_x;
     Lanes y = (dot(view.up, way) * per_depth - window.bottom) * per_cell_y;
-    Mask inside = asked & (Lanes(0) < depth) & (Lanes(0) <= x) & (Lanes(0) <= y) & (x < float(across)) &
-                  (y < float(across));
+    Mask inside = asked & (Lanes(0) < depth) & (Lanes(0) <= x) & (Lanes(0) <= y) & (x < Real(across)) &
+                  (y < Real(across));
     if (!any(inside)) return asked;
-    Lanes cell = floor(y) * float(across) + floor(x);
-    float cells[Lanes::count];
+    Lanes cell = floor(y) * Real(across) + floor(x);
+    Real cells[Lanes::count];
     store(cells, cell);
     while (any(inside)) { // a cell after the other, with the rays that pass it
-        float number = cells[__builtin_ctz(bits(inside))];
+        Real number = cells[__builtin_ctz(bits(inside))];
         Mask together = inside & (cell == number);
         const int* start = &lists.start[int(number)];
         Mask through = past(members + start[0], members + start[1], together, way, squared, per_squared);

@@ -4,7 +4,7 @@
 #include "lists.h"
 
 constexpr int FEW = 8;              // up to so many shapes it is faster to try each
-constexpr float BEFORE = 1 - 1e-4f; // t up to which something is in the way
+constexpr Real BEFORE = 1 - Real(1e-4); // t up to which something is in the way
 
 class Shadows {
 public:
@@ -23,12 +23,12 @@ private:
 
     struct Side {
         Point normal; // of a plane, to the side of the lamp
-        float height; // of the lamp above it
+        Real height; // of the lamp above it
     };
     std::vector<Side> sides;
     Lists lists;
     View view;
     int across = 1;     // cells along an edge of the grid; with a single one every shape is tried
     Rectangle window;   // that the grid covers
-    float per_cell_x, per_cell_y;
+    Real per_cell_x, per_cell_y;
 };

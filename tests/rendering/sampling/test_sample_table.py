@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
+from minirt.kernel.pixels import PACKET_HEIGHT, SUMS, squared_error
 from minirt.rendering.frame import COUNTS, SampleTable, positions_of, sample_positions
+from minirt.rendering.packing.camera import packet_places
 from minirt.rendering.sampling.packets import (
     CLASSES,
     LINES,
@@ -28,16 +29,26 @@ from tests.kernel.pictures import TWO
 from tests.rendering.sampling.test_auto import HEIGHT, KNOWN, WIDTH, reference, rms
 from tests.seeds import seed_of
 
+Array = NDArray[np.float64]
+
 RAYS = 4 * PACKET_HEIGHT
 FACTOR = 1.5  # between estimated and true errors of refined pictures
+
+
+CORNERS = packet_places(RAYS, np.zeros((1, 2)))[0]  # of the pixels of a packet
+
+
+def by_sample(places: Array, samples: int) -> Array:
+    """Return places in their pixels, (k, pixels, samples, 2), of samples that follow each other pixel by pixel."""
+    return places.reshape(-1, RAYS, samples, 2) - CORNERS[:, None]
 
 
 def test_drawn_samples_are_those_of_a_uniform_picture() -> None:
     levels = np.array([0, 3, 7])
     table = SampleTable(levels, RAYS)
     for level in levels:
-        drawn = table.positions[table.first[level] :][: COUNTS[level]]
-        assert np.array_equal(drawn, np.broadcast_to(sample_positions(COUNTS[level])[:, None], drawn.shape))
+        drawn = by_sample(table.positions[table.first[level] :][: COUNTS[level]], COUNTS[level])
+        assert drawn == pytest.approx(np.broadcast_to(sample_positions(COUNTS[level]), drawn.shape), abs=1e-14)
 
 
 def test_plans_name_rows_of_the_table_and_references_differ() -> None:
@@ -49,23 +60,21 @@ def test_plans_name_rows_of_the_table_and_references_differ() -> None:
     assert not SampleTable(np.arange(12), RAYS, with_references=False).plan(levels)[:, 2].any()
     ends = plan[:, 2] + 2 * plan[:, 1]
     assert ends.max() <= len(table.positions)
-    assert (table.positions >= 0).all()
-    assert (table.positions < 1).all()
     for _, number, first in plan[:20]:
-        one, other = table.positions[first:][: 2 * number].reshape(2, -1, RAYS, 2)
-        assert not np.isclose(one, other).all(axis=(0, 2)).any()
+        references = by_sample(table.positions[first:][: 2 * number], number)
+        assert references.min() > -1e-14
+        assert references.max() < 1
+        assert not np.isclose(*references).all(axis=(1, 2)).any()
 
 
 def test_references_have_no_bias() -> None:
     """The mean of a function with an edge over many shifts is its mean over the pixel."""
-    positions = positions_of(1, 0, 2000, RAYS, with_places=False)
+    positions = positions_of(1, 0, 2000, RAYS, with_places=False) - CORNERS
     assert (positions @ (0.3, 0.8) < 0.4).mean() == pytest.approx(0.5 - 0.3 / 2 / 0.8, abs=0.003)
 
 
 # Estimator of the squared error of a picture, on packets with constructed errors, and wrong estimators.
 
-
-Array = NDArray[np.float64]
 
 TRIALS, SPREAD = 500, 0.1  # of the references around the light
 
@@ -81,8 +90,8 @@ def packet_estimates(second_reference: Callable[[Array, Array], Array]) -> tuple
         one, other = light + random.uniform(-SPREAD, SPREAD, (2, 3 * RAYS))
         sums = np.zeros(SUMS)
         for number, values in enumerate((drawn, one, second_reference(one, other))):
-            sums[number * ESTIMATE :][: 3 * RAYS] = values
-        found.append(squared_error(sums, PACKET_HEIGHT, 4, RAYS))
+            sums[9 + number * 3 * RAYS :][: 3 * RAYS] = values
+        found.append(squared_error(sums, 9, PACKET_HEIGHT, 4, RAYS))
     return np.array(found), float(((drawn - light) ** 2).sum())
 
 
