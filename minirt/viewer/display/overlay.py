@@ -6,6 +6,7 @@ import textwrap
 from enum import IntEnum
 
 from minirt.element import fields_of
+from minirt.fields import Colour
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.writer import field_text
 from minirt.viewer.display.jobs import Painted, Pixels
@@ -94,7 +95,8 @@ def value_at(state: State, x: int, y: int, width: int, size: int) -> Value | Non
         if found and ends[0] <= x < ends[-1] and is_on_line(x, y, state, width, size):
             own = [each for each in values(state.element) if each.field == field]
             part = next(at for at, end in enumerate(ends[1:]) if x < end)
-            return next((each for each in own if each.part == part), own[0] if own else None)
+            first = own[0] if own else None  # also of a colour, of which one seldom changes a part alone
+            return first if isinstance(field, Colour) else next((each for each in own if each.part == part), first)
     return None
 
 

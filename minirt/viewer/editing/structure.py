@@ -13,7 +13,7 @@ from math import copysign
 
 from minirt.element import Element, fields_of
 from minirt.errors import ElementError
-from minirt.fields import Field, MeshField, Point, Triple
+from minirt.fields import Field, MeshField, Triple
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Lamp, Scene
 from minirt.scene.names import element_name, named_block, own_name, renamed
@@ -36,9 +36,9 @@ APART = 1.2  # breadths of selected shapes from their middle to that of their co
 def duplicate(state: State, _amount: float, now: float) -> State:
     """Insert a copy after each selected element, and select the copies, which are beside the originals.
 
-    A coordinate that is active stays so, as that of the next copy will be changed, too; else the first value is active.
+    The first value is active, or the position where that one has three numbers: three that are typed are the position.
     """
-    scene, copies, way, active = state.scene, dict[int, Element](), way_beside(state), state.active
+    scene, copies, way = state.scene, dict[int, Element](), way_beside(state)
     for index in sorted(state.chosen, reverse=True):
         element = state.scene.elements[index]
         # A kind that a scene has once is copied as the repeatable kind that is derived from it, if there is one.
@@ -51,11 +51,13 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     others = frozenset(index_of(scene, copies[index]) for index in state.others)
     state = state.change(scene, "", now, index_of(scene, copies[state.selected]))
     state = replace(state, others=others, value_index=0)
-    state = state.with_active(active) if isinstance(active.leaf, Point) else state
+    place = position_value(state.element)
+    if place and isinstance(state.active.get(state.element), tuple):
+        state = state.with_active(place)
     message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
-    if position_value(state.element) and not others:
-        begun = "" if isinstance(state.active.leaf, Point) else f"{state.active.name}, Tab, "
-        message += f"{GAP}type = {begun}x y z"
+    if place and not others:
+        also = "" if state.active == place else f"{GAP}or = {state.active.name}, Tab, x y z"
+        message += f"{GAP}type = x y z: its position{also}"
     return state.with_message(message)
 
 

@@ -23,6 +23,7 @@ from minirt.viewer.editing.colours import COLOURS, colour_word
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.typed import set_typed
 from minirt.viewer.editing.values import values
+from minirt.viewer.language import GAP
 from tests.viewer.app.test_lists import AT_SPHERE, clicked, play, right_click, rows
 from tests.viewer.fake import TEXT, played, scene
 from tests.viewer.session_harness import SessionHarness
@@ -253,9 +254,16 @@ def test_handles_are_shown_while_the_pointer_is_near_the_selected_element() -> N
     assert (typing[:, 400:] == far[:, 400:]).all()
 
 
-@pytest.mark.parametrize(("steps", "active"), [(0, "diameter"), (2, "diameter"), (6, "centre: y")])
-def test_a_copy_keeps_a_coordinate_active(steps: int, active: str) -> None:
-    copied = played("press Tab", "press Tab", *["press V"] * steps, "press Ctrl+D", text=PAIR)
-    assert copied.state.active.name == active
-    begun = "" if steps == 6 else "diameter, Tab, "
-    assert copied.state.message == f"a copy of sphere 1, beside the original    type = {begun}x y z"
+@pytest.mark.parametrize("line", ["sp -2,1,0 2 255,0,0", "bx -2,1,0 2,2,2 255,0,0", "cy -2,1,0 0,1,0 1 2 0,0,255"])
+def test_three_numbers_are_the_position_of_a_copy_whatever_was_active(line: str) -> None:
+    text = PAIR.replace("sp -2,1,0 2 255,0,0", line)
+    for steps in range(7):
+        keys = ["press Tab", "press Tab", *["press V"] * steps, "press Ctrl+D"]
+        copied = played(*keys, text=text)
+        assert f"beside the original{GAP}type = x y z: its position" in copied.state.message
+        keys = [f"text {character}" for character in "=-1,2,3"]
+        placed = played(
+            "press Tab", "press Tab", *["press V"] * steps, "press Ctrl+D", *keys, "press Return", text=text
+        )
+        assert placed.state.element.replace(centre=(-2, 1, 0)) == placed.state.scene.shapes[0]
+        assert placed.state.element.centre == (-1, 2, 3)
