@@ -36,8 +36,8 @@ from minirt.shapes import ALL_KINDS
 SEED = 20240607
 CULLING = ("brute force", "uniform")  # knobs whose pictures must be the same
 NOTHING = "Interrupted before anything was measured; no report was written."
-# Seconds that a kernel, the errors of a picture and the certificates of hits are expected to take.
-COMPILING, JUDGING, CERTIFYING = 15.0, 0.25, 3.0
+COMPILING, CERTIFYING = 15.0, 3.0  # seconds that a kernel, and the certificates of hits, are expected to take
+JUDGING = 2e-6  # seconds for the errors of a pixel
 
 
 class Plan(NamedTuple):
@@ -94,13 +94,14 @@ class Measurement:
     def expected(self, once: float) -> float:
         """Return the seconds that all is expected to take; `once` is the time of a frame."""
         plan, longest = self.plan, self.stage.longest
-        share = min(1.0, plan.pixels / (self.size[0] * self.size[1]))
+        pixels = self.size[0] * self.size[1]
+        judged = min(pixels, plan.pixels)
         works = [once * setting.knob.work(setting.value) for setting in self.wanted]
-        drawn = sum(work + JUDGING for work in works if work <= LEFT_OUT * longest)
+        drawn = sum(work + JUDGING * judged for work in works if work <= LEFT_OUT * longest)
         turns = max(plan.seconds, FEW * sum(work for work in works if work <= longest))
         part = max(2 * LEAST_PAIRS * once, min(2 * PAIRS * once, plan.seconds / len(works)))
         parts = sum(part + (0.0 if each.without else COMPILING) for each in self.variants)
-        return once * share * plan.samples + drawn + turns + CERTIFYING + parts
+        return once * judged / pixels * plan.samples + drawn + turns + CERTIFYING + parts
 
     def run(self, other: Findings | None) -> None:
         """Measure everything, and compare it with another report later."""

@@ -24,7 +24,7 @@ from minirt.helpers.progress import in_words
 from minirt.report import measure
 from minirt.report.ablation import PAIRS, Ablation, Part
 from minirt.report.crops import SIDE
-from minirt.report.measure import CERTIFYING, NOTHING, QUICK, Measurement, report
+from minirt.report.measure import CERTIFYING, JUDGING, NOTHING, QUICK, Measurement, report
 from minirt.report.metrics import HEAT
 from minirt.report.pictures import SettingRenderer
 from minirt.report.settings import Setting
@@ -160,7 +160,9 @@ def test_the_steps_are_told_and_the_share_is_that_of_the_expected_time(made: Mad
     measured.announcement()
     works = [once * setting.knob.work(setting.value) for setting in measured.wanted]
     parts = sum(2 * PAIRS * once for _ in measured.variants)
-    assert measured.seconds == pytest.approx(once * QUICK.samples + sum(works) + QUICK.seconds + CERTIFYING + parts)
+    judged = JUDGING * 64 * 40 * len(works)
+    expected = once * QUICK.samples + sum(works) + judged + QUICK.seconds + CERTIFYING + parts
+    assert measured.seconds == pytest.approx(expected)
     measured.start -= measured.seconds / 2
     assert 0.5 <= (measured.state().share or 0.0) < 0.9
     measured.start -= 10 * measured.seconds
@@ -254,3 +256,17 @@ def test_what_was_measured_is_written(tmp_path: Path, monkeypatch: pytest.Monkey
     names = {f"error-{row['knob']}-{row['label']}.png".replace(" ", "-") for row in found["pictures"]}
     assert names <= {path.name for path in tmp_path.iterdir()}
     assert not [*tmp_path.glob(".*")]  # of a file that was half written
+
+
+def test_a_slow_scene_gets_less_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is dear is left out, until all fits or hardly anything has more than one run."""
+    monkeypatch.setattr(measure, "QUICK", QUICK)
+    found = []
+    for once in (0.001, 0.1, 0.3, 30.0):
+        measured = Measurement(ALL, "all.rt", (1280, 720), QUICK, 1)
+        monkeypatch.setattr(measured.stage, "frame_seconds", lambda once=once: once)
+        measured.announcement()
+        found.append((measured.stage.longest, measured.seconds))
+        assert measured.seconds <= QUICK.total or measured.stage.longest <= 2 * once
+    assert found[0][0] == found[-1][0] == QUICK.longest
+    assert found[0][1] < found[1][1] <= QUICK.total
