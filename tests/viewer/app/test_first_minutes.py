@@ -254,7 +254,9 @@ def test_handles_are_shown_while_the_pointer_is_near_the_selected_element() -> N
     assert (typing[:, 400:] == far[:, 400:]).all()
 
 
-@pytest.mark.parametrize("line", ["sp -2,1,0 2 255,0,0", "bo -2,1,0 0,1,0 2,2,2 255,0,0", "cy -2,1,0 0,1,0 1 2 0,0,255"])
+@pytest.mark.parametrize(
+    "line", ["sp -2,1,0 2 255,0,0", "bo -2,1,0 0,1,0 2,2,2 255,0,0", "cy -2,1,0 0,1,0 1 2 0,0,255"]
+)
 def test_three_numbers_are_the_position_of_a_copy_whatever_was_active(line: str) -> None:
     text = PAIR.replace("sp -2,1,0 2 255,0,0", line)
     for steps in range(7):
