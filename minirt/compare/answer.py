@@ -103,10 +103,12 @@ class Judge:
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause; 0 if nearly as many are only without it, or
         if most of those that it changes are not explained: something like it is true then."""
-        moved = self.counted & (np.abs(self.fit.shown - without.shown).max(axis=-1) > self.tolerance)
+        apart = np.abs(self.fit.shown - without.shown).max(axis=-1) > self.tolerance
+        counted = self.counted | (self.inner & apart)  # background is evidence where something else is expected
+        moved = counted & apart
         if moved.any() and (self.fit.error[moved] > self.tolerance).mean() > MOST_LEFT:
             return 0.0
-        return gain(*(fit.error[self.counted] <= self.tolerance for fit in (self.fit, without)))
+        return gain(*(fit.error[counted] <= self.tolerance for fit in (self.fit, without)))
 
 
 def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:

@@ -113,11 +113,12 @@ def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np
 def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any, ...]:
     """Return distance, owner, point and normal of what rays meet, past the surfaces that the guess does not draw."""
     found = trace(scene, origins, ways, threads=1)
-    if guess["caps"] and guess["inside"]:
+    undrawn = np.array([shape.plural in guess["missing"] for shape in scene.shapes] + [False])
+    if guess["caps"] and guess["inside"] and not undrawn.any():
         return tuple(found)
     distance, owner, point, normal = found
     for _ in range(MOST_LAYERS):
-        passed = np.zeros(len(owner), bool)
+        passed = undrawn[owner]
         if not guess["caps"]:
             passed |= on_cap(scene, owner, normal)
         if not guess["inside"]:

@@ -55,6 +55,8 @@ class Case:
 
     def tells(self, row: Hypothesis) -> bool:
         """Whether a row changes this scene, if it is about shapes."""
+        if row.name == "missing":
+            return set(row.value) <= {shape.plural for shape in self.scene.shapes}
         return not set(row.changes) <= set(SHAPES) or changed_scene(self.scene, OURS | row.changes) is not self.scene
 
     def sample(self, count: int) -> tuple[Floats, Floats, Floats]:
@@ -101,7 +103,7 @@ class Case:
         x, y, colours = self.sample(COARSE)
         groups: dict[Any, list[Guess]] = {}
         for each in guesses:
-            groups.setdefault(tuple(each[name] for name in SHAPES), []).append(each)
+            groups.setdefault(tuple(each[name] for name in GEOMETRIC if name not in CAMERA), []).append(each)
         for group in groups.values():
             for start in range(0, len(group), AT_ONCE):
                 some = group[start : start + AT_ONCE]
@@ -128,7 +130,8 @@ def search(case: Case) -> Guess:
     shaped = [[OURS[name], *(row.changes[name] for row in case.table if name in row.changes)] for name in names]
     combined = [dict(zip(names, values, strict=True)) for values in product(*shaped)]
     variants = case.evenest([each | changes for changes in combined for each in seen_from])
-    matt = [row for row in case.light if row.name not in ("specular", "reflections")]
+    undrawn = [row for row in case.table if row.name == "missing"]  # black, which is one colour in any light
+    matt = undrawn + [row for row in case.light if row.name not in ("specular", "reflections")]
     lit = [descend(case, each, by_gain(case, each, matt), 1) for each in [OURS, *variants[:BEGINNINGS]]]
     best = sorted(lit, key=case.score)[:FINALISTS]
     found = [simplest(case, descend(case, each, case.table, 3)) for each in best]

@@ -25,6 +25,7 @@ OURS: Guess = {
     "axis": "as given",
     "cone": "apex",
     "caps": True,
+    "missing": (),  # kinds of shapes
     "inside": True,
     "brightness": 1,  # the power in which that of lamps counts
     "ambient": "object x light",
@@ -106,6 +107,8 @@ GEOMETRY = rows(
     ("cone", "whole angle", "the diameter of cones is taken as their angle in degrees, from side to side"),
     ("cone", "angle", "the diameter of cones is taken as the angle in degrees from their axis to their side"),
     ("caps", False, "cylinders and cones have no caps: one looks into them"),
+    *(("missing", missing, f"{' and '.join(missing)} are not drawn")
+      for missing in (("planes",), ("cylinders",), ("planes", "cylinders"))),
     ("inside", False,
      "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
 )  # fmt: skip
