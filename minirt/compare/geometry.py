@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from minirt.compare.changed_shapes import Floats, as_written, changed_scene, rotation
 from minirt.compare.table import Guess
+from minirt.element import fields_of
+from minirt.materials import Attributes
 from minirt.rendering.queries.rays import trace
 from minirt.scene import Camera, Scene
 from minirt.scene.dialect_tables import CAMERAS
@@ -19,6 +21,7 @@ from minirt.shapes.shape import Capped
 
 AXES = {"y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1), "x": (1, 0, 0), "-x": (-1, 0, 0)}
 MOST_LAYERS = 4  # of caps or inner sides that a ray passes
+PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
 ON_CAP = 0.999  # cosine between the normal of a cap and the axis
 
 
@@ -35,6 +38,16 @@ class Seen(NamedTuple):
     open_to: NDArray[np.bool_]  # (lamps, n) whether nothing lies between the point and the lamp
     open_beyond: NDArray[np.bool_]  # (lamps, n) nor behind the lamp
     mirror: Seen | None = None  # what the reflected rays meet
+
+
+def plain_shapes(scene: Scene) -> NDArray[np.bool_]:
+    """Whether the light of each shape is that of its colour alone, without mirrors, glass and textures; and True for
+    the background, unless it is a picture."""
+    names = [each.name for each in fields_of(Attributes) if each.name not in PLAIN]
+    shapes = [all(getattr(shape, name, None) is None for name in names) for shape in scene.shapes]
+    has_colour = [getattr(shape, "colour", None) is not None for shape in scene.shapes]
+    sky = not scene.background or not isinstance(scene.background.paint, str)
+    return np.array([is_plain and has for is_plain, has in zip(shapes, has_colour, strict=True)] + [sky])
 
 
 def unit(v: Floats) -> Floats:

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from minirt.compare.geometry import Floats, Seen, dots, reach, unit
 from minirt.compare.table import OURS, Guess
-from minirt.element import fields_of
-from minirt.materials import Attributes
 from minirt.scene import Scene
 
 LEVEL = 1 / 255
@@ -26,7 +24,6 @@ MOST_SPECKS = 0.6  # of the pixels of shapes: more dark ones are no acne
 AMBIENT, OBJECT, SPECULAR, MIRROR, FADED, LAMPS = range(6)  # places of terms of light; lamps are the last ones
 MIRROR_ROUNDS = 3  # of the light in mirrors, which needs factors
 ROUNDS = 4  # of least squares, each without what the one before did not explain
-PLAIN = {"specular", "roll"}  # attributes of shapes whose colour is the same everywhere
 
 
 class Fit(NamedTuple):
@@ -39,16 +36,6 @@ class Fit(NamedTuple):
     diffuse: Floats  # (lamps,) factors; 1 in this program
     background: Floats
     odd: int  # factors, of ambient light and of lamps, that are not those of this program
-
-
-def plain_shapes(scene: Scene) -> NDArray[np.bool_]:
-    """Whether the light of each shape is that of its colour alone, without mirrors, glass and textures; and True for
-    the background, unless it is a picture."""
-    names = [each.name for each in fields_of(Attributes) if each.name not in PLAIN]
-    shapes = [all(getattr(shape, name, None) is None for name in names) for shape in scene.shapes]
-    has_colour = [getattr(shape, "colour", None) is not None for shape in scene.shapes]
-    sky = not scene.background or not isinstance(scene.background.paint, str)
-    return np.array([is_plain and has for is_plain, has in zip(shapes, has_colour, strict=True)] + [sky])
 
 
 def numbers(colour: Any) -> Floats:

@@ -14,7 +14,7 @@ import numpy as np
 
 from minirt.compare import lighting
 from minirt.compare.changed_shapes import SHAPES, changed_scene
-from minirt.compare.geometry import Floats, Seen, frame, see, see_each, slopes
+from minirt.compare.geometry import Floats, Seen, frame, plain_shapes, see, see_each, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
@@ -43,7 +43,7 @@ class Case:
     def __init__(self, scene: Scene, picture: Floats) -> None:
         self.scene, self.picture = scene, picture
         self.height, self.width = picture.shape[:2]
-        self.judged = lighting.plain_shapes(scene)
+        self.judged = plain_shapes(scene)
         has_specks = speck_share(picture) > SPECKLED
         self.table = [row for row in TABLE if self.tells(row) and (row.name != "acne" or has_specks)]
         self.light = [row for row in self.table if row in LIGHT]
