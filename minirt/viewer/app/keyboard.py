@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from minirt.mlx.events import MODIFIER_KEYS
+from minirt.mlx.events import MODIFIER_KEYS, Key
 from minirt.viewer.app.choosing import Choosing
 from minirt.viewer.app.holding import hold, release
 from minirt.viewer.app.open_help import HELP, help_takes
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.typed_value import Typing
-from minirt.viewer.bindings import Binding
+from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding
 
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
@@ -39,6 +39,11 @@ class Keyboard:
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
         if help_takes(session, code, pressed) or self.typing.takes(code) or self.choosing.takes(code, pressed):
+            return
+        if self.typing.is_colour and Key.A <= code <= Key.Z and not session.modifiers & SIGNIFICANT:
+            self.typing.end()
+            self.perform(BY_ACTION["choose colour"])
+            self.choosing.takes(code, None)  # the first letter of its word
             return
         if pressed:  # any other key that does something closes them
             self.typing.end()

@@ -14,6 +14,7 @@ from minirt.scene.names import LONGEST, element_name, own_name
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.lists import ListBox
 from minirt.viewer.display.words import next_in_line
+from minirt.viewer.editing.colours import colours_of
 from minirt.viewer.editing.structure import rename
 from minirt.viewer.editing.typed import CHARACTERS, set_typed, three_words, value_for
 from minirt.viewer.editing.values import part_names
@@ -36,6 +37,13 @@ class Typing:
         self.session = session
         self.text = ""
         self._begun = ""  # as it was at the beginning
+
+    @property
+    def is_colour(self) -> bool:
+        """Whether a value is typed that is the own colour of the element: a letter begins its word."""
+        state = self.session.state
+        is_value = bool(self.text) and not self.text.startswith(NAME)
+        return is_value and colours_of(state.element)[:1] == [state.active]
 
     def begin(self, character: str) -> None:
         """Begin with a digit, =, or NAME and a name."""
@@ -92,6 +100,8 @@ class Typing:
         active, element = value_for(session.state, text), session.state.element
         names = " ".join(part_names(active.leaf)[: Three.width])
         also = f"or all three: {names}" if isinstance(active.get(element), tuple) else "+= -= *= /=: relative"
+        if self.is_colour:
+            also += "    or its word"
         present = active.current(element)
         parts = present if isinstance(present, tuple) else (present,)
         are_numbers = all(isinstance(part, int | float) and not isinstance(part, bool) for part in parts)

@@ -252,3 +252,12 @@ def test_the_line_of_information_says_what_keys_do() -> None:
     assert isinstance(brim.element, Cylinder)
     assert "+ - height" in hints(brim, every=True)
     assert "height [0.25]" in fitting_words(brim, 600, 16)
+
+
+def test_letters_in_place_of_a_colours_numbers_choose_its_word() -> None:
+    """While the colour is typed; w and b alone are keys that move."""
+    keys = [*SPHERE, "text 2", "press Tab", "text 0", "text ,", "text 1", "text ,", "text 0", "press Tab"]
+    assert title(played(*keys)).endswith("or all three: red green blue    or its word")
+    ball = played(*keys, *(f"press {letter}" for letter in "WHITE"), "press Return").state.scene.spheres[0]
+    assert (ball.colour, ball.centre) == ((255, 255, 255), (0, 1, 0))
+    assert "its word" not in title(played(*SPHERE, "text ="))
