@@ -15,7 +15,7 @@ from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, ope
 from minirt.viewer.app.explaining import choose_row
 from minirt.viewer.app.holding import advance
 from minirt.viewer.app.judging import PictureJudge
-from minirt.viewer.app.keyboard import Keyboard
+from minirt.viewer.app.keyboard import KeyDispatcher
 from minirt.viewer.app.menu import OPEN_MENU
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.open_help import help_takes
@@ -44,7 +44,7 @@ class EventDispatcher:
         self.typing = Typing(session)
         self.judge = PictureJudge(session)
         self.choosing = Choosing(session, self.perform)
-        self.keyboard = Keyboard(session, self.typing, self.choosing, self.perform)
+        self.keyboard = KeyDispatcher(session, self.typing, self.choosing, self.perform)
         self.panel: Panel | None = None  # once it was opened
         self._tick_hook = self.as_hook(self.on_tick)
         mlx, window = session.mlx, session.window

@@ -15,7 +15,7 @@ from minirt.viewer.bindings import BY_ACTION, SIGNIFICANT, Binding
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
 
-class Keyboard:
+class KeyDispatcher:
     """Handlers of keys; `perform` does what a binding names."""
 
     def __init__(
