@@ -84,6 +84,8 @@ def test_help_and_version_start_fast(folder: Path, option: str) -> None:
 def test_a_signal_ends_a_long_render_with_its_status_and_without_a_trace(folder: Path, name: str) -> None:
     number = getattr(signal, name, None) or pytest.skip(f"{name} is of Unix")
     (folder / "x.png").write_bytes(b"old")
+    with (folder / "ball.rt").open("a") as scene:
+        scene.write("pl 0,0,900 0,0,1 9,9,9\n")  # a wall: nothing but sky is drawn at once
     arguments = "ball.rt", "-o", "x.png", "--size", "1920x1080", "--samples", "65536", "--threads", "2"  # hours
     with start(folder, *arguments, command=ANNOUNCING) as process:
         assert next_line(process, errors=True) == RENDERING.decode()

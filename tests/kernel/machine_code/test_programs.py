@@ -32,7 +32,7 @@ def frame(
             pixels[y, x] = argb(light.x, light.y, light.z)
 """
 PROJECT = """
-def project_shapes(next_chunk: Any, seen: Projection) -> None:
+def project_shapes(next_chunk: Any, seen: BinningArrays) -> None:
     pass
 """
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
@@ -77,7 +77,7 @@ def copy(tmp_path: Path) -> Path:
     """Folder with a copy of the package. Its pictures show nothing but the ambient light on the colour of the ball."""
     package = tmp_path / "minirt"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__", "ahead_of_time", "viewer", "mlx"))
-    for name, function, stub in (("frame", "frame", FRAME), ("binning", "project_shapes", PROJECT)):
+    for name, function, stub in (("frame", "frame", FRAME), ("rectangles", "project_shapes", PROJECT)):
         file = package / "kernel" / f"{name}.py"
         replace_once(file, f"def {function}(", f"def real_{function}(")
         file.write_text(file.read_text() + stub)

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from minirt.scene import load
-from minirt.viewer.app import events
+from minirt.viewer.app import keyboard as keys_module
 from minirt.viewer.app.desktop import run
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
@@ -63,7 +63,7 @@ def log_actions(log: str, *scenes: str) -> int:
 
         return perform_and_log
 
-    for owner, name in ((EventDispatcher, "perform"), (events, "hold")):
+    for owner, name in ((EventDispatcher, "perform"), (keys_module, "hold")):
         setattr(owner, name, logged(getattr(owner, name)))
     options = {"size": SIZE, "keys": "auto", "renderer": FakeRenderer()}
     statuses = (run(load(scene).scene, path=scene, **options) for scene in scenes)
