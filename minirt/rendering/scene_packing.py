@@ -239,10 +239,8 @@ class Packing:
 
     @property
     def notes(self) -> list[str]:
-        if not self.last:
-            return []
-        scene, _, arrays = self.last
-        return list(notes(scene, self.shape_arrays, arrays))
+        """What was chosen for the last scene, and what it leaves out."""
+        return list(notes(self.last[0], self.shape_arrays, self.last[2])) if self.last else []
 
     @property
     def computed_in(self) -> str:

@@ -153,8 +153,7 @@ class Row(NamedTuple):
     def with_times(self, runs: Sequence[Run], threads: int, by_processor: bool) -> Row:
         """Return the row with the times of its runs: processor time of a thread, or wall time."""
         walls, cpus = [run.wall * 1e3 for run in runs], [run.cpu / threads * 1e3 for run in runs]
-        times = cpus if by_processor else walls
-        low, high = metrics.of_median(times)
+        low, high = metrics.of_median(times := cpus if by_processor else walls)
         row = self._replace(ms=median(times), ms_low=low, ms_high=high, runs=len(runs))
         efficiency = 1e3 / (self.rmse**2 * row.ms) if self.rmse and row.ms else nan
         return row._replace(wall_ms=median(walls), cpu_ms=median(cpus), efficiency=efficiency)
