@@ -107,8 +107,8 @@ class Field(Immutable):
 
     @property
     def facts(self) -> Any:
-        """What states the `needs` of an attribute and whether it is `in_albedo`: this field, or the class of a material
-        with several values."""
+        """The object that states the `needs` of an attribute and whether it is `in_albedo`: this field, or the class of
+        a material with several values."""
         return self
 
     @property

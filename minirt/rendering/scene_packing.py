@@ -239,7 +239,7 @@ class Packing:
 
     @property
     def notes(self) -> list[str]:
-        """What was chosen for the last scene, and what it leaves out."""
+        """Sentences that say what was chosen for the last scene, and what it leaves out."""
         return list(notes(self.last[0], self.shape_arrays, self.last[2])) if self.last else []
 
     @property

@@ -259,7 +259,7 @@ def test_what_was_measured_is_written(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_a_slow_scene_gets_less_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is dear is left out, until all fits or hardly anything has more than one run."""
+    """Dear settings are left out, until all fits or hardly anything has more than one run."""
     monkeypatch.setattr(measure, "QUICK", QUICK)
     found = []
     for once in (0.001, 0.1, 0.3, 30.0):

@@ -67,7 +67,9 @@ def filled_columns(layout: str, search: str, width: int, size: int, capacity: in
         for index, row in enumerate(rows):
             block = wrapped(row, width, size)
             if index == 0:
-                block = [*([("", "")] if lines else []), *([(title, "")] if title else []), *block]
+                gap = [("", "")] if lines else []
+                heading = [(title, "")] if title else []
+                block = [*gap, *heading, *block]
             if lines and len(lines) + len(block) > max(3, capacity):
                 yield joined(lines)
                 lines, block = [], [line for line in block if any(line)]

@@ -56,8 +56,8 @@ def duplicate(state: State, _amount: float, now: float) -> State:
         state = state.with_active(place)
     message = f"a copy of {what}, beside the original" if any(way) else f"a copy of {what}, at the same position"
     if place and not others:
-        also = "" if state.active == place else f"{GAP}or = {state.active.name}, Tab, x y z"
-        message += f"{GAP}type = x y z: its position{also}"
+        also = "" if state.active == place else f"{GAP}or press = and type {state.active.name}, Tab, x y z"
+        message += f"{GAP}press = and type x y z: its position{also}"
     return state.with_message(message)
 
 

@@ -262,7 +262,7 @@ def test_three_numbers_are_the_position_of_a_copy_whatever_was_active(line: str)
     for steps in range(7):
         keys = ["press Tab", "press Tab", *["press V"] * steps, "press Ctrl+D"]
         copied = played(*keys, text=text)
-        assert f"beside the original{GAP}type = x y z: its position" in copied.state.message
+        assert f"beside the original{GAP}press = and type x y z: its position" in copied.state.message
         keys = [f"text {character}" for character in "=-1,2,3"]
         placed = played(
             "press Tab", "press Tab", *["press V"] * steps, "press Ctrl+D", *keys, "press Return", text=text
