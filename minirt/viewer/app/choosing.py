@@ -45,6 +45,7 @@ class ListRow(NamedTuple):
     title: str
     state: State | None = None
     action: str = ""
+    note: str = ""  # in the column of the keys: the value of an attribute that is there
 
 
 class Choosing:
@@ -79,10 +80,11 @@ class Choosing:
             self.session.show(state.with_message(complaint.format(state.element.title)))
             return
         self._before, self._group, self._letters, self._title = state, group, "", title
-        self._every = [ListRow(translated(title), choice) for title, choice in choices]
+        self._every = [ListRow(translated(title), each, note=structure.present(state, each)) for title, each in choices]
         kind = None if self._place or group != structure.ELEMENT else state.added_kind  # a pointer expects the first
         again = (row for row, (_, each) in zip(self._every, choices, strict=True) if type(each.element) is kind)
-        self.choose(next(again, self._every[0]))
+        new = (row for row in self._every if not row.note)
+        self.choose(next(again, None) or next(new, self._every[0]))
 
     def begin_menu(self, place: tuple[int, int], point: Triple | None) -> None:
         """Show what can be done with the selected element, or at a pixel that shows a point of the scene or none."""
@@ -95,6 +97,8 @@ class Choosing:
     def end(self) -> None:
         """Close the list; what it added stays."""
         if self._before is not None:
+            if self._group:
+                self.session.state = self.session.state.end_merging()
             self._before = self._place = None
             self.show()
 
@@ -162,11 +166,10 @@ class Choosing:
     def take(self) -> None:
         """Take the chosen row: its state stays, or its action is performed where it was asked for."""
         row, place, before = self._chosen, self._place, self._before
-        if self._group and before and before.scene is self.session.state.scene:  # a colour as it was
+        if self._group and before and before.scene is self.session.state.scene:  # a colour or an attribute as it was
+            self._before = replace(before, value_index=self.session.state.value_index)
             self.cancel()
             return
-        if self._group:
-            self.session.state = self.session.state.end_merging()
         self.end()
         if row and row.action and place and row in self.rows():
             self.session.pointer = self.target = place
@@ -235,7 +238,7 @@ class Choosing:
             if complaint or self._group:
                 title = GAP.join((title, complaint or HINT))
             layout = self.session.keymap.layout
-            keys = [keys_of(row.action, layout)[0] for row in rows if row.action]
+            keys = [keys_of(row.action, layout)[0] if row.action else row.note for row in rows]
             titles = tuple(row.title for row in rows)
             place, left = self._place, MARGIN + screen.tools_width
             screen.list_box = ListBox(title, titles, self.index_in(rows), tuple(map(translated, keys)), place, left)

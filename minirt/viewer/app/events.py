@@ -130,9 +130,10 @@ class EventDispatcher:
             return
         if self.choosing.takes_button(button, x, y):
             return
+        shows_handles = self.session.screen.shows_handles(self.session.state)
         self.typing.end()
         self.choosing.end()
-        self.mouse.on_press(button, x, y)
+        self.mouse.on_press(button, x, y, shows_handles)
 
     def on_tick(self) -> None:
         """A sixtieth of a second passed while a key is held, the panel is busy, or words wait for their picture."""

@@ -51,8 +51,8 @@ class Mouse:
         self._aimed_at = (-1, -1)  # the pixel where it was found
         self._pressed_before: tuple[float, int | None] = -inf, None  # time, and the element, of the last press
 
-    def on_press(self, button: int, x: int, y: int) -> None:
-        """A button goes down, or the wheel turns."""
+    def on_press(self, button: int, x: int, y: int, shows_handles: bool) -> None:
+        """A button goes down, or the wheel turns; handles can be grabbed if the window shows them."""
         session = self.session
         session.pointer = x, y
         session.release_button()
@@ -60,7 +60,7 @@ class Mouse:
         if drag is None:
             self.click(button)
             return
-        if button == Button.LEFT and drag.action != SLIDING and self.grab(x, y):
+        if button == Button.LEFT and drag.action != SLIDING and self.grab(x, y, shows_handles):
             return
         try:
             owner, point = self.owner_at(x, y)
@@ -92,7 +92,7 @@ class Mouse:
         session.show(look_through(session.state, owner, session.now))
         return True
 
-    def grab(self, x: int, y: int) -> bool:
+    def grab(self, x: int, y: int, shows_handles: bool) -> bool:
         """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
         session, state, screen = self.session, self.session.state, self.session.screen
         if screen.level == HudLevel.NOTHING:
@@ -104,7 +104,7 @@ class Mouse:
                 session.pressed = start._replace(owner=owner)
                 return True
         shown = bool(state.others), screen.handle_kind
-        handles = handles_of(state.element, session.view, screen.scale, *shown) if screen.handles else []
+        handles = handles_of(state.element, session.view, screen.scale, *shown) if shows_handles else []
         handle = handle_at(handles, x + PIXEL_CENTRE, y + PIXEL_CENTRE, screen.scale)
         if handle:
             start = DragStart(session.view, x, y, state.element, state.scene.camera, handle.centre, Button.LEFT)

@@ -109,6 +109,12 @@ class Screen:
         """Return the value, or the part of one, that the line on top shows at a pixel, None beside the values."""
         return overlay.value_at(state, x, y, self.size[0], self.text_size)
 
+    def shows_handles(self, state: State) -> bool:
+        """Whether the handles of the selected element are shown, and can be grabbed: near the pointer, and beside no
+        list or typed value, which may be about something small."""
+        is_free = self.handles and self.level and not self.help and not self.list_box
+        return bool(is_free) and shows_handles(state, self.window.pointer, self.size, self.scale)
+
     @property
     def tools_width(self) -> int:
         """Columns at the left that the tool row covers."""
@@ -135,8 +141,7 @@ class Screen:
         scale, size = self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        is_free = not keys_held and not self.list_box  # which may be about something small
-        handles = self.handles and is_free and shows_handles(state, self.window.pointer, self.size, scale)
+        handles = not keys_held and self.shows_handles(state)
         shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
         row = self.explained, handles, self.handles, self.handle_kind, self.tool
         contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout

@@ -14,10 +14,11 @@ from math import fmod
 from minirt.errors import ElementError
 from minirt.fields import MeshFile, Point
 from minirt.scene import Camera
+from minirt.shapes import Shape
 from minirt.viewer.editing import motion, selection, structure
 from minirt.viewer.editing import state as states
 from minirt.viewer.editing.motion import FORWARD, RIGHT, UPWARD, WORLD_AXES
-from minirt.viewer.editing.placing import drop, keep_standing
+from minirt.viewer.editing.placing import dropped, keep_standing
 from minirt.viewer.editing.projection import field_names
 from minirt.viewer.editing.state import MoveAxes, State
 from minirt.viewer.editing.values import values
@@ -115,6 +116,18 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
         limits = f" ({active.leaf.range})" if active.leaf.range else ""
         return state.with_message(f"{active.name} cannot go further{limits}")
     return changed
+
+
+def drop(state: State, _amount: float, now: float) -> State:
+    """Drop the selected shape onto what lies beneath, on a grid or in the middle; others that are selected follow."""
+    shape = state.element
+    if not isinstance(shape, Shape) or shape.bounds() is None:
+        return state.with_message(f"{shape.title} cannot stand on anything")
+    there = dropped(shape, state.rest, state.stride)
+    if there is None:
+        return state.with_message(f"there is nothing beneath the {shape.title}")
+    message = f"on what lies beneath, on a grid of {state.stride:g}"
+    return motion.put(state, shape, there, "", now).with_message(message)
 
 
 def next_value(step: int, state: State, _amount: float, _now: float) -> State:

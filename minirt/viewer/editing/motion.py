@@ -11,6 +11,7 @@ from minirt.fields import Triple, clamp, clamp_length, spelled, unit, upright
 from minirt.rendering.packing.camera import camera_frame
 from minirt.scene import Scene
 from minirt.scene.elements import TONES, Camera, linear_combination
+from minirt.viewer.editing.placing import keep_standing
 from minirt.viewer.editing.projection import dot, extent, position_of, scene_centre, subtract
 from minirt.viewer.editing.rigid import can_turn, clamp_point, mean_point, rotate, rotate_about, shifted, translate
 from minirt.viewer.editing.state import MoveAxes, State
@@ -81,7 +82,7 @@ def rotate_all(
     state: State, element: Element, rotations: Sequence[tuple[Triple, float]], kind: str, now: float
 ) -> State:
     """Rotate the selected elements, one rotation after the other, from what they were when the primary one was
-    `element`. Several rotate about the place of the primary one.
+    `element`. Several rotate about the place of the primary one; a single one that stands on something stays on it.
 
     rotations: unit vectors and angles in degrees, right-handed.
     """
@@ -90,7 +91,7 @@ def rotate_all(
     def rotated(each: Element) -> Element:
         for axis, angle in rotations:
             each = rotate_about(each, pivot, axis, angle) if pivot else rotate(each, axis, angle)
-        return each
+        return each if pivot else keep_standing(state, element, each)
 
     return edit_all(state, element, rotated, kind, now)
 

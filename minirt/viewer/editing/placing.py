@@ -13,7 +13,6 @@ from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 from minirt.shapes.shape import Oriented
 from minirt.viewer.editing import projection
-from minirt.viewer.editing.motion import put
 from minirt.viewer.editing.projection import STEP_SHARE, UP, Aim, Projection, dot, field_names, position_of, subtract
 from minirt.viewer.editing.rigid import frame_of, shifted
 from minirt.viewer.editing.state import State
@@ -162,28 +161,33 @@ def lift_of(shape: Shape, normal: Triple) -> float:
 
 
 def keep_standing(state: State, old: Element, changed: Element) -> Element:
-    """The changed selected element, which was `old`: unless it is moved or turned, it stands where it stood.
+    """The changed selected element, which was `old`: unless it is moved, it stands where it stood.
 
-    One that still is where it was added stands there again. Any other one that stands on something keeps its lower end:
-    it grows upwards.
+    One that still is where it was added, and is not turned, stands there again. Any other one that stands on something
+    keeps its lower end: it grows upwards, and neither sinks nor floats when it turns.
     """
     if not isinstance(old, Shape) or not isinstance(changed, Shape) or old.bounds() is None:
         return changed
     points = {name: getattr(old, name) for name in field_names(type(old), Point)}
-    names = *points, *field_names(type(old), Direction)
-    if any(getattr(old, name) != getattr(changed, name) for name in names):
+    if any(getattr(changed, name) != point for name, point in points.items()):
         return changed
+    turns = *field_names(type(old), Direction), "roll"
+    turned = any(getattr(old, name, None) != getattr(changed, name, None) for name in turns)
     stride = state.stride
-    if state.aim:
+    if state.aim and not turned:
         scene = state.scene.edit(state.selected)
         there = settled(old, state.aim, scene, stride)
         near = all(dist(at, getattr(there, name)) < SAME * stride for name, at in points.items())
         if near and there.replace(**points) == old:
             return settled(changed, state.aim, scene, stride)
-    changed = round_changes(old, changed, stride)  # so that the end does not drift by what is rounded later
-    growth = lowest_along(old, UP) - lowest_along(changed, UP)
-    stands = growth and abs(gap_below(old, state.scene.edit(state.selected).shapes)) <= SAME * stride
-    return shifted(changed, UP, growth) if stands else changed
+    if not turned:
+        changed = round_changes(old, changed, stride)  # so that the end does not drift by what is rounded later
+    rise = lowest_along(old, UP) - lowest_along(changed, UP)
+    gap = gap_below(old, state.scene.edit(state.selected).shapes) if rise else inf
+    if abs(gap) > SAME * stride:
+        return changed
+    grid = POINT_ROUNDING * stride
+    return shifted(changed, UP, grid * round((rise - gap) / grid) if turned else rise)
 
 
 def gap_below(shape: Shape, others: Sequence[Shape]) -> float:
@@ -223,14 +227,3 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
     there = shifted(shape, (x_to - x, rise, z_to - z))
     gap = gap_below(there, others)
     return shifted(there, DOWN, gap) if isfinite(gap) else None
-
-
-def drop(state: State, _amount: float, now: float) -> State:
-    """Drop the selected shape onto what lies beneath, on a grid or in the middle; others that are selected follow."""
-    shape = state.element
-    if not isinstance(shape, Shape) or shape.bounds() is None:
-        return state.with_message(f"{shape.title} cannot stand on anything")
-    there = dropped(shape, state.rest, state.stride)
-    if there is None:
-        return state.with_message(f"there is nothing beneath the {shape.title}")
-    return put(state, shape, there, "", now).with_message(f"on what lies beneath, on a grid of {state.stride:g}")

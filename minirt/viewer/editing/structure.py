@@ -105,16 +105,17 @@ def names_of_chosen(state: State | Snapshot) -> str:
 
 
 def choices(state: State, group: str) -> Iterator[tuple[str, State]]:
-    """Yield the states after each kind of element, or each attribute that the selected element lacks, was added.
+    """Yield the states after each kind of element, or each attribute of the selected element, was added.
 
-    Each comes with its title. Those that need a missing file, or cannot be so small or far away, are left out.
+    Each comes with its title. Those that need a missing file, or cannot be so small or far away, are left out. An
+    attribute that is there stays as it is, and its value becomes active.
     """
     if group == ELEMENT:
         kinds = addable_kinds(state.scene)  # of a light and a further one, only one can be added
         ways = [(kind.title.removeprefix(FURTHER), partial(with_element, state, kind)) for kind in kinds]
     else:
-        absent = [each for each in fields_of(type(state.element)) if getattr(state.element, each.name) is None]
-        ways = [(field.title, partial(with_attribute, state, field)) for field in absent if field.keyed]
+        fields = [each for each in fields_of(type(state.element)) if each.keyed and each.default is None]
+        ways = [(field.title, partial(with_attribute, state, field)) for field in fields]
     for title, add in ways:
         with suppress(LookupError, ElementError):
             yield title, add()
@@ -131,11 +132,19 @@ def with_element(before: State, kind: type[Element]) -> State:
 
 
 def with_attribute(before: State, field: Field) -> State:
-    """The state whose selected element has a new attribute, which is active."""
+    """The state whose selected element has an attribute, which is active: a new one, unless it is there."""
+    if getattr(before.element, field.name) is not None:
+        return replace(before.with_active(field), last_change=(ATTRIBUTE, 0.0))
     changed = before.element.replace(**{field.name: default_value(field, before, nice_number(SIZE * before.size))})
     after = before.change(before.scene.edit(before.selected, changed), ATTRIBUTE, 0.0)
     index = [value.field.name for value in values(changed)].index(field.name)
     return replace(after, value_index=index).with_message(f"{field.doc}: {field_text(field, changed)}")
+
+
+def present(before: State, choice: State) -> str:
+    """The value of an attribute that is there before it is chosen; nothing for any other choice."""
+    is_there = choice.scene is before.scene and choice.last_change == (ATTRIBUTE, 0.0)
+    return field_text(choice.active.field, choice.element).partition(":")[2] if is_there else ""
 
 
 def remove_attribute(state: State, _amount: float, _now: float) -> State:

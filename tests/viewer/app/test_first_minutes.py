@@ -20,6 +20,8 @@ from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.screen import darken_beyond
 from minirt.viewer.display.words import title_in_words, values_in_words
 from minirt.viewer.editing.colours import COLOURS, colour_word
+from minirt.viewer.editing.handles import MOVE, handles_of
+from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.typed import set_typed
 from minirt.viewer.editing.values import values
@@ -252,6 +254,16 @@ def test_handles_are_shown_while_the_pointer_is_near_the_selected_element() -> N
     assert (near == frame()).all(), "while the pointer was nowhere so far"
     typing = frame("move 250,230", "text 2")
     assert (typing[:, 400:] == far[:, 400:]).all()
+
+
+def test_handles_that_are_not_shown_are_not_grabbed() -> None:
+    opened = ["resize 640x480", "press Tab", "press Tab"]
+    state = played(*opened, text=PAIR).state
+    handles = handles_of(state.element, projection_of(state.scene.camera, 640, 480), 1.0)
+    x, y = map(int, next(each.points[0] for each in handles if (each.kind, each.axis) == (MOVE, 1)))
+    assert played(*opened, f"drag {x},{y} {x},{y - 40}", text=PAIR).state.element != state.element
+    typing = played(*opened, "text 2", f"drag {x},{y} {x},{y - 40}", text=PAIR).state
+    assert typing.scene.elements[state.selected].centre == state.element.centre
 
 
 @pytest.mark.parametrize(

@@ -106,6 +106,24 @@ def test_lists_of_keys_take_clicks_and_the_wheel() -> None:
     assert turned.state.scene.camera == scene().camera
 
 
+def test_attributes_that_are_there_keep_their_rows_and_show_their_values() -> None:
+    text = TEXT.replace("sp 0,0,0 2 255,0,0", "sp 0,0,0 2 255,0,0 mirror:0.25")
+    listed, without = play("click 320,240", "press M", text=text), play("click 320,240", "press M")
+    assert rows(listed) == rows(without)
+    box = box_of(listed)
+    at = box.rows.index("mirror")
+    assert box.keys[at] == "0.25"
+    assert set(box.keys[:at] + box.keys[at + 1 :]) == {""}
+    lines = "click 320,240", "press M", click_on(listed, "mirror")
+    taken = play(*lines, text=text)
+    assert taken.state.scene.items == scene(text).items
+    assert (taken.state.active.name, taken.state.undo_stack, rows(taken)) == ("mirror share", (), ())
+    typed = play(*lines, "text =", *(f"text {character}" for character in "0.5"), "press Return", text=text)
+    assert (typed.state.element.mirror.share, len(typed.state.undo_stack)) == (0.5, 1)
+    left = play("click 320,240", "press M", click_on(listed, "mirror").replace("click", "move"), "press D", text=text)
+    assert len(left.state.undo_stack) == 1, "the row under the pointer is no change of its own"
+
+
 def test_keys_and_the_pointer_go_through_the_list_of_actions() -> None:
     title = right_click(AT_SPHERE)
     listed = play(title)

@@ -1,13 +1,18 @@
-"""A shape that stands on something stays on it while its size changes, wherever its position is."""
+"""A shape that stands on something stays on it while its size changes or it turns, wherever its position is."""
 
 from __future__ import annotations
+
+from math import sqrt
 
 import pytest
 
 from minirt.fields import Triple
+from minirt.shapes import Cylinder
 from minirt.viewer.editing.handles import SIZE, handles_of
 from minirt.viewer.editing.projection import position_of, projection_of
 from minirt.viewer.editing.state import State
+from minirt.viewer.editing.typed import set_typed
+from minirt.viewer.editing.values import values
 from tests.viewer.fake import played, scene
 
 HEAD = "A 0.2 255,255,255\nC 0,2,-9 0,-0.1,1 60\n"
@@ -79,3 +84,44 @@ def test_a_handle_leaves_the_base_where_it_is_all_along_the_drag(added: bool) ->
     assert after.height > 1.2 * before.height
     assert before.apex[1] - before.height == pytest.approx(0, abs=1e-3)
     assert after.apex[1] - after.height == pytest.approx(0, abs=1e-3)
+
+
+TURNS = (
+    ("press .",),
+    ("press .",) * 7,
+    ("down Up", "wait 1.3", "up Up"),
+    ("press Up",) * 3,
+    ("down Shift", "drag 320,240 400,330", "up Shift"),
+)
+
+
+def lower_end(cylinder: Cylinder) -> float:
+    """The least y of a capped cylinder: of its lower rim."""
+    slope = min(1.0, abs(cylinder.axis[1]))
+    return cylinder.centre[1] - cylinder.height / 2 * slope - cylinder.diameter / 2 * sqrt(1 - slope * slope)
+
+
+@pytest.mark.parametrize("turns", TURNS, ids="|".join)
+def test_it_neither_sinks_nor_floats_when_it_turns(turns: tuple[str, ...]) -> None:
+    text = f"{HEAD}cy 0,1.5,0 0,1,0 2 3 9,9,9\n"
+    opened = played("resize 640x480", "press Tab", text=text).state
+    after = played("resize 640x480", "press Tab", *turns, text=text).state
+    cylinder = after.element
+    assert isinstance(cylinder, Cylinder)
+    assert abs(cylinder.axis[1]) < 0.999
+    assert lower_end(cylinder) == pytest.approx(0, abs=0.01 * opened.stride)
+    back = played("resize 640x480", "press Tab", *turns, "press Ctrl+Z", text=text).state
+    assert back.scene.items == opened.scene.items
+
+
+def test_a_typed_axis_leaves_it_on_the_ground() -> None:
+    state = edited("cy 0,1.5,0 0,1,0 2 3 9,9,9")
+    (axis,) = {each._replace(channel=None) for each in values(state.element) if each.field.name == "axis"}
+    turned = set_typed(state, axis, "1,0,0", 0.0).element
+    assert (turned.axis, turned.centre) == ((1, 0, 0), (0, 1, 0))
+
+
+def test_what_stands_on_nothing_turns_where_it_is() -> None:
+    turned = edited("cy 0,1.6,0 0,1,0 2 3 9,9,9", *["press ."] * 7).element
+    assert turned.centre == (0, 1.6, 0)
+    assert turned.axis != (0, 1, 0)
