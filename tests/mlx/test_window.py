@@ -208,3 +208,12 @@ def test_the_loop_hook_ticks_sixty_times_a_second_and_late_rather_than_twice(des
     steps = [later - earlier for earlier, later in itertools.pairwise(times)]
     assert steps.pop(10) == pytest.approx(0.1)
     assert steps == pytest.approx([1 / 60] * 39)
+
+
+def test_a_tick_that_is_a_little_late_does_not_delay_those_after_it(desktop: Desktop) -> None:
+    late = PACE.replace("now += 0.1", "pass").replace("now += timeout or 0.0", "now += (timeout or 0.0) + 0.004")
+    with desktop.program(sys.executable, "-W", "error", "-c", late) as process:
+        status, output, errors = outcome(process)
+    assert (status, errors) == (0, "")
+    times = json.loads(output)
+    assert (times[40] - times[20]) / 20 == pytest.approx(1 / 60, abs=1e-3)

@@ -21,7 +21,7 @@ class PygletDisplay(Display):
     def __init__(self) -> None:
         super().__init__()
         self._requested = False  # a turn is scheduled
-        self._next_tick: float | None = None  # when it is due, in seconds of `time`
+        self._next_tick: float | None = None  # when it is due, in seconds of pyglet's clock
 
     def run(self) -> None:
         self.request_turn()
@@ -53,15 +53,20 @@ class PygletDisplay(Display):
         self._take_turn(tick=False)
 
     def _tick(self, _seconds: float) -> None:
-        """Take a turn that ticks, and schedule the next one TICK after this one was due.
+        """Take a turn that ticks, and schedule the next one TICK after this one was due, or late after a slow turn.
 
-        Intervals of pyglet's clock begin when the last one is handled, late or not: with 9 ms of drawing that gave 55
-        ticks a second in place of 60.
+        Intervals of pyglet's clock begin when the last one is handled, late or not: with 9 ms of drawing that gave 56
+        ticks a second in place of 59.
         """
-        assert self._next_tick
-        self._next_tick = max(self._next_tick + TICK, self.time())
-        pyglet.clock.schedule_once(self._tick, self._next_tick - self.time())
+        assert self._next_tick is not None
+        now = pyglet.clock.get_default().time()
+        self._schedule_tick(now, self._next_tick if self._next_tick + TICK > now else now)
         self._take_turn(tick=True)
+
+    def _schedule_tick(self, now: float, last: float) -> None:
+        """Schedule a tick TICK after the last one, in seconds of pyglet's clock."""
+        self._next_tick = last + TICK
+        pyglet.clock.schedule_once(self._tick, self._next_tick - now)
 
     def _take_turn(self, *, tick: bool) -> None:
         """Perform the actions, take a turn, and end pyglet's loop when it is over."""
@@ -76,8 +81,8 @@ class PygletDisplay(Display):
 
     def _tick_while(self, busy: bool) -> None:
         if busy and self._next_tick is None:
-            self._next_tick = self.time() + TICK
-            pyglet.clock.schedule_once(self._tick, TICK)
+            now = pyglet.clock.get_default().time()
+            self._schedule_tick(now, now)
         elif not busy:
             pyglet.clock.unschedule(self._tick)
             self._next_tick = None
