@@ -68,7 +68,9 @@ class Attributes(Element):
 
     specular: Specular | None = declare(Compound, "highlight", record=Specular, default=None, shared=SHARED)
     mirror: Mirror | float | None = declare(Compound, "mirrored light", record=Mirror, default=None, shared=SHARED)
-    glass: Glass | None = declare(Compound, "refracted light", record=Glass, default=None, shared=SHARED)
+    glass: Glass | None = declare(
+        Compound, "refracted light; lamps shine through", record=Glass, default=None, shared=SHARED
+    )
     tint: Tint | None = declare(Compound, "colour that glass gives to light", record=Tint, default=None, shared=SHARED)
     fresnel: float | None = declare(Fresnel, "how far Fresnel's equations count", bare="1", default=None, shared=SHARED)
     glow: float | None = declare(Glow, "light of its own, which lights nothing else", default=None, shared=SHARED)

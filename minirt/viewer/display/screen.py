@@ -30,7 +30,7 @@ from minirt.viewer.language import translated
 TAB_PARTS = 48  # of the width: a third of the tab of the panel in a narrow window
 # Shown until the first edit; the keys are the same on all keyboards.
 TIPS = """drag an object to move it, or nothing to look around    wheel: zoom    right drag: turn around
-right click: add, copy, delete and more
+right click: add, copy, delete and more    L: the light
 H: all keys    F1: panel, film    Ctrl+Z: undo    Ctrl+S: save    Esc: quit
 click on a value in the line on top: type it"""
 BEYOND = "outside of the saved picture"
