@@ -81,7 +81,7 @@ class Glass(Secondary):
 
     title = "glass"
     ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02, initial=1.5)
-    share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0)
+    share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0, initial=0.9)
     fade: float = declare(Fade, "distance at which refracted light is gone", default=0.0, placeholder="visibility")
 
     def features(self) -> tuple[str, ...]:

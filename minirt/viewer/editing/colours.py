@@ -92,4 +92,4 @@ def colours(state: State) -> Iterator[tuple[str, State]]:
             if value := colour_value(element, state.active if index == state.selected else None):
                 painted = element.replace(**{value.field.name: value.replaced(element, levels)})
                 scene = scene.edit(index, painted)
-        yield word, state.change(scene, COLOUR, 0.0)
+        yield word, state.change(scene, COLOUR, 0.0).with_message(f"colour: {word}")

@@ -44,9 +44,10 @@ def default_element(kind: type[Element], state: State) -> Element:
 def default_record(kind: type[RecordType], state: State, length: float) -> RecordType:
     """Make a record of default values, such as the value of an attribute; `length` is the usual one.
 
-    LookupError as in `default_element`.
+    Fields that may be left out are, unless they have an initial value beside the default. LookupError as in
+    `default_element`.
     """
-    fields = [field for field in fields_of(kind) if field.required]
+    fields = [each for each in fields_of(kind) if each.required or None not in (each.initial, each.default)]
     points = iter(default_points(kind, state, sum(isinstance(field, Point) for field in fields)))
     made = (next(points) if isinstance(each, Point) else default_value(each, state, length) for each in fields)
     return kind(**dict(zip((each.name for each in fields), made, strict=True)))
