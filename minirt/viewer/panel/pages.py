@@ -91,8 +91,9 @@ class Pages:
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
         if FILMS[self._format].is_lossy:
             self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
-        length = f"once around the scene, in {self._pictures / FPS:g} s, as large as the window"
-        imgui.text_wrapped(translated(length))
+        width, height = self.session.window_size
+        film = f"once around the scene, a film of {self._pictures / FPS:g} s, {width}x{height} pixels"
+        imgui.text_wrapped(translated(film))
         if imgui.button(translated("stop" if self._is_running else "save a film") + "###film"):
             self._is_stopped = self._is_running
             if not self._is_running:
@@ -111,6 +112,7 @@ class Pages:
         file = next(each for each in names if not found(each) and not found(numbered(each, 1)))
         quality = self._quality if FILMS[self._format].is_lossy else None
         self._share = 0.0
+        self.say(f"0 of {self._pictures} pictures")
         try:
             pictures = self.frames(self.session.shown_scene, self._pictures)
             end = f"film: {save_movie(pictures, file, quality=quality)[0]}"
