@@ -140,11 +140,30 @@ def status(shown: Painted, rate: float = 0.0) -> str:
 
 
 def wrap(text: str, width: int, size: int) -> str:
-    """Wrap text so that it leaves a margin in a picture of that width; lines keep at least about ten letters."""
-    letters, wrapped = len(text), text
-    while letters > 10 and measure(wrapped, size)[0] > width - 2 * MARGIN:
+    """Wrap text so that it leaves a margin in a picture of that width: between groups of words, or else between words.
+
+    Lines keep at least about ten letters.
+    """
+    lines, room = list[str](), width - 2 * MARGIN
+    for line in text.split("\n"):
+        groups = line.split(GAP)
+        fitting = groups[0]
+        for group in groups[1:]:
+            longer = f"{fitting}{GAP}{group}"
+            if measure(longer, size)[0] > room:
+                lines.append(fitting)
+                longer = group
+            fitting = longer
+        lines.append(fitting)
+    return "\n".join(wrap_words(line, room, size) for line in lines)
+
+
+def wrap_words(line: str, room: int, size: int) -> str:
+    """Wrap a line between words so that it fits into so many pixels; lines keep at least about ten letters."""
+    letters, wrapped = len(line), line
+    while letters > 10 and measure(wrapped, size)[0] > room:
         letters = letters * 9 // 10
-        wrapped = "\n".join(textwrap.fill(part, letters) for part in text.split("\n"))
+        wrapped = textwrap.fill(line, letters)
     return wrapped
 
 

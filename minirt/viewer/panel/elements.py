@@ -68,7 +68,7 @@ class Elements:
         self._pointed = None
         if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
             if state.selected != self._followed and state.selected in indices:
-                self._followed = state.selected
+                self._followed = -1 if imgui.is_window_appearing() else state.selected  # its height is known then
                 row = imgui.get_frame_height_with_spacing()
                 last = len(indices) * row - imgui.get_content_region_avail()[1]  # Dear ImGui stops there a frame later
                 imgui.set_scroll_y(max(0.0, min(indices.index(state.selected) * row - height / 2, last)))

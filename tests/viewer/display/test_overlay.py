@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -33,6 +34,7 @@ from minirt.viewer.display.overlay import (
 from minirt.viewer.display.words import colour_word
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
+from minirt.viewer.language import GAP
 from tests.paths import ROOT
 from tests.viewer.fake import TEXT, scene
 from tests.viewer.session_harness import SessionHarness
@@ -298,3 +300,17 @@ def test_letters_search_the_help() -> None:
     harness.play("press Backspace", "text 3", "press Escape", "press h")
     assert (screen.help, screen.search) == (1, "")
     assert screen.list_box is None  # nothing was typed as a value
+
+
+@pytest.mark.parametrize("width", [120, 200, 300, 400, 640, 1280])
+def test_lines_are_wrapped_between_groups_of_words_where_these_fit(width: int) -> None:
+    groups = ["drag an object to move it", "wheel: zoom", "L: the light", "Ctrl+S: save"]
+    lines = wrap(GAP.join(groups), width, 16).split("\n")
+    assert max(measure(line, 16)[0] for line in lines) <= max(width - 2 * MARGIN, measure("w" * 10, 16)[0])
+    assert " ".join(lines).split() == " ".join(groups).split()
+    for group in groups:
+        fits = measure(group, 16)[0] <= width - 2 * MARGIN
+        assert fits == any(group in line.split(GAP) for line in lines)
+    for line, following in pairwise(lines):
+        if line.split(GAP)[-1] in groups and following.split(GAP)[0] in groups:
+            assert measure(line + GAP + following.split(GAP)[0], 16)[0] > width - 2 * MARGIN
