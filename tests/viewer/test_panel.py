@@ -72,13 +72,16 @@ class Card:
 class User:
     """A user of a window whose panel is open."""
 
-    def __init__(self, scene: Scene, size: tuple[int, int] = SIZE, select: int | None = None) -> None:
+    def __init__(
+        self, scene: Scene, size: tuple[int, int] = SIZE, select: int | None = None, scale: float = 1.0
+    ) -> None:
         self.memory = Memory()
         mlx = Mlx(self.memory)
         file = Path(scene.file or "scene.rt")
         self.session = Session(mlx, mlx.mlx_init(), scene, file, size, FakeRenderer(), Idle)
         if select is not None:
             self.session.state = self.session.state.select(select)
+        self.session.window.scale = scale
         self.dispatcher = EventDispatcher(self.session)
         self.press(Key.F1)
         self.panel = self.dispatcher.panel
@@ -670,3 +673,15 @@ def test_a_double_click_on_a_row_looks_through_a_further_camera_and_brings_other
 @pytest.mark.parametrize(("word", "rows"), [("arms", [6, 7]), ("cone 2", [7]), ("camera 1", [1]), ("sp", [3])])
 def test_the_search_finds_names_and_numbers(word: str, rows: list[int]) -> None:
     assert found(word, parse(MANY, "scene.rt").scene) == rows
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("height", [450, 700, 900])
+def test_the_list_shows_the_whole_row_of_the_selected_element_when_the_panel_opens(height: int, scale: float) -> None:
+    text = TEXT + "bg 1,2,3\n" + "sp 0,0,0 2 255,0,0\n" * 6
+    opened = parse(text, "scene.rt").scene
+    last = len(opened.elements) - 1
+    user = User(opened, (1600, height), select=last, scale=scale)
+    (_, element), (_, group) = (user.widgets.places[name] for name in (f"element {last}", "place group"))
+    row = 1.5 * user.panel.size
+    assert element + row / 2 < group - 1.5 * row, "the list ends above the title and the values of the element"

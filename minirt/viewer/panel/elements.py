@@ -72,6 +72,7 @@ class Elements:
                 row = imgui.get_frame_height_with_spacing()
                 last = len(indices) * row - imgui.get_content_region_avail()[1]  # Dear ImGui stops there a frame later
                 imgui.set_scroll_y(max(0.0, min(indices.index(state.selected) * row - height / 2, last)))
+                self.rows.gui.unsettled = max(self.rows.gui.unsettled, 1)  # and scrolls in the next frame
             for place in seen(len(indices)):
                 self.row(indices[place])
         imgui.end_child()
