@@ -26,6 +26,7 @@ class KeyDispatcher:
         self.choosing = choosing
         self.perform = perform
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
+        self._names_colour = False  # whether the list that is open is of the words of a value that was typed
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -38,12 +39,20 @@ class KeyDispatcher:
         session.screen.tool = None
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
-        if help_takes(session, code, pressed) or self.typing.takes(code) or self.choosing.takes(code, pressed):
+        self._names_colour = self._names_colour and self.choosing.is_open
+        if help_takes(session, code, pressed) or self.typing.takes(code):
+            return
+        if self._names_colour and code == Key.TAB:
+            self.choosing.take()
+            self.typing.go_on(whole=True)
+            return
+        if self.choosing.takes(code, pressed):
             return
         if self.typing.is_colour and Key.A <= code <= Key.Z and not session.modifiers & SIGNIFICANT:
             self.typing.end()
             self.perform(BY_ACTION["choose colour"])
             self.choosing.takes(code, None)  # the first letter of its word
+            self._names_colour = True
             return
         if pressed:  # any other key that does something closes them
             self.typing.end()

@@ -78,11 +78,15 @@ class Typing:
         if key in (*ENTER, Key.TAB):
             self.set(text)
             if key == Key.TAB and not session.state.message:
-                step = -1 if Modifier.SHIFT in session.modifiers else 1
-                following = next_in_line(session.state, step, whole=bool(three_words(text)))
-                session.show(session.state.with_active(following))
-                self.begin(EMPTY)
+                self.go_on(whole=bool(three_words(text)))
         return True
+
+    def go_on(self, whole: bool) -> None:
+        """Begin the next value of the line on top, with Shift the one before. `whole`: all parts of it are set now."""
+        session = self.session
+        step = -1 if Modifier.SHIFT in session.modifiers else 1
+        session.show(session.state.with_active(next_in_line(session.state, step, whole=whole)))
+        self.begin(EMPTY)
 
     def set(self, text: str) -> None:
         """Set the name or the value that was typed; a message says what is wrong with it."""

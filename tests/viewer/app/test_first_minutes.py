@@ -18,7 +18,7 @@ from minirt.viewer.display.lists import MARGIN
 from minirt.viewer.display.marks import arrow_tip, arrows
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.display.screen import darken_beyond
-from minirt.viewer.display.words import title_in_words, values_in_words
+from minirt.viewer.display.words import next_in_line, title_in_words, values_in_words
 from minirt.viewer.editing.colours import COLOURS, colour_word
 from minirt.viewer.editing.handles import MOVE, handles_of
 from minirt.viewer.editing.projection import projection_of
@@ -254,6 +254,20 @@ def test_handles_are_shown_while_the_pointer_is_near_the_selected_element() -> N
     assert (near == frame()).all(), "while the pointer was nowhere so far"
     typing = frame("move 250,230", "text 2")
     assert (typing[:, 400:] == far[:, 400:]).all()
+
+
+@pytest.mark.parametrize(("tab", "step"), [("press Tab", 1), ("press Shift+Tab", -1)])
+def test_tab_after_the_word_of_a_colour_sets_it_and_goes_on(tab: str, step: int) -> None:
+    text = PAIR.replace("sp -2,1,0 2 255,0,0", "co -2,2,0 0,-1,0 1 2 255,0,0")
+    opened = ["press Tab", "press Tab", *["press V"] * 2]  # its diameter, its height, its colour
+    before = played(*opened, text=text).state
+    session = played(*opened, "text =", *(f"press {each}" for each in "ORANGE"), tab, "text 0", text=text)
+    after = session.state
+    assert after.selected == before.selected
+    assert after.element.colour == COLOURS["orange"]
+    assert after.active == next_in_line(before, step, whole=True)
+    assert session.screen.list_box
+    assert session.screen.list_box.title.startswith(f"{after.active.name}, now")
 
 
 def test_handles_that_are_not_shown_are_not_grabbed() -> None:
