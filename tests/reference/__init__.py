@@ -8,16 +8,20 @@ one in front of the origin is the hit.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any, NamedTuple, TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
 from minirt.materials import Mirror
 from minirt.scene import Camera, Scene
-from tests.reference import hits
+from minirt.shapes import Shape
 from tests.reference.hits import first_hits
 from tests.reference.light import (
     OFF_SURFACE,
     RANDOM,
+    Surface,
     is_sheet,
     is_tinted,
     left_by_media,
@@ -25,11 +29,13 @@ from tests.reference.light import (
     random_in_disc,
     shaded,
     shares,
+    surface_of,
 )
 from tests.reference.texturing import bilinear, colour_and_normal, footprint, patterned, patterns_of, picture
 from tests.reference.uv_mapping import normals
 from tests.reference.vectors import DECODED, Array, dot, length, rgb, right_and_up
 
+Parts = TypeVar("Parts", bound=tuple[Any, ...])  # a NamedTuple of arrays with an entry for each ray or point
 DEPTH = 8  # reflections and refractions along a path, at most
 LEAST = 2.0**-10  # share of the light of a pixel up to which rays are not followed
 
@@ -39,8 +45,7 @@ def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
     origins, directions = camera_rays(scene.camera, width, height)
     before = DECODED.set(scene.camera.tone != "plain")
     pixel = 2 * np.tan(np.radians(scene.camera.fov) / 2) / width
-    starts, towards, weights = origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones((width * height, 3))
-    radiance = light_along(scene, starts, towards, weights, depth, pixel=pixel)
+    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), depth, pixel)
     DECODED.reset(before)
     return radiance.reshape(height, width, 3) * 2.0**scene.camera.exposure
 
@@ -74,64 +79,111 @@ def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
     return np.cos(turn) * right - np.sin(turn) * up, np.cos(turn) * up + np.sin(turn) * right, forward
 
 
-def light_along(
-    scene: Scene, origins: Array, directions: Array, weights: Array, depth: int, fade: float = 0.0, pixel: float = 0.0
-) -> Array:
-    """The radiance along n rays times their weights (n, 3), by recursive ray tracing (Whitted 1980).
+class Rays(NamedTuple):
+    """n rays of one generation: those of the eye, or those that hits of the generation before have sent."""
 
-    With `fade` it has lost all strength at that distance. `pixel` is the width of a pixel at distance 1 from the eye.
+    origins: Array  # (n, 3)
+    directions: Array  # (n, 3), unit
+    weights: Array  # (n, 3) shares of the light of the pixel
+    fade: Array  # (n,) distance at which the light along them has lost all strength, 0 for none
+    pixel: Array  # (n,) index of the ray of the eye that they continue
+
+
+def light_along(scene: Scene, origins: Array, directions: Array, depth: int, pixel: float = 0.0) -> Array:
+    """The radiance along n rays, (n, 3), by ray tracing (Whitted 1980), one generation of rays after the other.
+
+    `pixel` is the width of a pixel at distance 1 from the eye.
     """
-    distances, owners = first_hits(scene.shapes, origins, directions)
-    light = np.zeros_like(origins)
-    missed = owners < 0
-    weights = weights * left_by_media(scene, origins, directions, distances)
-    if fade:
-        weights = weights * np.maximum(0, 1 - distances / fade)[:, None]
-    light[missed] = weights[missed] * sky(scene, directions[missed])
-    for index in np.unique(owners[~missed]):
-        rays, shape = owners == index, scene.shapes[index]
-        direction, weight = directions[rays], weights[rays]
-        points = origins[rays] + distances[rays, None] * direction
-        far = OFF_SURFACE * (distances[rays] + length(origins[rays]) + length(points))
-        normal = normals(shape, points)
-        colour, bent = colour_and_normal(scene, shape, points, normal)
-        if patterns_of(shape):
-            wide = footprint(scene.camera, pixel, points, distances[rays], direction, normal)
-            colour, bent = patterned(shape, points, wide, colour, bent)
-        outside = dot(normal, direction) <= 0
-        facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
-        leaving = points + far[:, None] * facing, points - far[:, None] * facing
-        # The bumped normal counts, unless the mirrored ray would go through the surface.
-        mirrored = direction - 2 * dot(bent, direction)[:, None] * bent
-        sound = (dot(bent, direction) < 0) & (dot(mirrored, facing) > 0)
-        tilted = np.where(sound[:, None], bent, facing)
-        cosine = -dot(tilted, direction)[:, None]
-        back, through = shares(shape, cosine[:, 0], outside)
-        own = (1 - back - through)[:, None]
-        light[rays] += weight * shaded(scene, shape, points, facing, bent, colour, direction, far, own)
-        if depth == 0 or not sum(mirror_and_glass(shape)):
-            continue
-        mirrored = direction + 2 * cosine * tilted
-        ratio = np.where(outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
-        sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: the component along the surface
-        squared = dot(sine, sine)
-        total = squared > 1  # total internal reflection
-        refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * tilted
-        tint = rgb(shape.tint.colour) if shape.tint and is_tinted(shape) and is_sheet(shape) else np.ones(3)
-        mirror_fade = shape.mirror.fade if isinstance(shape.mirror, Mirror) else 0.0
-        glass_fade = shape.glass.fade if shape.glass else 0.0
-        sent = (
-            (~total, leaving[0], mirrored, back[:, None] * weight, mirror_fade),
-            (total, leaving[0], mirrored, (back + through)[:, None] * weight, glass_fade),
-            (~total, leaving[1], refracted, through[:, None] * weight * tint, glass_fade),
-        )
-        for which, starts, towards, share, end in sent:
-            followed = which & (share.max(axis=1) > LEAST)
-            part = np.zeros_like(points)
-            rays_sent = starts[followed], towards[followed], share[followed]
-            part[followed] = light_along(scene, *rays_sent, depth - 1, end, pixel)
-            light[rays] += part
+    light, count = np.zeros(directions.shape), len(directions)
+    rays = Rays(origins, directions, np.ones((count, 3)), np.zeros(count), np.arange(count))
+    for left in range(depth, -1, -1):
+        distances, owners = first_hits(scene.shapes, rays.origins, rays.directions)
+        weights = rays.weights * left_by_media(scene, rays.origins, rays.directions, distances)
+        fades = rays.fade > 0
+        weights[fades] *= np.maximum(0, 1 - distances[fades] / rays.fade[fades])[:, None]
+        rays, missed = rays._replace(weights=weights), owners < 0
+        np.add.at(light, rays.pixel[missed], weights[missed] * sky(scene, rays.directions[missed]))
+        if missed.all():
+            break
+        owned = [(index, owners == index) for index in np.unique(owners[~missed])]
+        hit = [(scene.shapes[i], joined([rays], which), distances[which]) for i, which in owned]
+        surfaces = [surface_hit(scene, *each, pixel) for each in hit]
+        together = joined([each for _, each, _ in hit])
+        np.add.at(light, together.pixel, together.weights * shaded(scene, joined([each for each, _ in surfaces])))
+        sent = [
+            rays
+            for (shape, arrived, _), each in zip(hit, surfaces, strict=True)
+            for rays in sent_on(shape, arrived, *each)
+        ]
+        if not left or not sent:
+            break
+        rays = joined(sent)
     return light
+
+
+def joined(parts: Sequence[Parts], which: Any = slice(None)) -> Parts:
+    """All rays, or all points, of several parts, or those of one part that are chosen."""
+    return type(parts[0])(*(np.concatenate(each)[which] for each in zip(*parts, strict=True)))
+
+
+def surface_hit(scene: Scene, shape: Shape, rays: Rays, distances: Array, pixel: float) -> tuple[Surface, Leaving]:
+    """The points at which rays hit a shape, and what leaves there."""
+    direction = rays.directions
+    points = rays.origins + distances[:, None] * direction
+    far = OFF_SURFACE * (distances + length(rays.origins) + length(points))
+    normal = normals(shape, points)
+    colour, bent = colour_and_normal(scene, shape, points, normal)
+    if patterns_of(shape):
+        wide = footprint(scene.camera, pixel, points, distances, direction, normal)
+        colour, bent = patterned(shape, points, wide, colour, bent)
+    outside = dot(normal, direction) <= 0
+    facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
+    # The bumped normal counts, unless the mirrored ray would go through the surface.
+    mirrored = direction - 2 * dot(bent, direction)[:, None] * bent
+    sound = (dot(bent, direction) < 0) & (dot(mirrored, facing) > 0)
+    tilted = np.where(sound[:, None], bent, facing)
+    back, through = shares(shape, -dot(tilted, direction), outside)
+    surface = surface_of(shape, points, facing, bent, colour, direction, far, 1 - back - through)
+    return surface, Leaving(tilted, outside, back, through)
+
+
+class Leaving(NamedTuple):
+    """What decides where mirrored and refracted rays go from n points."""
+
+    tilted: Array  # (n, 3) normal of the mirror
+    outside: NDArray[np.bool_]  # (n,) whether rays arrive from outside of the shape
+    back: Array  # (n,) share of mirrored light
+    through: Array  # (n,) share of refracted light
+
+
+def sent_on(shape: Shape, rays: Rays, at: Surface, leaving: Leaving) -> list[Rays]:
+    """The rays that a mirror or glass sends on, of those that hit it."""
+    if not sum(mirror_and_glass(shape)):
+        return []
+    direction, tilted = rays.directions, leaving.tilted
+    above, below = (at.points + sign * at.far[:, None] * at.normal for sign in (1, -1))
+    cosine = -dot(tilted, direction)[:, None]
+    mirrored = direction + 2 * cosine * tilted
+    ratio = np.where(leaving.outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
+    sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: the component along the surface
+    squared = dot(sine, sine)
+    total = squared > 1  # total internal reflection
+    refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * tilted
+    tint = rgb(shape.tint.colour) if shape.tint and is_tinted(shape) and is_sheet(shape) else np.ones(3)
+    mirror_fade = shape.mirror.fade if isinstance(shape.mirror, Mirror) else 0.0
+    glass_fade = shape.glass.fade if shape.glass else 0.0
+    back, through = leaving.back[:, None], leaving.through[:, None]
+    ways = (
+        (~total, above, mirrored, back * rays.weights, mirror_fade),
+        (total, above, mirrored, (back + through) * rays.weights, glass_fade),
+        (~total, below, refracted, through * rays.weights * tint, glass_fade),
+    )
+    sent = []
+    for which, starts, towards, share, end in ways:
+        followed = which & (share.max(axis=1) > LEAST)
+        fade = np.full(followed.sum(), end)
+        sent.append(Rays(starts[followed], towards[followed], share[followed], fade, rays.pixel[followed]))
+    return sent
 
 
 def sky(scene: Scene, directions: Array) -> Array:
@@ -155,13 +207,11 @@ def render_sampled(
     `along_the_ray` is a planted error: focus measured along each ray, in place of the camera's direction.
     """
     before = DECODED.set(scene.camera.tone != "plain"), RANDOM.set(np.random.default_rng(seed))
-    total = np.zeros((height * width, 3))
-    for _ in range(samples):
-        origins, directions = lens_rays(scene, width, height, along_the_ray)
-        total += light_along(scene, origins, directions, np.ones((width * height, 3)), DEPTH)
+    rays = zip(*(lens_rays(scene, width, height, along_the_ray) for _ in range(samples)), strict=True)
+    light = light_along(scene, *map(np.concatenate, rays), DEPTH)
     DECODED.reset(before[0])
     RANDOM.reset(before[1])
-    return total.reshape(height, width, 3) * (2.0**scene.camera.exposure / samples)
+    return light.reshape(samples, height, width, 3).mean(axis=0) * 2.0**scene.camera.exposure
 
 
 def lens_rays(scene: Scene, width: int, height: int, along_the_ray: bool) -> tuple[Array, Array]:

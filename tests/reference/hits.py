@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.shapes import Mesh, Shape
-from tests.oracle import Crossed
+from tests.oracle import Crossed, points, size
 from tests.reference.uv_mapping import normals, shading, smooth_points
 from tests.reference.vectors import Array, dot, length, own_x_and_z
 
@@ -40,10 +40,13 @@ def first_in_front(shape: Shape, origins: Array, directions: Array) -> Array:
 @singledispatch
 def crossings(shape: Shape, origins: Array, directions: Array) -> list[Array]:
     """All distances at which lines along unit directions cross the surface of a shape, NaN for none: the oracle's."""
-    if not directions.size:
-        return [np.empty(directions.shape[:-1])]
-    rays = [np.broadcast_to(part, directions.shape).reshape(-1, 3) for part in (origins, directions)]
-    return [t.reshape(directions.shape[:-1]) for t in Crossed(shape, *rays).crossings()]
+    origins, directions, like = origins.reshape(-1, 3), directions.reshape(-1, 3), directions.shape[:-1]
+    around = np.array([*points(shape)[0], size(shape)])
+    near = np.arange(len(origins)) if shape.infinite else np.flatnonzero(passes(origins, directions, around))
+    found = Crossed(shape, origins[near], directions[near]).crossings() if len(near) else np.empty((1, 0))
+    whole = np.full((len(found), len(origins)), np.nan)
+    whole[:, near] = found
+    return [each.reshape(like) for each in whole]
 
 
 EDGE = 1e-12  # tolerance of barycentric coordinates, so that neighbours have no gap

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextvars import ContextVar
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,47 +74,60 @@ def random_in_disc(count: int) -> tuple[Array, Array]:
     return radius * np.cos(angle), radius * np.sin(angle)
 
 
-def shaded(
-    scene: Scene,
-    shape: Shape,
-    points: Array,
-    normal: Array,
-    bent: Array,
-    colour: Array,
-    direction: Array,
-    far: Array,
-    own: Array,
-) -> Array:
-    """Diffuse light and highlights that points of a `shape` send back against `direction`, and its glow.
+class Surface(NamedTuple):
+    """n points at which rays have hit surfaces, of one shape or of several."""
 
-    `normal` points towards the viewer, and `bent` is the bumped normal. Shadow rays start `far` above the surface. Of
-    the diffuse light the share `own` (n, 1) is seen.
-    """
-    total = (shape.glow or 0.0) * colour * np.ones_like(points)
-    if scene.ambient is not None:
-        total += own * colour * scene.ambient.brightness * rgb(scene.ambient.colour)
+    points: Array  # (n, 3)
+    smooth: Array  # (n, 3) the points of the smooth surface above facets
+    normal: Array  # (n, 3) towards the viewer
+    base: Array  # (n, 3) by which the points are lit without bump and normal maps
+    bent: Array  # (n, 3) by which they are lit
+    colour: Array  # (n, 3)
+    direction: Array  # (n, 3) of the rays that arrive
+    far: Array  # (n,) height above the surface at which further rays start
+    own: Array  # (n,) share of the diffuse light that is seen
+    glow: Array  # (n,)
+    specular: Array  # (n, 3) share and exponent of highlights, and 1 for Blinn's
+    bumpy: Array  # (n,) whether a map or a pattern may bend the normals
+
+
+def surface_of(
+    shape: Shape, points: Array, normal: Array, bent: Array, colour: Array, direction: Array, far: Array, own: Array
+) -> Surface:
+    """The points of a shape with its material."""
     base = shading(shape, points, normal)
     base = np.where((dot(base, normal) < 0)[:, None], -base, base)
-    starts, raised = (each + far[:, None] * normal for each in (points, smooth_points(shape, points, normal)))
+    highlight = (shape.specular.share, shape.specular.exponent, shape.specular.blinn) if shape.specular else (0, 1, 0)
+    constants = shape.glow or 0.0, highlight, bool(shape.bump or shape.normal_map or patterns_of(shape))
+    spread = (np.broadcast_to(each, (len(points), *np.shape(each))) for each in constants)
+    smooth = smooth_points(shape, points, normal)
+    return Surface(points, smooth, normal, base, bent, colour, direction, far, own, *spread)
+
+
+def shaded(scene: Scene, at: Surface) -> Array:
+    """Diffuse light and highlights that points of surfaces send to the viewer, and their glow, (n, 3)."""
+    own, direction, bent = at.own[:, None], at.direction, at.bent
+    total = at.glow[:, None] * at.colour
+    if scene.ambient is not None:
+        total += own * at.colour * scene.ambient.brightness * rgb(scene.ambient.colour)
+    starts, raised = (each + at.far[:, None] * at.normal for each in (at.points, at.smooth))
     for lamp in scene.lights:
         towards, distance, share = aim(lamp, starts)
         cosine = dot(bent, towards)
         # A facet that faces away from the light is in its own shadow: there rays start on the smooth surface.
         beneath, way, _ = aim(lamp, raised)
-        facing = dot(normal, towards) > 0
+        facing = dot(at.normal, towards) > 0
         origins, rays = (np.where(facing[:, None], *each) for each in ((starts, raised), (towards, beneath)))
         reach = np.where(facing, distance, way)
-        reached = np.where((cosine > 0)[:, None], light_through(scene, origins, rays, reach), 0.0)
-        if shape.bump or shape.normal_map or patterns_of(shape):
-            share = share * let_through_by_bumps(base, bent, towards)
+        lit, reached = cosine > 0, np.zeros_like(starts)
+        reached[lit] = light_through(scene, origins[lit], rays[lit], reach[lit])
+        share = np.where(at.bumpy, share * let_through_by_bumps(at.base, bent, towards), share)
         light = lamp.brightness * share[:, None] * reached * rgb(lamp.colour)
-        total += own * cosine[:, None] * colour * light
-        if shape.specular:
-            if shape.specular.blinn:
-                angle = dot(bent, unit(towards - direction))
-            else:
-                angle = dot(2 * cosine[:, None] * bent - towards, -direction)
-            total += shape.specular.share * np.maximum(0, angle)[:, None] ** shape.specular.exponent * light
+        total += own * cosine[:, None] * at.colour * light
+        strength, exponent, blinn = at.specular.T
+        half_way, mirrored = unit(towards - direction), 2 * cosine[:, None] * bent - towards
+        angle = np.where(blinn == 1, dot(bent, half_way), dot(mirrored, -direction))
+        total += (strength * np.maximum(0, angle) ** exponent)[:, None] * light
     return total
 
 
@@ -219,12 +233,14 @@ def left_by_media(scene: Scene, origins: Array, directions: Array, distances: Ar
 
 def light_through(scene: Scene, starts: Array, towards: Array, distances: Array) -> Array:
     """Shares of red, green and blue of a lamp that reach points through glass and past opaque shapes, (n, 3)."""
+    limit, left = distances * (1 - SAME_SURFACE), np.arange(len(starts))
+    opaque, glass = ([s for s in scene.shapes if bool(mirror_and_glass(s)[1]) == clear] for clear in (False, True))
+    for shape in opaque:
+        left = left[first_in_front(shape, starts[left], towards[left]) >= limit[left]]
+    all_shares = np.zeros_like(starts)
+    starts, towards, distances, limit = (each[left] for each in (starts, towards, distances, limit))
     share = left_by_media(scene, starts, towards, distances)
-    limit = distances * (1 - SAME_SURFACE)
-    for shape in scene.shapes:
-        if mirror_and_glass(shape)[1] == 0:
-            share[first_in_front(shape, starts, towards) < limit] = 0.0
-            continue
+    for shape in glass:
         for at in all_crossings(shape, starts, towards):
             crossed = (at > 0) & (at < limit)
             normal = normals(shape, starts[crossed] + at[crossed, None] * towards[crossed])
@@ -233,4 +249,5 @@ def light_through(scene: Scene, starts: Array, towards: Array, distances: Array)
             if is_tinted(shape) and is_sheet(shape):
                 assert shape.tint
                 share[crossed] *= rgb(shape.tint.colour)
-    return share
+    all_shares[left] = share
+    return all_shares
