@@ -199,22 +199,17 @@ def sky(scene: Scene, directions: Array) -> Array:
     return bilinear(pixels, 0.5 + np.arctan2(-x, z) / (2 * np.pi), v)
 
 
-def render_sampled(
-    scene: Scene, width: int, height: int, samples: int, seed: int, along_the_ray: bool = False
-) -> Array:
-    """Render a scene with random samples: the mean of their light, each clamped to nothing, (height, width, 3).
-
-    `along_the_ray` is a planted error: focus measured along each ray, in place of the camera's direction.
-    """
+def render_sampled(scene: Scene, width: int, height: int, samples: int, seed: int) -> Array:
+    """Render a scene with random samples: the mean of their light, not clamped, (height, width, 3)."""
     before = DECODED.set(scene.camera.tone != "plain"), RANDOM.set(np.random.default_rng(seed))
-    rays = zip(*(lens_rays(scene, width, height, along_the_ray) for _ in range(samples)), strict=True)
+    rays = zip(*(lens_rays(scene, width, height) for _ in range(samples)), strict=True)
     light = light_along(scene, *map(np.concatenate, rays), DEPTH)
     DECODED.reset(before[0])
     RANDOM.reset(before[1])
     return light.reshape(samples, height, width, 3).mean(axis=0) * 2.0**scene.camera.exposure
 
 
-def lens_rays(scene: Scene, width: int, height: int, along_the_ray: bool) -> tuple[Array, Array]:
+def lens_rays(scene: Scene, width: int, height: int) -> tuple[Array, Array]:
     """A ray through a random place of each pixel, from a random point of the lens."""
     camera, random = scene.camera, RANDOM.get()
     assert random
@@ -226,8 +221,6 @@ def lens_rays(scene: Scene, width: int, height: int, along_the_ray: bool) -> tup
     ways = forward + x[:, None] * right + y[:, None] * up
     origins = np.broadcast_to(np.array(camera.position), ways.shape)
     if camera.lens:
-        if along_the_ray:
-            ways = ways / length(ways)[:, None]
         sharp = origins + (camera.focus or focus_in_the_middle(scene, camera)) * ways
         on_x, on_y = random_in_disc(len(ways))
         origins = origins + camera.lens / 2 * (on_x[:, None] * right + on_y[:, None] * up)
