@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,18 @@ environment.prepare()  # before the compiler is imported, which reads the enviro
 settings.register_profile("miniRT", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("miniRT")
 hypothesis.core.global_force_seed = seeds.RUN
+
+@pytest.fixture(autouse=True, scope="session")
+def without_specialised_kernels() -> None:
+    """Let no renderer have the specialised kernel compiled that is worth its time from half a second of drawing on.
+
+    On a slow machine most tests would begin that, in a process that is killed when they end. Tests that need a
+    specialised kernel ask for it.
+    """
+    from minirt.rendering import kernels
+
+    kernels.SPECIALISED_AFTER = inf
+
 
 pytest_xdist_make_scheduler = pytest.hookimpl(optionalhook=True)(scheduling.make_scheduler)
 

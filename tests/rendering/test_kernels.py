@@ -126,7 +126,7 @@ def test_specialising_compiles_the_specialised_kernel_though_a_generic_one_fits(
 def test_a_specialised_kernel_is_compiled_once_that_is_worth_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
     choice = choose(monkeypatch, BALL, *GENERIC.values())
     asked: list[str] = []
-    for after, seconds in ((kernels.SPECIALISED_AFTER, kernels.SPECIALISED_AFTER / 2), (0.0, 0.0)):
+    for after, seconds in ((0.5, 0.25), (0.0, 0.0)):
         mine = Kernels("double", 8)
         mine.specialised_after = after
         monkeypatch.setattr(mine.background, "compile", asked.append)
