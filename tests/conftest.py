@@ -25,6 +25,7 @@ settings.register_profile("miniRT", deadline=None, suppress_health_check=[Health
 settings.load_profile("miniRT")
 hypothesis.core.global_force_seed = seeds.RUN
 
+
 @pytest.fixture(autouse=True, scope="session")
 def without_specialised_kernels() -> None:
     """Let no renderer have the specialised kernel compiled that is worth its time from half a second of drawing on.

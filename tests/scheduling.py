@@ -63,7 +63,6 @@ SLOW = (
     "tests/shapes/test_protocol.py",
     "tests/stability/",
     "tests/test_concurrency.py",
-    "tests/test_faulty_writes.py",
     "tests/helpers/test_fork_safety.py",
     "tests/test_goldens.py",
     "tests/test_imports.py",

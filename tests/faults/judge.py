@@ -96,7 +96,12 @@ class Judge:
 
 
 def is_whole(name: str, data: bytes) -> bool:
-    """Whether data are a whole picture, or a scene with as many lines as the first one has."""
+    """Whether data are a whole picture or film, or a scene with as many lines as the first one has."""
+    if name.endswith(".mp4"):
+        import av
+
+        with av.open(io.BytesIO(data)) as film:
+            return sum(1 for _ in film.decode(video=0)) > 1
     if name.endswith(".png"):
         with pillow.open(io.BytesIO(data)) as picture:
             picture.load()

@@ -12,11 +12,13 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field
+from functools import cache as kept_result
 from functools import partial
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import minirt
@@ -24,6 +26,7 @@ from minirt import cli
 from minirt.cli import render
 from minirt.cluster import job, journal
 from minirt.errors import MiniRTError
+from minirt.formats.table import is_installed
 from minirt.helpers.file_io import writing
 from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code.compile_process import CompileProcess
@@ -31,13 +34,18 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.mlx.recording import add_recording
+from minirt.movie import save_movie
 from minirt.rendering import settings
+from minirt.rendering.image import Image
 from minirt.rendering.renderer import Renderer
+from minirt.report import document
+from minirt.report.document import report_files
 from minirt.scene import load
 from minirt.viewer import recovery
 from minirt.viewer.app import desktop
 from tests.cli.program import SCENE as BALL
 from tests.faults.supervised import run
+from tests.report.made_up import FINDINGS, ROWS
 
 Files = dict[str, bytes]  # contents by path in the folder
 
@@ -52,8 +60,6 @@ ob corner.obj 1,1,0 1 200,100,0
 CORNER = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 CACHE = "cache"
 RESUMED = [f"resumed {each}{torn}" for each in ("picture", "film", "numbered", "streamed") for torn in ("", ", torn")]
-NAMES = ("picture", "film", "numbered", "streamed", "replay", *RESUMED,
-         "no kernels", "kept kernels", "damaged kernels", "session")  # fmt: skip
 KEYS = ["press n", "press Ctrl+S", "press Ctrl+Shift+S", "press P", "wait 0.2"]
 SIZE = "--size", "8x80"
 SPIN = "--size", "12x10", "--turntable", "3"
@@ -76,13 +82,37 @@ def program(*arguments: str) -> int:
     return cli.main(["scene.rt", *arguments])
 
 
-def streamed() -> int:
-    """Render a picture of several bands into a TIFF file."""
+def library(write: Callable[[], object]) -> int:
+    """Call a function of the library that writes files; return an exit status."""
     try:
-        minirt.render_to("out.tif", minirt.load("scene.rt"), 8, 80, samples=4)
+        write()
     except MiniRTError as error:
         return cli.failed(error)
     return 0
+
+
+def film(name: str) -> None:
+    """Write a film, or a picture, of light that moves."""
+    light = np.random.default_rng(1).random((18, 32, 3))
+    levels = (255 * light).astype(np.uint8)
+    save_movie((Image(np.roll(levels, 5 * n, axis=1), light) for n in range(3)), Path(name))
+
+
+@kept_result
+def report() -> dict[str, bytes]:
+    """Draw a report, which takes a second, once."""
+    return report_files(FINDINGS, {ROWS[0].name: DARK}, DARK)
+
+
+# A picture of several bands, and what the command line does not write.
+DARK = np.zeros((20, 32, 3))
+STREAMED = partial(library, lambda: minirt.render_to("out.tif", minirt.load("scene.rt"), 8, 80, samples=4))
+WRITTEN: dict[str, Callable[[], object]] = {
+    "report": lambda: document.write_files(Path(), FINDINGS, {}, DARK),
+    "exr": lambda: Image(np.zeros((18, 32, 3), np.uint8), np.ones((18, 32, 3))).save("out.exr"),
+    "webp": partial(film, "out.webp"),
+    **({"mp4": partial(film, "out.mp4")} if is_installed("MP4") else {}),
+}
 
 
 def session() -> int:
@@ -129,6 +159,7 @@ def surroundings(folder: Path) -> Iterator[pytest.MonkeyPatch]:
         patch.setattr(journal, "SHARE", 1e9)
         patch.setattr(recovery.threading, "Timer", ImmediateTimer)
         patch.setattr(writing, "SWEPT", set())
+        patch.setattr(document, "report_files", lambda *_: report())
         yield patch
 
 
@@ -159,6 +190,8 @@ def interrupted(work: Callable[[], int], last: int) -> int:
         return 130
 
 
+NAMES = ("picture", "film", "numbered", "streamed", "replay", *WRITTEN, *RESUMED,
+         "no kernels", "kept kernels", "damaged kernels", "session")  # fmt: skip
 PICTURE = partial(program, *SIZE, "--samples", "4", "-o", "out.png")
 FILM = partial(program, *SPIN, "-o", "out.gif")
 NUMBERED = partial(program, *SPIN, "-o", "out.png")
@@ -182,18 +215,21 @@ class Laboratory:
             Workload("picture", PICTURE, olds, journals),
             Workload("film", FILM, olds, journals),
             Workload("numbered", NUMBERED, olds, journals),
-            Workload("streamed", streamed, olds, journals),
+            Workload("streamed", STREAMED, olds, journals),
             Workload("replay", replay, {"keys.txt": "\n".join(KEYS).encode()}, is_exact=False),
         ]
+        for name, write in WRITTEN.items():
+            work = partial(library, write)
+            simple.append(Workload(name, work, dict.fromkeys(self.after(work, {}), OLD), is_exact=name != "mp4"))
         for each in simple:
             self.do_here(each)
         return [*simple, *self.resumed(olds), *self.with_cache(olds), self.in_window()]
 
     def resumed(self, olds: Files) -> Iterator[Workload]:
         """Yield workloads that go on with what an interrupted program has left, whole or torn."""
-        works = {"picture": PICTURE, "film": FILM, "numbered": NUMBERED, "streamed": streamed}
+        works = {"picture": PICTURE, "film": FILM, "numbered": NUMBERED, "streamed": STREAMED}
         for name, first in works.items():
-            again = streamed if first is streamed else partial(first, "--resume")
+            again = STREAMED if first is STREAMED else partial(first, "--resume")
             files = self.after(partial(interrupted, first, 3), olds)
             (kept,) = (each for each in files if each.endswith(".journal"))
             yield Workload(f"resumed {name}", again, files, (kept,))

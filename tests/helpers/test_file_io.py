@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
+import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from minirt.errors import FileError
 from minirt.helpers import file_io
+from minirt.helpers.file_io import writing
 from minirt.viewer.files import create_numbered
 
 
@@ -110,3 +114,54 @@ def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None
     else:
         with pytest.raises(FileError, match="larger than 1000 B"):
             file_io.read(path, 1000)
+
+
+def test_old_temporary_files_of_killed_programs_are_swept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only they: not those that a program may still write, other names, folders, nor what a link leads to."""
+    monkeypatch.setattr(writing, "SWEPT", set())
+    folder, elsewhere = tmp_path / "work", tmp_path / "elsewhere"
+    names = [writing.TEMPORARY.replace("*", f"{number:016x}") for number in range(4)]
+    old, young, is_link, is_folder = (folder / each for each in names)
+    others = [folder / each for each in ("scene.rt", ".minirt-1.tmp", f"{names[0]}~", names[0].replace("0", "g"))]
+    folder.mkdir()
+    for each in (old, young, elsewhere, *others):
+        each.write_bytes(b"old")
+    is_link.symlink_to(elsewhere)
+    is_folder.mkdir()
+    for each in (old, elsewhere, is_folder, *others):
+        os.utime(each, (1000, 1000))
+    file_io.create(folder / "new", b"new")
+    assert {*folder.iterdir()} == {young, is_link, is_folder, *others, folder / "new"}
+    assert elsewhere.read_bytes() == b"old"
+
+
+def test_a_folder_is_searched_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A film of many pictures does not read its folder for each. A folder that cannot be read does not matter."""
+    searched: list[str] = []
+
+    def scan(folder: str) -> Any:
+        searched.append(folder)
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(os, "scandir", scan)
+    for number in range(3):
+        file_io.write(tmp_path / f"{number}", b"new")
+    assert searched == [str(tmp_path)]
+
+
+def test_a_failing_disk_does_not_keep_a_lock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Linux closes a file even where it reports an error."""
+    close = os.close
+
+    def failing(descriptor: int) -> None:
+        close(descriptor)
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    first, second = (os.open(tmp_path / "lock", os.O_RDWR | os.O_CREAT) for _ in range(2))
+    assert file_io.lock(first)
+    assert sys.platform == "win32" or not file_io.lock(second)
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "close", failing)
+        file_io.unlock(first)
+    assert file_io.lock(second)
+    os.close(second)
