@@ -7,6 +7,8 @@ import re
 import sys
 from pathlib import Path
 
+import numpy as np
+
 import minirt
 from minirt import materials, shapes
 from minirt.element import fields_of
@@ -51,7 +53,7 @@ def test_a_representation_is_short_and_makes_the_element_again() -> None:
     assert repr(ball) == shown
     assert eval(shown, {name: getattr(minirt, name) for name in minirt.__all__}) == ball
     assert len(repr(minirt.example("demo"))) < 100
-    assert len(repr(minirt.Image(minirt.render(minirt.example(), 4, 3).array))) < 100
+    assert len(repr(minirt.Image(np.zeros((3, 4, 3), np.uint8)))) < 100
 
 
 def test_completion_lists_the_public_names_and_the_plurals_of_a_scene() -> None:
