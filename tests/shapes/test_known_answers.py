@@ -30,10 +30,8 @@ BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin 
 FLOOR = Plane((7, -2, 9), (0, 1, 0), GREY)
 TUBE = Cylinder((0, 0, 5), (0, 1, 0), 6, 4, GREY)  # radius 3, from y = -2 to y = 2
 TENT = Cone((0, 4, 5), (0, -1, 0), 6, 4, GREY)  # radius 3 at y = 0: its sides are the long ones of 3-4-5 triangles
-RIGHT = Cone((0, 0, 5), (0, -1, 0), 8, 4, GREY)  # its lines go down as far as they go aside
 BOWL = Paraboloid((0, -1, 5), (0, 1, 0), 4, 4, GREY)  # x^2 + (z - 5)^2 = y + 1, from y = -1 to y = 3
 TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 8, GREY)  # x^2 + (z - 5)^2 = 9 + y^2, from y = -4 to y = 4
-EVEN = Hyperboloid((0, 0, 5), (0, 1, 0), 15, 17, 8, GREY)  # x^2 + (z - 5)^2 = 7.5^2 + y^2, exactly
 FLAT_TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 2, GREY)  # x^2 + (z - 5)^2 = 9 + 16 y^2, from y = -1 to y = 1
 TUBE_TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 6, 4, GREY)  # a waist as wide as the ends
 EGG = Ellipsoid((0, 0, 5), (0, 1, 0), (4, 2, 6), GREY)  # semi-axes 2, 1 and 3 along x, y and z
@@ -46,188 +44,27 @@ RING = Torus((0, 1, 5), (0, 1, 0), 6, 2, GREY)  # radii 3 and 1
 
 Ray = tuple[tuple[float, ...], tuple[float, ...], float]  # origin, direction and t, infinity for a miss
 SIDE = (4.9**2 - 9) ** 0.5  # height at which the side of the tower is 4.9 wide
+AHEAD, DOWN, RIGHT = (0, 0, 1), (0, -1, 0), (1, 0, 0)
+# `tests.stability` holds the formulas equal to the boundaries of shapes, and this holds what both of them mean.
 HITS: list[tuple[Shape, list[Ray]]] = [
-    (
-        BALL,
-        [
-            ((0, 0, 0), (0, 0, 1), 2),  # head on
-            ((0, 0, 5), (0.6, 0, 0.8), 3),  # from the centre
-            ((0, 0, 4), (0, 0, 1), 4),  # from inside, the far wall
-            ((1.8, 0, 0), (0, 0, 1), 2.6),  # 1.8 off the axis: 2.4 before the centre
-            ((3, 0, 0), (0, 0, 1), 5),  # touching it
-            ((3.1, 0, 0), (0, 0, 1), NEVER),  # past it
-            ((0, 0, 2), (0, 0, 1), 6),  # from the surface, the far wall
-            ((0, 0, 2), (0, 0, -1), NEVER),  # and nothing
-        ],
-    ),
-    (
-        FLOOR,
-        [
-            ((0, 0, 0), (0, -1, 0), 2),
-            ((0, 0, 0), (0, 1, 0), NEVER),
-            ((0, -5, 0), (0, 1, 0), 3),  # from below
-            ((0, 1, 0), (0.8, -0.6, 0), 5),
-            ((0, -2, 0), (1, 0, 0), NEVER),  # in it
-            ((0, -2, 0), (0, -1, 0), NEVER),  # from it
-        ],
-    ),
-    (
-        TUBE,
-        [
-            ((0, 0, 0), (0, 0, 1), 2),  # the side, head on
-            ((0, 0, 5), (0, 1, 0), 2),  # from the centre to the cap, along the axis
-            ((0, 9, 5), (0, -1, 0), 7),  # the cap from above
-            ((0, 5, 5), (0.6, -0.8, 0), 3.75),  # the cap at x = 2.25
-            ((0, -1.9, 5), (0.6, -0.8, 0), 0.125),  # from inside, the bottom
-            ((0, 0, 5), (0.8, 0.6, 0), 10 / 3),  # from inside, the cap before the side
-            ((0, 0, 2), (0, 0, 1), 6),  # from the side, the far wall
-            ((0, 0, 2), (0, 0, -1), NEVER),
-            ((0, 2, 5), (0, -1, 0), 4),  # from a cap
-            ((0, 2, 5), (0, 1, 0), NEVER),
-        ],
-    ),
-    (
-        TENT,
-        [
-            ((0, 2, 0), (0, 0, 1), 3.5),  # the side, half-way up
-            ((0, 9, 5), (0, -1, 0), 5),  # the apex, along the axis
-            ((1.5, 9, 5), (0, -1, 0), 7),  # the side from above
-            ((1.5, -1, 5), (0, 1, 0), 1),  # the base
-            ((0, 1, 5), (0, -1, 0), 1),  # from inside, the base
-            ((0, 1, 5), (0, 1, 0), 3),  # from inside, the apex
-            ((0, 1, 5), (1, 0, 0), 2.25),  # from inside, the side
-            ((0, 6, 5), (0.6, -0.8, 0), NEVER),  # within its mirror image, along the side
-            ((0, 2, 3.5), (0, 0, 1), 3),  # from the side
-            ((0, 2, 3.5), (0, 0, -1), NEVER),
-            ((0, 0, 5), (0, 1, 0), 4),  # from the base
-            ((0, 0, 5), (0, -1, 0), NEVER),
-        ],
-    ),
-    (
-        RIGHT,
-        [
-            ((-2, 2, 5), (1, -1, 0), 2),  # along one of its lines
-            ((-4, 2, 5), (2, -1, 0), 2),  # at the apex and nowhere else
-        ],
-    ),
-    (
-        BOWL,
-        [
-            ((0, 0, 0), (0, 0, 1), 4),  # the side
-            ((0, -3, 5), (0, 1, 0), 2),  # the vertex, along the axis
-            ((1, -3, 5), (0, 1, 0), 3),  # the side, along the axis
-            ((1, 9, 5), (0, -1, 0), 6),  # the cap
-            ((0, 1.25, 5), (1, 0, 0), 1.5),  # from inside, the side
-            ((0, 5, 5), (1, -1, 0), 2),  # the rim and nothing else
-            ((0.25, -0.25, 5), (-0.6, 0.8, 0), (1.1 + 2.2**0.5) / 0.72),  # inside: 0.36 t^2 - 1.1 t = 0.6875
-            ((0, 0, 4), (0, 0, 1), 2),  # from the side
-            ((0, 0, 4), (0, 0, -1), NEVER),
-            ((0, 3, 5), (0, -1, 0), 4),  # from the cap
-            ((0, 3, 5), (0, 1, 0), NEVER),
-        ],
-    ),
-    (
-        TOWER,
-        [
-            ((0, 0, -5), (0, 0, 1), 7),  # the waist
-            ((4.9, 3.95, 5), (0, -1, 0), 3.95 - SIDE),  # from inside, out of the side above the waist
-            ((4.9, 0, 5), (0, -1, 0), SIDE),  # from beside the waist, into the lower half
-            ((4.9, -3.95, 5), (0, -1, 0), 0.05),  # from inside there, the lower cap
-            # From x = 4 a ray down the outside of the waist enters above it, leaves, and enters again below.
-            *(((4, y, 5), (0, -1, 0), t) for y, t in ((9, 5), (3.9, 3.9 - 7**0.5), (2, 2 + 7**0.5), (0, 7**0.5))),
-            *(((4, y, 5), (0, -1, 0), t) for y, t in ((-3, 1), (-5, NEVER))),
-            ((-6.6e8, 0, 5 - 8.8e8), (0.6, 0, 0.8), 1.1e9 - 3),  # from far away
-        ],
-    ),
-    (
-        EVEN,
-        [
-            ((0, 0, -2.5), (0, 0, 1), 15),  # from the side
-            ((0, 0, -2.5), (0, 0, -1), NEVER),
-            ((0, 4, 5), (0, -1, 0), 8),  # from a cap
-            ((0, 4, 5), (0, 1, 0), NEVER),
-            ((8.125, 3.125, 5), (0, -1, 0), 6.25),  # from the side, out of the upper half and into the lower one
-            ((8.125, -3.125, 5), (0, -1, 0), 0.875),  # out of its cap
-            ((8.125, -4, 5), (0, -1, 0), NEVER),
-            ((-6, -6, 12), (1, 1, 0), 2),  # along an asymptote, inside of it
-            ((4.5, 6, 5), (2, -1, 0), 2),  # at the rim and nowhere else
-        ],
-    ),
-    (TUBE_TOWER, [((1.8, 0, 0), (0, 0, 1), 2.6), ((2.9, 9, 5), (0, -1, 0), 7), ((0, 0, 5), (0.8, 0.6, 0), 10 / 3)]),
-    (
-        EGG,
-        [
-            ((0, 0, 0), (0, 0, 1), 2),  # the near end of the longest axis
-            ((0, 0, 5), (1, 0, 0), 2),  # from the centre, along each axis
-            ((1.2, 0, 0), (0, 0, 1), 2.6),  # x / 2 = 0.6: z is 0.8 of 3 off the centre
-            ((2, 0, 0), (0, 0, 1), 5),  # touching it
-            ((0, 0, 2), (0, 0, 1), 6),  # from the surface
-            ((0, 0, 2), (0, 0, -1), NEVER),
-        ],
-    ),
-    (TURNED_EGG, [((0, 0, 5), (1, 0, 0), 1), ((0, 0, 5), (0, 1, 0), 2), ((0, 0, 5), (0, 0, 1), 3)]),
-    (EGG.replace(centre=(0, 0, 1e6), sizes=(4e-3, 2e-3, 6e-3)), [((0, 0, 0), (0, 0, 1), 1e6 - 3e-3)]),
-    (
-        BOARD,
-        [
-            ((0, 1, 0), (0, 0, 1), 5),
-            ((1.59, 2.99, 0), (0, 0, 1), 5 + 0.75 * 1.59),  # near a corner: 3/4 of that deeper
-            ((0, 3, 0), (0, 0, 1), 5),  # the very edge
-            ((0, 1, 5), (0, 0, 1), NEVER),  # from it
-        ],
-    ),
-    (BOARD.replace(normal=(0, 0, -1)), [((2, 1, 0), (0, 0, 1), 5), ((2.01, 1, 0), (0, 0, 1), NEVER)]),
-    (  # a floor has its edges along x and z
-        BOARD.replace(normal=(0, 1, 0)),
-        [((1.99, 3, 6.99), (0, -1, 0), 2), ((2.01, 3, 5), (0, -1, 0), NEVER), ((0, 3, 7.01), (0, -1, 0), NEVER)],
-    ),
-    (
-        PLATE,
-        [
-            ((0, 1, 0), (0, 0, 1), 5),
-            ((0, 3, 0), (0, 0, 1), 5),  # the very rim
-            ((0, 3.01, 0), (0, 0, 1), NEVER),
-            ((1.2, 2.4, 0), (0, 0, 1), NEVER),  # where a square would be: 1.5 aside and 1.4 up
-            ((0, 1, 5), (0, 0, 1), NEVER),  # from it
-        ],
-    ),
+    (BALL, [((0, 0, 0), AHEAD, 2), ((1.8, 0, 0), AHEAD, 2.6), ((3.1, 0, 0), AHEAD, NEVER)]),
+    (FLOOR, [((0, 1, 0), (0.8, -0.6, 0), 5), ((0, -5, 0), (0, 1, 0), 3), ((0, 0, 0), (0, 1, 0), NEVER)]),
+    (TUBE, [((0, 0, 0), AHEAD, 2), ((0, 5, 5), (0.6, -0.8, 0), 3.75), ((0, 0, 5), (0.8, 0.6, 0), 10 / 3)]),
+    (TENT, [((0, 2, 0), AHEAD, 3.5), ((1.5, 9, 5), DOWN, 7), ((0, 1, 5), DOWN, 1), ((0, 6, 5), (0.6, -0.8, 0), NEVER)]),
+    (BOWL, [((0, 0, 0), AHEAD, 4), ((1, -3, 5), (0, 1, 0), 3), ((1, 9, 5), DOWN, 6)]),
+    (TOWER, [((0, 0, -5), AHEAD, 7), ((4.9, 3.95, 5), DOWN, 3.95 - SIDE), ((4, -3, 5), DOWN, 1)]),
+    (TUBE_TOWER, [((1.8, 0, 0), AHEAD, 2.6), ((2.9, 9, 5), DOWN, 7), ((0, 0, 5), (0.8, 0.6, 0), 10 / 3)]),
+    (EGG, [((0, 0, 0), AHEAD, 2), ((0, 0, 5), RIGHT, 2), ((1.2, 0, 0), AHEAD, 2.6)]),
+    (TURNED_EGG, [((0, 0, 5), RIGHT, 1), ((0, 0, 5), (0, 1, 0), 2), ((0, 0, 5), AHEAD, 3)]),
+    (BOARD, [((0, 1, 0), AHEAD, 5), ((1.59, 2.99, 0), AHEAD, 5 + 0.75 * 1.59), ((0, 3.01, 0), AHEAD, NEVER)]),
+    (BOARD.replace(normal=(0, 1, 0)), [((1.99, 3, 6.99), DOWN, 2), ((2.01, 3, 5), DOWN, NEVER)]),  # its edges: x and z
+    (PLATE, [((0, 1, 0), AHEAD, 5), ((0, 3, 0), AHEAD, 5), ((1.2, 2.4, 0), AHEAD, NEVER)]),  # a square would be hit
     (
         BLOCK,
-        [
-            ((0, 0, 0), (0, 0, 1), 2),
-            ((0, 0, 9), (0, 0, -1), 1),
-            ((-9, 1, 5), (1, 0, 0), 8),
-            ((0, 1, 5), (1, 0, 0), 1),  # from the centre
-            ((0, 1, 5), (0, 0, 1), 3),
-            *((origin, (0, 0, 1), NEVER) for origin in ((1.01, 0, 0), (-1.01, 0, 0), (0, 3.01, 0), (0, -1.01, 0))),
-            ((-2, 2, 5), (0.5**0.5, 0.5**0.5, 0), 2**0.5),  # at the very edge
-            ((0, 0, 2), (0, 0, 1), 6),  # from a face
-            ((0, 0, 2), (0, 0, -1), NEVER),
-            ((0, 3, 5), (0, -1, 0), 4),
-            ((0, 3, 5), (0, 1, 0), NEVER),
-        ],
+        [((0, 0, 0), AHEAD, 2), ((-9, 1, 5), RIGHT, 8), ((0, 2.9, 9), (0, 0, -1), 1), ((0, 3.01, 0), AHEAD, NEVER)],
     ),
-    (
-        RING,
-        [
-            ((0, 1, 0), (0, 0, 1), 1),  # the outer side
-            ((0, 1, 5), (0, 0, 1), 2),  # from the middle of the hole
-            ((0, 9, 5), (0, -1, 0), NEVER),  # through the hole
-            ((0, 9, 2), (0, -1, 0), 7),  # the top
-            ((0, 9, 7.5), (0, -1, 0), 8 - 0.75**0.5),  # half a radius off the circle
-            ((0, 1, 5), (0.6, 0, 0.8), 2),
-            # Each of four crossings is hit from before it.
-            *(((0, 1, z), (0, 0, 1), t) for z, t in ((-4, 5), (1.5, 1.5), (3.5, 3.5), (6.5, 0.5), (7.5, 1.5))),
-            ((0, 1, 1), (0, 0, 1), 2),  # from the surface
-            ((0, 1, 1), (0, 0, -1), NEVER),
-            ((0, 2, 2), (0, 1, 0), NEVER),
-            ((0, 2, 2), (0, -1, 0), 2),
-        ],
-    ),
-    (  # without a hole, radii 3 and 3
-        RING.replace(tube=6),
-        [((0, 9, 5.5), (0, -1, 0), 8 - (9 - 2.5**2) ** 0.5), ((0, 1, -5), (0, 0, 1), 4), ((0, 9, 8), (0, -1, 0), 5)],
-    ),
+    (RING, [((0, 1, 0), AHEAD, 1), ((0, 9, 2), DOWN, 7), ((0, 9, 7.5), DOWN, 8 - 0.75**0.5), ((0, 9, 5), DOWN, NEVER)]),
+    (RING.replace(tube=6), [((0, 9, 5.5), DOWN, 8 - (9 - 2.5**2) ** 0.5), ((0, 9, 8), DOWN, 5)]),  # without a hole
 ]
 
 
@@ -239,23 +76,6 @@ def title(value: object) -> str:
 def test_hits(intersect: Intersect, shape: Shape, rays: list[Ray]) -> None:
     expected = pytest.approx([t for *_, t in rays], rel=3e-15)
     assert shoot(intersect, shape, *((origin, direction) for origin, direction, _ in rays)) == expected
-
-
-@pytest.mark.parametrize(
-    ("shape", "count"), [(BALL, 2), (TUBE, 4), (TENT, 4), (RIGHT, 2), (BOWL, 4), (EVEN, 9), (BLOCK, 4)], ids=title
-)
-def test_hits_from_the_surface_are_exact(intersect: Intersect, shape: Shape, count: int) -> None:
-    rays = next(rays for each, rays in HITS if each is shape)[-count:]
-    assert shoot(intersect, shape, *((origin, direction) for origin, direction, _ in rays)) == [t for *_, t in rays]
-
-
-@pytest.mark.parametrize("shape", [FLOOR, TUBE, PLATE, BLOCK, RING], ids=title)
-def test_a_shape_turned_upside_down_is_hit_alike(intersect: Intersect, shape: Shape) -> None:
-    rays = next(rays for each, rays in HITS if each is shape)
-    name = "axis" if hasattr(shape, "axis") else "normal"
-    opposite = shape.replace(**{name: tuple(-x for x in getattr(shape, name))})
-    expected = pytest.approx([t for *_, t in rays], rel=1e-15)
-    assert shoot(intersect, opposite, *((origin, direction) for origin, direction, _ in rays)) == expected
 
 
 @pytest.mark.parametrize(("slope", "seen"), [(1e-6, True), (np.nextafter(4 * U, 1), True), (4 * U, False), (0, False)])
