@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Number, Vec, copysign, dot, fabs, maximum, minimum, sqrt, unit, where
 from minirt.records import record
-from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
+from minirt.shapes.boundary import Boundary, along_and_off_axis, clamp, hypotenuse
 from minirt.shapes.compensated import position_error
 from minirt.shapes.frames import TWO_PI, angle_in_turns, in_scene, longitude, own_direction, own_point, scene_direction
 from minirt.shapes.shape import Axial, Ball, Bounds, Hit, Position, bounds_of_points, point_along
@@ -119,6 +119,5 @@ def mapping(capsule: PackedCapsule, point: Vec, normal: Vec) -> tuple[Number, Nu
 def boundary(capsule: Any, point: Vec) -> Boundary:
     """Distance from the surface: the distance from the line, less the radius."""
     height, rho = along_and_off_axis(capsule.axis, point - capsule.centre)
-    over = abs(height) - capsule.height / 2
-    beyond = (over + abs(over)) / 2.0  # the greater of it and 0
+    beyond = height - clamp(height, -0.5 * capsule.height, 0.5 * capsule.height)
     return Boundary((hypotenuse(rho, beyond) - capsule.diameter / 2,))

@@ -16,7 +16,7 @@ from numba import njit
 from minirt.fields import unit
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
-from minirt.shapes.boundary import DoubleDouble
+from minirt.shapes.boundary import DoubleDouble, clamp, maximum, minimum
 from minirt.shapes.compensated import (
     along,
     divided,
@@ -127,6 +127,18 @@ def test_roots_and_amounts() -> None:
     assert nothing.slope.x.tolist() == [0, 0]
     power = np.full(COUNT, -800)
     assert np.array_equal(one.scaled(power).scaled(-power).high, one.high)
+
+
+def test_the_greater_and_the_lesser_number_have_the_slope_of_that_number() -> None:
+    low, high = DoubleDouble(np.array([-3.0]), 0.0, Vec(1, 2, 3)), DoubleDouble(np.array([5.0]), 0.0, Vec(4, 5, 6))
+    for x, y in ((low, high), (high, low)):
+        assert [(found.high, found.slope.x, found.slope.z) for found in (minimum(x, y), maximum(x, y))] == [
+            (-3, 1, 3),
+            (5, 4, 6),
+        ]
+    for x, expected in ((-9.0, (-3, 0)), (4.0, (4, 1)), (9.0, (5, 0))):
+        found = clamp(DoubleDouble(np.array([x]), 0.0, Vec(1, 1, 1)), -3.0, 5.0)
+        assert (found.high, found.slope.y) == expected
 
 
 CASES = [
