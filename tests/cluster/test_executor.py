@@ -131,7 +131,7 @@ OF_DASK = pytest.mark.filterwarnings("ignore")  # those of another library
 
 
 class Cluster(NamedTuple):
-    """A scheduler and three workers of dask with a thread each, all of them processes, and their client."""
+    """A scheduler and workers of dask with a thread each, all of them processes, and their client."""
 
     scheduler: subprocess.Popen[Any]
     workers: list[subprocess.Popen[Any]]
@@ -139,8 +139,8 @@ class Cluster(NamedTuple):
 
 
 @contextmanager
-def dask_cluster(folder: Path) -> Iterator[Cluster]:
-    """Start a cluster."""
+def dask_cluster(folder: Path, count: int) -> Iterator[Cluster]:
+    """Start a cluster of so many workers."""
     distributed = pytest.importorskip("distributed")
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     file = folder / "scheduler.json"
@@ -154,10 +154,10 @@ def dask_cluster(folder: Path) -> Iterator[Cluster]:
         scheduler = process("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
         until(lambda: file.exists() and file.read_text().endswith("}"), "the scheduler")
         place = "--scheduler-file", str(file), "--local-directory", str(folder)
-        workers = [process("worker", *place, "--nthreads", "1", "--no-nanny") for _ in range(3)]
+        workers = [process("worker", *place, "--nthreads", "1", "--no-nanny") for _ in range(count)]
         client = distributed.Client(json.loads(file.read_text())["address"], set_as_default=False)
         stack.callback(client.close)
-        client.wait_for_workers(3)
+        client.wait_for_workers(count)
         client.run(exec, "import minirt; minirt.render(minirt.example(), 8, 6)")  # which loads the program
         yield Cluster(scheduler, workers, client)
 
@@ -165,7 +165,7 @@ def dask_cluster(folder: Path) -> Iterator[Cluster]:
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     """A cluster of these tests."""
-    with dask_cluster(tmp_path_factory.mktemp("dask")) as made:
+    with dask_cluster(tmp_path_factory.mktemp("dask"), 3) as made:
         yield made
 
 
@@ -178,7 +178,7 @@ def test_the_end_of_a_cluster_is_told_with_what_is_kept(
     BALL.save(tmp_path / "ball.rt")
     monkeypatch.chdir(tmp_path)
     arguments = "ball.rt", "--size", "300x1200", "-o", "a.tif"
-    with dask_cluster(tmp_path) as cluster:
+    with dask_cluster(tmp_path, 1) as cluster:
         address = cluster.client.scheduler.address
 
         def end(share: render.Share, done: int, total: int) -> None:
