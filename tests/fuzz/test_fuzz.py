@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from math import inf
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from tests.cli.program import program
 from tests.fuzz import scenes
 from tests.fuzz.__main__ import FUZZERS
 from tests.fuzz.mutations import Fuzzer, seeded
+from tests.seeds import seed_of
 from tests.skipping import skip_incomplete
 
 NEW = ("extremes", "names")  # of which each run tries new inputs
@@ -33,14 +33,14 @@ def run(name: str, seed: int = 0) -> set[str]:
 
 @pytest.mark.parametrize("name", FUZZERS)
 def test_no_input_crashes_the_program_or_gets_a_wrong_verdict(name: str) -> None:
-    seed = random.SystemRandom().randint(1, 10**9) if name in NEW else 0
+    seed = seed_of(f"fuzz {name}") if name in NEW else 0
     assert len(run(name, seed)) > 1, "all inputs had the same fate"
 
 
 def test_extreme_scenes_are_drawn_by_processes_of_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing of the first is in view, and a camera that would show it is beyond the range of coordinates."""
     monkeypatch.setattr(scenes, "run_program", lambda arguments, folder: program(folder, *arguments))
-    seed = random.SystemRandom().randint(1, 10**9)
+    seed = seed_of("extreme scenes of processes")
     for data in (FAR.encode(), *(scenes.make_extreme(seeded("process", seed + more)) for more in range(2))):
         print(data)  # in the report of a failure
         assert scenes.check_extreme(data)
