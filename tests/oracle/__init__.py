@@ -6,8 +6,8 @@ square roots and absolute values. Multiplied by its conjugates it becomes a poly
 roots cut the ray into pieces. On each of these no face changes its sign: a piece is inside the shape or outside, as its
 middle is. No formula is solved for t by hand.
 
-So a new shape needs nothing here. `tests/oracle/test_closed_forms.py` compares the boundaries of sphere, plane and
-triangle with closed forms that share nothing with them.
+So a new shape needs nothing here. `tests/shapes/test_known_answers.py` holds the oracle to answers by hand, and
+`tests/stability/test_certificates.py` compares boundaries with closed forms that share nothing with them.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
+from tests import oracle
 from tests.shapes.execution_modes import Intersect, U, shoot, surfaces
 from tests.shapes.regimes import GREY
 
@@ -45,7 +46,7 @@ RING = Torus((0, 1, 5), (0, 1, 0), 6, 2, GREY)  # radii 3 and 1
 Ray = tuple[tuple[float, ...], tuple[float, ...], float]  # origin, direction and t, infinity for a miss
 SIDE = (4.9**2 - 9) ** 0.5  # height at which the side of the tower is 4.9 wide
 AHEAD, DOWN, RIGHT = (0, 0, 1), (0, -1, 0), (1, 0, 0)
-# `tests.stability` holds the formulas equal to the boundaries of shapes, and this holds what both of them mean.
+# `tests.stability` holds the formulas equal to the boundaries of shapes, and these hold what both of them mean.
 HITS: list[tuple[Shape, list[Ray]]] = [
     (BALL, [((0, 0, 0), AHEAD, 2), ((1.8, 0, 0), AHEAD, 2.6), ((3.1, 0, 0), AHEAD, NEVER)]),
     (FLOOR, [((0, 1, 0), (0.8, -0.6, 0), 5), ((0, -5, 0), (0, 1, 0), 3), ((0, 0, 0), (0, 1, 0), NEVER)]),
@@ -76,6 +77,12 @@ def title(value: object) -> str:
 def test_hits(intersect: Intersect, shape: Shape, rays: list[Ray]) -> None:
     expected = pytest.approx([t for *_, t in rays], rel=3e-15)
     assert shoot(intersect, shape, *((origin, direction) for origin, direction, _ in rays)) == expected
+
+
+@pytest.mark.parametrize(("shape", "rays"), HITS, ids=title)
+def test_the_oracle_has_the_same_answers(shape: Shape, rays: list[Ray]) -> None:
+    found = [oracle.nearest(shape, origin, direction) for origin, direction, _ in rays]
+    assert found == pytest.approx([t for *_, t in rays], rel=3e-15)
 
 
 @pytest.mark.parametrize(("slope", "seen"), [(1e-6, True), (np.nextafter(4 * U, 1), True), (4 * U, False), (0, False)])
