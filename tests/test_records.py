@@ -142,7 +142,7 @@ COLUMNS = {"centre": [(0.0, 1.0, 2.0), (3.0, 4.0, 5.0)], "diameter": [1.0, 2.0],
 
 
 def test_elements_made_at_once_are_equal_frozen_and_pickled_like_single_ones() -> None:
-    batch = Sphere.checked(2, {**COLUMNS, "source": ["a", "b"]})
+    batch = Sphere.of_columns(2, {**COLUMNS, "source": ["a", "b"]})
     built = [Sphere(*row) for row in zip(*COLUMNS.values(), strict=True)]
     assert batch == built
     assert list(map(hash, batch)) == list(map(hash, built))

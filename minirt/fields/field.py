@@ -132,6 +132,11 @@ class Field(Immutable):
         return self.keyword + ("," if ":" in self.keyword else ":")
 
     @property
+    def example(self) -> str:
+        """The editor's first value as a line spells it; '' where that is not made of numbers alone."""
+        return self.format(self.initial) if isinstance(self.initial, float) else ""
+
+    @property
     def notation(self) -> str:
         """The field in the format of its line."""
         return f"{self.prefix}{self.placeholder or self.unit or 'value'}" if self.keyed else self.name

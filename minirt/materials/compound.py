@@ -112,6 +112,11 @@ class Compound(Field):
         return value.rows(shape, reader)
 
     @property
+    def example(self) -> str:
+        parts = [field.example for field in fields_of(self.record) if field.required]
+        return ",".join(parts) if all(parts) else ""
+
+    @property
     def pattern(self) -> str:
         """The format of the value: `share,exponent[,blinn]`."""
         fields = fields_of(self.record)

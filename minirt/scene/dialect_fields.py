@@ -1,4 +1,4 @@
-"""Fields of an element in the words of other programs: which spellings each word may be meant as."""
+"""Words of a line of another program, and the fields of an element that each word may be meant as."""
 
 from __future__ import annotations
 
@@ -14,10 +14,18 @@ from minirt.fields.directions import SCALED
 from minirt.fields.scalars import Scalar
 from minirt.scene import dialect_tables as tables
 from minirt.scene.dialect_tables import NUMBER
-from minirt.scene.lines import TAKEN
+from minirt.scene.lines import HEX_COLOUR, MAX_WORDS, SLASHES, TAKEN, Line, first_unprintable
 from minirt.scene.registry import NUMERIC
 
 LEAST_PERCENT = 10  # a share from here on is one in percent
+# Blanks may stand around the commas of three numbers, and within quotes.
+WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|(?:\"[^\"]*\"|[^ \t\"])+|[^ \t]+")
+FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
+SEMICOLONS = re.compile(rf"(?<![^ \t])({NUMBER});({NUMBER});({NUMBER})(?![^ \t])")
+# The value of an attribute that a blank parts from it, or a number from a comma; and a resolution with a comma or x.
+DETACHED = re.compile(r"(?<=[ \t])([A-Za-z]\w*:(?:[^ \t]*,(?=[ \t]+[0-9.]))?)[ \t]+(?=[^ \t])(?![A-Za-z]\w*:)")
+JOINED_SIZE = re.compile(r"^([ \t]*R[ \t]+[0-9]+)[,x]([0-9]+)(?![^ \t])")
+DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 
 
 class RangeError(FieldError):
@@ -30,6 +38,46 @@ class Spelling(NamedTuple):
     text: str
     words: int
     sort: str = ""
+
+
+def split_foreign_line(line: Line) -> tuple[list[str], str, Changes] | None:
+    """Return the words of a line, its comment, and what was changed; None where it has characters that are not seen, or
+    too many words."""
+    if first_unprintable(line) >= 0:
+        return None
+    body, comment, changes = body_of(line)
+    found = WORD.findall(FRAMING.sub(r" \1 ", body))
+    words = [word if '"' in word else "".join(word.split()) for word in found]
+    changes += [(tables.JOINED, old) for old, new in zip(found, words, strict=True) if old != new]
+    return (words, comment, changes) if len(words) <= MAX_WORDS else None
+
+
+def body_of(line: Line) -> tuple[str, str, Changes]:
+    """Return a line without its comment, the comment, and what was changed: `#F00` behind a word is a colour."""
+    changes: Changes = []
+    text = line.text
+    hex_colour = HEX_COLOUR.match(text, line.end)
+    if hex_colour:
+        changes.append((tables.NAMED, hex_colour[0]))
+        text = text[: line.end] + css_colour(hex_colour[0]) + text[hex_colour.end() :]
+    text, joined = with_words_joined(text)
+    changes += joined
+    body, _, comment = text.partition("#")
+    slashes = SLASHES.search(body) or DASHES.search(body)
+    if slashes:
+        changes.append((tables.SLASHES, slashes[0]))
+        body, comment = text[: slashes.start()], text[slashes.end() :]
+    return body, f" #{comment}" if comment else "", changes
+
+
+def with_words_joined(text: str) -> tuple[str, Changes]:
+    """Return a line whose words are joined as they may be meant, and what was changed."""
+    body, mark, comment = text.partition("#")
+    changes: Changes = []
+    for pattern, words in ((SEMICOLONS, r"\1,\2,\3"), (DETACHED, r"\1"), (JOINED_SIZE, r"\1 \2")):
+        changes += [(tables.JOINED, found[0]) for found in pattern.finditer(body)]
+        body = pattern.sub(words, body)
+    return body + mark + comment, changes
 
 
 def fields_of_words(

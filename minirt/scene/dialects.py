@@ -18,24 +18,16 @@ from minirt.fields import Three
 from minirt.helpers import file_io
 from minirt.materials import pictures
 from minirt.scene import dialect_tables as tables
-from minirt.scene.dialect_fields import TRIPLE, Changes, RangeError, css_colour, fields_of_words
+from minirt.scene.attribute_reader import split_key
+from minirt.scene.dialect_fields import TRIPLE, Changes, RangeError, fields_of_words, split_foreign_line
 from minirt.scene.dialect_tables import NUMBER
-from minirt.scene.element_reader import HEX_COLOUR, split_key
 from minirt.scene.elements import FURTHER, LAMPS, Ambient, Background, Camera, FurtherCamera, Light, Resolution
-from minirt.scene.line_reader import SLASHES, read_line
-from minirt.scene.lines import MAX_WORDS, TAKEN, Line, Log, first_unprintable, line_from
+from minirt.scene.line_reader import read_line
+from minirt.scene.lines import TAKEN, Line, Log, line_from
 from minirt.scene.pages import Item
 from minirt.scene.registry import SHAPES, SPELLINGS
 from minirt.scene.scene import MISSING
 
-# Blanks may stand around the commas of three numbers, and within quotes.
-WORD = re.compile(rf"{NUMBER}[ \t]*,[ \t]*{NUMBER}[ \t]*,[ \t]*{NUMBER},?(?![^ \t])|(?:\"[^\"]*\"|[^ \t\"])+|[^ \t]+")
-FRAMING = re.compile(r"\(((?:[^(),]*+,)++[^()]*+)\),?|(?<=[ \t])\|(?![^ \t])")  # of three numbers, and between fields
-SEMICOLONS = re.compile(rf"(?<![^ \t])({NUMBER});({NUMBER});({NUMBER})(?![^ \t])")
-# The value of an attribute that a blank parts from it, or a number from a comma; and a resolution with a comma or x.
-DETACHED = re.compile(r"(?<=[ \t])([A-Za-z]\w*:(?:[^ \t]*,(?=[ \t]+[0-9.]))?)[ \t]+(?=[^ \t])(?![A-Za-z]\w*:)")
-JOINED_SIZE = re.compile(r"^([ \t]*R[ \t]+[0-9]+)[,x]([0-9]+)(?![^ \t])")
-DASHES = re.compile(r"(?<![^ \t])--(?![^ \t])")
 LIGHT, SETTING = (re.compile(pattern, re.IGNORECASE) for pattern in (tables.LIGHT, tables.SETTING))
 MOST_NUMBERS = 2  # behind the fields of a shape, whose meaning is guessed
 
@@ -66,14 +58,13 @@ def translated(
     `colours` are those of named materials, and pictures are looked for in `folder`. `seen` has the identifiers of
     earlier lines.
     """
-    body, comment, changes = body_of(line)
-    found = WORD.findall(FRAMING.sub(r" \1 ", body))
-    if first_unprintable(line) >= 0 or len(found) > MAX_WORDS:
+    split = split_foreign_line(line)
+    if split is None:
         return None
-    if not found:
+    words, comment, changes = split
+    if not words:
         return Translation("", changes)
-    code, *values = words = [word if '"' in word else "".join(word.split()) for word in found]
-    changes += [(tables.JOINED, old) for old, new in zip(found, words, strict=True) if old != new]
+    code, *values = words
     kind = kind_of(code)
     if kind is None:
         is_setting = SETTING.fullmatch(code) or len(values) < 2 or not any(map(TRIPLE.fullmatch, values))
@@ -100,34 +91,6 @@ def translated(
     fields, others = spelled
     attributes = meanings(kind, others, folder, changes)
     return Translation(" ".join([kind.code, *fields, *attributes]) + comment, changes)
-
-
-def body_of(line: Line) -> tuple[str, str, Changes]:
-    """Return a line without its comment, the comment, and what was changed: `#F00` behind a word is a colour."""
-    changes: Changes = []
-    text = line.text
-    hex_colour = HEX_COLOUR.match(text, line.end)
-    if hex_colour:
-        changes.append((tables.NAMED, hex_colour[0]))
-        text = text[: line.end] + css_colour(hex_colour[0]) + text[hex_colour.end() :]
-    text, joined = with_words_joined(text)
-    changes += joined
-    body, _, comment = text.partition("#")
-    slashes = SLASHES.search(body) or DASHES.search(body)
-    if slashes:
-        changes.append((tables.SLASHES, slashes[0]))
-        body, comment = text[: slashes.start()], text[slashes.end() :]
-    return body, f" #{comment}" * bool(comment), changes
-
-
-def with_words_joined(text: str) -> tuple[str, Changes]:
-    """Return a line whose words are joined as they may be meant, and what was changed."""
-    body, mark, comment = text.partition("#")
-    changes: Changes = []
-    for pattern, words in ((SEMICOLONS, r"\1,\2,\3"), (DETACHED, r"\1"), (JOINED_SIZE, r"\1 \2")):
-        changes += [(tables.JOINED, found[0]) for found in pattern.finditer(body)]
-        body = pattern.sub(words, body)
-    return body + mark + comment, changes
 
 
 def without_element(line: Line, errors: list[Problem]) -> Translation | None:

@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from minirt.element import Element, positional_fields
+from minirt.element import Element, fields_by_key, positional_fields
 from minirt.kernel.plain_lines import BEHIND_COMMA, MOST, NAME, NOTHING, NUMBER, OTHER, WHOLE
-from minirt.scene.element_reader import attribute_slots
+from minirt.scene.attribute_reader import attribute_slots
 from minirt.scene.elements import FurtherCamera
-from minirt.scene.line_reader import split_line
-from minirt.scene.lines import Log, line_from
+from minirt.scene.lines import Log, line_from, split_line
 from minirt.scene.pages import Crowd, Item
 from minirt.scene.registry import SPELLINGS
 from minirt.scene.value_reader import parse_slots, tell_useless
@@ -109,9 +108,10 @@ def values_of(kind: type[Element], attributes: str) -> dict[str, Any] | None:
     to say something about them, or has to try a file."""
     log = Log("", lenient=False)
     line = line_from(0, f"{kind.code} 0 {attributes}")
-    slots = attribute_slots(kind, (split_line(line, log) or [])[2:], line, log)
+    attributes = (split_line(line, log) or [])[2:]
+    slots = attribute_slots(kind, fields_by_key(kind), attributes, line, log)
     values = parse_slots(slots, line, log)
-    (element,) = kind.checked(1, {name: [value] for name, value in values.items()})
+    (element,) = kind.of_columns(1, {name: [value] for name, value in values.items()})
     tell_useless(element, slots, line, log)
     is_told = log.errors or log.notices or log.changes
     has_files = any(any(slot.field.pictures(values[slot.field.name])) for slot in slots if not is_told)

@@ -23,9 +23,9 @@ from minirt.fields.scalars import number
 from minirt.helpers import file_io
 from minirt.materials.compound import Compound
 from minirt.scene import dialect_tables as tables
-from minirt.scene.dialect_fields import fit
-from minirt.scene.dialects import colours_of_materials, kind_of, translated, with_words_joined
-from minirt.scene.element_reader import split_key
+from minirt.scene.attribute_reader import split_key
+from minirt.scene.dialect_fields import fit, with_words_joined
+from minirt.scene.dialects import colours_of_materials, kind_of, translated
 from minirt.scene.elements import FURTHER, Camera, FurtherCamera
 from minirt.scene.lines import TAKEN, WORD, Line, Log, line_from
 from minirt.scene.registry import nearest_element

@@ -1,27 +1,32 @@
 """Diagnosing reader of one line of a scene file: every error is logged with its column and a hint.
 
-It works in four steps: split the line into words, identify the element, assign words to fields
-(`minirt.scene.element_reader`), parse their values (`minirt.scene.value_reader`).
+A line goes one way: it is split into words (`minirt.scene.lines`), the first word names an element
+(`minirt.scene.registry`), the others are assigned to its fields here and in `minirt.scene.attribute_reader`, and their
+values are parsed (`minirt.scene.value_reader`).
 """
 
 from __future__ import annotations
 
-import re
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from itertools import combinations, compress, starmap, takewhile
+from typing import Any
 
-from minirt.element import Element
-from minirt.errors import hint, quoted
-from minirt.fields.scalars import code_point_name
-from minirt.scene.element_reader import assign_words
-from minirt.scene.lines import Line, Log, Word, first_unprintable, words_of
+from minirt.element import Element, fields_by_key, pattern, positional_fields
+from minirt.errors import FieldError, hint, quoted
+from minirt.fields import Colour, Field
+from minirt.scene.attribute_reader import attribute_slots, is_attribute
+from minirt.scene.lines import HEX_COLOUR, Line, Log, Word, split_line
 from minirt.scene.pages import Item
-from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, SPELLINGS, nearest_element
-from minirt.scene.value_reader import parse_slots, tell_useless
-
-SLASHES = re.compile(r"(?<![^ \t])//")
+from minirt.scene.registry import SPELLINGS, identify, nearest_element, nearest_word
+from minirt.scene.value_reader import Slot, parse_slots, tell_useless
 
 
 def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
-    """Read any line: an element, or the line itself for a comment or a blank line; None after an error."""
+    """Read any line: an element, or the line itself for a comment or a blank line; None after an error.
+
+    `seen` has the first line of each identifier, and gets that of this line.
+    """
     words = split_line(line, log)
     if words == []:
         return line.source
@@ -38,11 +43,10 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     if kind.once and first != line.number:
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
         log.error(line, message, *words[0].span(None))
-    slots = assign_words(kind, words, line, log)
-    values = parse_slots(slots, line, log)
+    slots, values = read_values(kind, words, line, log)
     if len(log.errors) > errors:
         return None
-    (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
+    (element,) = kind.of_columns(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
     conflict = element.conflict()
     if conflict is None:
         tell_useless(element, slots, line, log)
@@ -53,38 +57,68 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
     return None
 
 
-def split_line(line: Line, log: Log) -> list[Word] | None:
-    """Return the words of a line, none for a comment or a blank line; None after an error."""
-    hidden = first_unprintable(line)
-    if hidden >= 0:
-        message = "a carriage return ends a line only together with a line feed"
-        if line.text[hidden] != "\r":
-            message = f"only spaces and tabs separate fields, got {code_point_name(line.text[hidden])}"
-        log.error(line, message, hidden + 1)
-        return None
-    body = line.text[: line.end]
-    slashes = SLASHES.search(body) if "//" in body else None
-    words = words_of(body)
-    blank = next((word.column - 1 for word in words[2:] if word.text.startswith(",")), 0)
-    blank = blank or next((word.end - 1 for word in words[1:-1] if word.text.endswith(",")), 0)
-    if slashes:
-        log.error(line, "a comment begins with '#', got '//'", slashes.start() + 1, 2)
-    elif blank:
-        log.error(line, "no blanks may stand around a comma", blank, 2)
-    return None if slashes or blank else words
+def read_values(kind: type[Element], words: list[Word], line: Line, log: Log) -> tuple[list[Slot], dict[str, Any]]:
+    """Return the fields that a line gives, each with its word, and their values by name; errors go into the log.
+
+    Positional fields come first, attributes follow. There are neither where '#' seems to begin a colour.
+    """
+    positional, keyed = positional_fields(kind), fields_by_key(kind)
+    are_attributes = [is_attribute(word.text, keyed) for word in words[1:]]
+    count = (*are_attributes, True).index(True)
+    given, attributes = words[1 : 1 + count], words[1 + count :]
+    following = positional[len(given)] if len(given) < len(positional) else None
+    hex_colour = HEX_COLOUR.match(line.text, line.end)
+    if hex_colour and isinstance(following, Colour):
+        message = f"must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
+        log.error(line, f"{kind.title} {following.title} {message}", line.end + 1, len(hex_colour[0]))
+        return [], {}
+    fields = fields_given(positional, given)
+    missing = [field for field in positional if field.required and field not in fields]
+    if missing:
+        names = f"{kind.title} {' and '.join(each.title for each in missing)} {'is' if len(missing) == 1 else 'are'}"
+        before = words[positional.index(missing[0])]
+        log.error(line, f"{names} missing: expected '{pattern(kind)}'", before.end)
+        attributes = [*compress(words[1:], are_attributes)]
+    slots = [Slot(kind, field, word) for field, word in zip(fields, given, strict=False)]
+    further = attribute_slots(kind, keyed, attributes, line, log)
+    errors = len(log.errors)
+    values = parse_slots(slots, line, log)
+    extra = given[len(positional) :]
+    if extra:
+        del log.errors[errors + 1 :]  # the first wrong field alone: later ones may be off by one
+    has_wrong_field = len(log.errors) > errors
+    values |= parse_slots(further, line, log)
+    if extra and not has_wrong_field:
+        report_extra_word(kind, keyed, extra[0], line, log)
+    return slots + further, values
 
 
-def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
-    """Return the element whose identifier `word` is; None, with an error and a hint, for none."""
-    code = word.text
-    if code in SPELLINGS:
-        return SPELLINGS[code]
-    glued = GLUED.match(code)
-    if glued and glued[1] in SPELLINGS:
-        log.error(line, f"a blank is missing after '{glued[1]}'", word.column + len(glued[1]))
-        return None
-    message = f"unknown element {quoted(code)}{hint(nearest_element(code))}"
-    if NUMERIC.match(code):
-        message = f"a line begins with one of {', '.join(ELEMENTS)}, got {quoted(code)}"
-    log.error(line, message, word.column, len(code))
-    return None
+def fields_given(positional: Sequence[Field], words: list[Word]) -> list[Field]:
+    """Return the fields that the words of a line seem to be meant for, where there are fewer words than fields."""
+    if len(words) >= sum(field.required for field in positional):
+        return list(positional[: len(words)])
+    for fits in (is_value_of, has_parts_of):
+        for fields in combinations(positional, len(words)):
+            if all(starmap(fits, zip(fields, words, strict=True))):
+                return list(fields)
+    return [field for field, _ in takewhile(lambda pair: has_parts_of(*pair), zip(positional, words, strict=False))]
+
+
+def is_value_of(field: Field, word: Word) -> bool:
+    """Whether a word is the value of a field."""
+    with suppress(FieldError):
+        return has_parts_of(field, word) and field.check(field.parse(word.text)) is not None
+    return False
+
+
+def has_parts_of(field: Field, word: Word) -> bool:
+    """Whether a word has as many numbers as a field."""
+    return word.text.count(",") == field.width - 1
+
+
+def report_extra_word(kind: type[Element], keyed: Mapping[str, Field], extra: Word, line: Line, log: Log) -> None:
+    """Report the first word behind the fields of a line; `keyed` are the element's attributes by their keys."""
+    guess = nearest_word(extra.text, list(keyed))
+    expected = hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
+    why = " (one element a line)" if extra.text in SPELLINGS else expected
+    log.error(line, f"{kind.title} has no further field {quoted(extra.text)}{why}", *extra.span(None))

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from minirt.errors import Problem
+from minirt.fields.scalars import code_point_name
 
 BOM = "\ufeff"  # byte order mark
 MAX_ERRORS = 1000  # in one file; a file with more is not a scene
@@ -21,6 +22,8 @@ MAX_NOTICES = 1000
 MOST_NAMED = 8  # words of one sort in a notice
 MAX_WORDS = 100  # of a line; more than any element has
 TAKEN = " to "  # between the words of a change and what was taken for them
+SLASHES = re.compile(r"(?<![^ \t])//")  # which begin a comment in other programs
+HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
 WORD = re.compile(r'(?:"[^"]*+"|[^ \t])++')  # blanks may stand within quotes
 
 
@@ -132,3 +135,24 @@ class Log:
 def told(message: str, places: int) -> str:
     """Return a message about so many places."""
     return f"{message} ({places} places)" if places > 1 else message
+
+
+def split_line(line: Line, log: Log) -> list[Word] | None:
+    """Return the words of a line, none for a comment or a blank line; None after an error."""
+    hidden = first_unprintable(line)
+    if hidden >= 0:
+        message = "a carriage return ends a line only together with a line feed"
+        if line.text[hidden] != "\r":
+            message = f"only spaces and tabs separate fields, got {code_point_name(line.text[hidden])}"
+        log.error(line, message, hidden + 1)
+        return None
+    body = line.text[: line.end]
+    slashes = SLASHES.search(body) if "//" in body else None
+    words = words_of(body)
+    blank = next((word.column - 1 for word in words[2:] if word.text.startswith(",")), 0)
+    blank = blank or next((word.end - 1 for word in words[1:-1] if word.text.endswith(",")), 0)
+    if slashes:
+        log.error(line, "a comment begins with '#', got '//'", slashes.start() + 1, 2)
+    elif blank:
+        log.error(line, "no blanks may stand around a comma", blank, 2)
+    return None if slashes or blank else words

@@ -28,7 +28,7 @@ class Crowd(Sequence[Any]):
     def elements(self) -> Any:
         fields: Any = positional_fields(self.kind)
         values = {field.name: field.values(self.columns[field.name]) for field in fields}
-        return self.kind.checked(len(self), {"source": self.sources, **values})
+        return self.kind.of_columns(len(self), {"source": self.sources, **values})
 
     def some(self, indices: Any) -> Crowd:
         """Return a crowd of elements like some of these, which are in the same order; or this one, if they are all."""

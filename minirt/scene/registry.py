@@ -6,8 +6,9 @@ import re
 from functools import lru_cache
 
 from minirt.element import Element
-from minirt.errors import nearest
+from minirt.errors import hint, nearest, quoted
 from minirt.scene.elements import LAMPS, Ambient, Background, Camera, FurtherCamera, Resolution
+from minirt.scene.lines import Line, Log, Word
 from minirt.shapes import ALL_KINDS
 
 SHAPES = tuple(kind.element for kind in ALL_KINDS)
@@ -51,3 +52,19 @@ def nearest_element(word: str) -> str:
         return SPELLINGS[glued[1]].code
     names = {name: kind.code for kind in ELEMENTS.values() for name in (kind.title, kind.plural)}
     return nearest_word(word, list(ELEMENTS)) or names.get(nearest_word(word, list(names)), "")
+
+
+def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
+    """Return the element whose identifier `word` is; None, with an error and a hint, for none."""
+    code = word.text
+    if code in SPELLINGS:
+        return SPELLINGS[code]
+    glued = GLUED.match(code)
+    if glued and glued[1] in SPELLINGS:
+        log.error(line, f"a blank is missing after '{glued[1]}'", word.column + len(glued[1]))
+        return None
+    message = f"unknown element {quoted(code)}{hint(nearest_element(code))}"
+    if NUMERIC.match(code):
+        message = f"a line begins with one of {', '.join(ELEMENTS)}, got {quoted(code)}"
+    log.error(line, message, word.column, len(code))
+    return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,6 +16,8 @@ from minirt.materials import pictures
 from minirt.meshes import load_mesh
 from minirt.scene.lines import Line, Log, Word
 from minirt.shapes import Mesh
+
+Notice = tuple[str, int | None]  # about a value, and the index of its component; None: about all of it
 
 
 class Slot(NamedTuple):
@@ -53,6 +56,9 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
         value = field.parse(text)
         checked = field.check(value)
         remark = field.remark(value)
+        notices: list[Notice] = []
+        if log.folder:
+            checked, notices = with_files(slot, checked, log.folder)
     except FieldError as error:
         message, span = f"{slot.title} {error}", slot.span(error.part)
         repair = field.repair(text)
@@ -67,39 +73,38 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
         log.change(line, remark, text)
     elif remark:
         log.notice(line, f"{slot.title} {remark}", *slot.span(None))
-    return value_with_files(slot, checked, line, log) if log.folder else checked
+    for notice, part in notices:
+        log.notice(line, f"{slot.title} {notice}", *slot.span(part))
+    return checked
 
 
-def value_with_files(slot: Slot, value: Any, line: Line, log: Log) -> Any:
-    """Load the mesh that a value names, and try its pictures; an error for each file that cannot be used."""
+def with_files(slot: Slot, value: Any, folder: Path) -> tuple[Any, list[Notice]]:
+    """Return a value with the mesh that it names, once its pictures were read, too, and notices about these files.
+
+    FieldError for a file that cannot be used.
+    """
     if isinstance(value, MeshFile):
-        triangles = load_file(load_mesh, PictureFile(value.name), "mesh", slot, line, log)
-        for notice in triangles.notices if triangles else ():
-            log.notice(line, f"{slot.title} {quoted(value.name)} {notice}", *slot.span(None))
-        return MeshFile(value.name, triangles)
-    for file in slot.field.pictures(value):
-        load_file(pictures.reader(file), file, "picture", slot, line, log)
-    return value
+        triangles, notices = load_file(load_mesh, PictureFile(value.name), slot, folder)
+        about = [(f"{quoted(value.name)} {notice}", None) for notice in triangles.notices]
+        return MeshFile(value.name, triangles), [*notices, *about]
+    read = [load_file(pictures.reader(file), file, slot, folder)[1] for file in slot.field.pictures(value)]
+    return value, [*chain.from_iterable(read)]
 
 
-def load_file(read: Callable[[Path], Any], file: PictureFile, sort: str, slot: Slot, line: Line, log: Log) -> Any:
-    """Read a file that a value names; None, with an error, when it cannot be used."""
+def load_file(read: Callable[[Path], Any], file: PictureFile, slot: Slot, folder: Path) -> tuple[Any, list[Notice]]:
+    """Return what is in a file that a value names, and notices about it; FieldError when it cannot be used."""
+    path, notices = file_io.located(folder, file.name), list[Notice]()
     try:
-        folder = log.folder or Path()
-        path = file_io.located(folder, file.name)
         content = read(path)
-        if path != folder / file.name:
-            above = quoted(os.path.relpath(path, folder))
-            log.notice(line, f"{slot.title} is not beside the scene, and is read from {above}", *slot.span(file.part))
-        if os.path.abspath(path) in pictures.transparent:  # noqa: PTH100
-            log.notice(line, f"{slot.title} has transparent parts, which are drawn opaque", *slot.span(file.part))
-        return content
     except FileError as error:
-        message = f"{slot.title} must be a {sort} file, got {quoted(file.name)}: {error.reason}"
-        if isinstance(slot.field, MeshField):
-            message = f"{slot.title} {quoted(file.name)}: {error.reason}"
-        log.error(line, message, *slot.span(file.part))
-        return None
+        what = "" if isinstance(slot.field, MeshField) else "must be a picture file, got "
+        raise FieldError(f"{what}{quoted(file.name)}: {error.reason}", file.part) from None
+    if path != folder / file.name:
+        above = quoted(os.path.relpath(path, folder))
+        notices.append((f"is not beside the scene, and is read from {above}", file.part))
+    if os.path.abspath(path) in pictures.transparent:  # noqa: PTH100
+        notices.append(("has transparent parts, which are drawn opaque", file.part))
+    return content, notices
 
 
 def lacked_by(element: Element, field: Field) -> tuple[str, ...]:

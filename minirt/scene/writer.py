@@ -12,11 +12,11 @@ from minirt.element import Element, fields_of
 from minirt.fields import Field, MeshFile
 from minirt.helpers import file_io
 from minirt.scene import fast, files
-from minirt.scene.element_reader import assign_words
-from minirt.scene.line_reader import identify, split_line
-from minirt.scene.lines import BOM, Log, Word, line_from
+from minirt.scene.line_reader import read_values
+from minirt.scene.lines import BOM, Log, Word, line_from, split_line
 from minirt.scene.pages import Crowd, Page
-from minirt.scene.value_reader import Slot, parse_slots
+from minirt.scene.registry import identify
+from minirt.scene.value_reader import Slot
 from minirt.shapes import Mesh
 
 
@@ -40,8 +40,7 @@ def line_of(element: Element) -> str:
     log = Log("", lenient=False)
     words = split_line(line, log) if not {"\n", "\0"} & set(line.source) else None
     written = identify(words[0], line, log) if words else None
-    slots = assign_words(kind, words, line, log) if words and written is kind else []
-    values = parse_slots(slots, line, log)
+    slots, values = read_values(kind, words, line, log) if words and written is kind else ([], {})
     if not words or not values or log.errors:
         return describe(element)
     if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):

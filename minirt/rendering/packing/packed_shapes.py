@@ -36,7 +36,7 @@ def in_columns(shapes: Sequence[Shape]) -> Any:
     """One shape, of a kind that is `columnar`, that stands for n of them: its numbers are arrays (n,)."""
     kind = shapes.kind if isinstance(shapes, Crowd) else type(shapes[0])
     columns: Any = {field.name: [column(shapes, field.name, field.width).T] for field in positional_fields(kind)}
-    return kind.checked(1, columns)[0]
+    return kind.of_columns(1, columns)[0]
 
 
 def column(shapes: Sequence[Shape], name: str, width: int) -> np.ndarray:
