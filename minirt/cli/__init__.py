@@ -72,7 +72,10 @@ def tell_notes(error: BaseException) -> None:
 
 
 def run(parser: Arguments, argv: Sequence[str] | None) -> int:
-    """Parse the arguments and run the command that they select, for each scene."""
+    """Parse `argv`, or the program's own arguments, and run the command that they select, for each scene.
+
+    Return the exit status: the greatest of those of the scenes.
+    """
     options = parser.parse_args(argv)
     if text := asked_text(parser, options):
         say(text)
@@ -114,6 +117,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
+    """Read the scene of this name and run the command for it; return its exit status. MiniRTError."""
     from minirt.helpers.signals import ended_by_signals
     from minirt.helpers.system import gc_paused
 
@@ -145,14 +149,16 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
 
     check_format(options)  # before the work, not after it
     output, replay, auto = options.output, options.replay, options.samples == "auto"
-    nameless, last = not output or is_nameless(output), options.frames.stop - 1 if options.frames else 0
+    nameless = not output or is_nameless(output)
+    last = options.frames.stop - 1 if options.frames else 0  # number of a picture of the turntable
+    is_beyond_turntable = bool(options.turntable) and last > options.turntable
     is_one = output and not (options.buffers or replay or (options.turntable and not options.cluster))
     side, made = max(options.size or (0,)), counted(options.turntable, "picture")
     is_too_large = side > MAX_SIDE and not options.cluster
     wrong = (
         (options.turntable and nameless, f"--turntable needs {NAME}"),
         (last and not options.turntable, "--frames needs --turntable"),
-        (last > (options.turntable or last), f"--frames: --turntable makes {made}, got {last}"),
+        (is_beyond_turntable, f"--frames: --turntable makes {made}, got {last}"),
         (options.resume and (replay or auto or nameless), f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),

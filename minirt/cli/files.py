@@ -85,7 +85,7 @@ def is_nameless(path: str) -> bool:
 
 
 def stream_data(path: str, name: str) -> bytes:
-    """Read a scene from a stream. SceneError, which calls it by a name."""
+    """Read the bytes of a scene from a stream: standard input for the path "-". SceneError, which calls it `name`."""
     from minirt.scene.files import MAX_BYTES, file_error
 
     try:

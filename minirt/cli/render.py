@@ -14,7 +14,7 @@ from minirt.cli.arguments import FAILED, OK, SAMPLES, tell
 from minirt.cli.files import check_output, format_name, is_film, needs_light, write
 from minirt.cli.options import settings_text
 from minirt.cluster.job import Job, Workers
-from minirt.cluster.journal import BANDS, Journal, path_for
+from minirt.cluster.journal import BANDS, Journal, journal_path
 from minirt.cluster.pictures import picture_of, results, stream
 from minirt.errors import RenderError
 from minirt.formats.table import memory_of
@@ -91,21 +91,23 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
 
 @contextmanager
 def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bool = True) -> Iterator[Journal | None]:
-    """Show progress, and keep what the block puts into the journal of the output, until it ends without an error.
+    """Show the progress of the `share`, and keep what the block puts into the journal of the output, until it ends
+    without an error.
 
-    Short work is not kept, and neither are samples that depend on those before.
+    The block gets that journal, or None: short work is not kept, and neither are samples that depend on those before.
+    Without `has_parts` the journal only has which pictures of the job are done.
     """
     journal = None
     with ExitStack() as stack:
         if options.output != "-" and (options.resume or share.rays >= LONG):
-            work = job.work(options.turntable, options.bits, options.quality, options.metadata)
+            work = job.identity(options.turntable, options.bits, options.quality, options.metadata)
             command = shlex.join(["miniRT", *(each for each in options.command if each != "--resume"), "--resume"])
             how = {"again": command, "what": share.what, "resume": options.resume, "has_parts": has_parts}
             journal = stack.enter_context(Journal(options.output, work, **how))
             if options.resume and not journal.places:
                 tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
         elif options.output != "-":
-            file_io.delete(path_for(options.output))
+            file_io.delete(journal_path(options.output))
         stack.enter_context(progress(share.state))
         yield journal
 
@@ -139,7 +141,10 @@ class Share:
 
 
 def render_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
-    """Render a picture as the options ask and write the output; print measurements and notices to standard error."""
+    """Render a picture as the options ask and write the output; print measurements and notices to standard error.
+
+    Return the error that was reached, where the job asks for one, else None.
+    """
     from minirt.rendering.notices import measurements, notices_about
 
     is_measured = options.verbose and not executor
@@ -157,7 +162,7 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
     for each in notices_about(job.scene, image.array, job.size, single, job.settings.samples):
         tell(f"notice: {each}")
     if is_measured:
-        tell("\n".join(measurements(*job[:3], seconds, image.not_finite)))
+        tell("\n".join(measurements(job.scene, job.size, job.settings, seconds, image.not_finite)))
     return image.reached
 
 

@@ -13,9 +13,9 @@ from itertools import islice
 from multiprocessing import current_process, get_context, parent_process
 from threading import Thread
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
-from minirt.cluster.job import Job, Made, Workers, packed, version, work
+from minirt.cluster.job import Job, Made, Workers, packed, render_sent_band, version
 from minirt.errors import MiniRTError, RenderError
 from minirt.helpers.signals import held_signals
 from minirt.rendering.threads import usable_cores
@@ -32,6 +32,21 @@ UNGUARDED = 87  # exit status of a process of a pool that runs the script which 
 GUARD = "it ran this script once more: put the call below \"if __name__ == '__main__':\""
 
 
+class SentScene(NamedTuple):
+    """A scene that workers have, whatever its camera."""
+
+    contents: object  # its file, and its elements without cameras: what tells it from others
+    data: bytes  # the packed scene
+    at_workers: Any  # what stands for these bytes in a task: they, or dask's name of the copies at its workers
+
+
+class Sending(NamedTuple):
+    """The last sending of a band to a worker."""
+
+    at: float  # seconds
+    patience: float  # seconds that it may take
+
+
 class Dispatcher:
     """Bands in flight to an executor. One that is late is sent to another worker, too, since the first may hang."""
 
@@ -45,10 +60,11 @@ class Dispatcher:
         self.executor: Any = made.get_executor() if hasattr(made, "get_executor") else made
         self.is_pool = isinstance(self.executor, ProcessPoolExecutor)
         self.where = "the executor" if self.client is None else f"the scheduler at {self.client.scheduler.address}"
-        self.last: tuple[object, bytes, Any] = None, b"", b""  # a scene, its bytes, and what stands for them at workers
-        self.sent: dict[Future[Made], tuple[float, float]] = {}  # seconds: when it was sent, how long that may take
-        self.tasks: dict[Future[Made], Future[Made]] = {}  # at workers, and whose result is theirs
-        self.has_late, self.longest = False, 0.0  # seconds from sending a band to its end
+        self.scene = SentScene(None, b"", b"")  # that was sent last
+        self.sendings: dict[Future[Made], Sending] = {}  # of the bands in flight, by the futures of their results
+        self.tasks: dict[Future[Made], Future[Made]] = {}  # at workers, and the future that gets the result of each
+        self.has_late = False  # whether a band was late
+        self.longest = 0.0  # seconds from sending a band to its end
 
     @property
     def count(self) -> int:
@@ -63,8 +79,11 @@ class Dispatcher:
     def results(
         self, bands: Iterable[Job], restore: Callable[[Job], Made | None], in_order: bool
     ) -> Generator[tuple[Job, Made], None, None]:
-        """Yield bands and what was made of them, here or before; RenderError where one fails, its worker dies or the
-        cluster has ended."""
+        """Yield bands and what was made of them, the first that is done first, or `in_order`. All ends with the last.
+
+        `restore` returns what was made of a band before, or None where it has to be rendered. RenderError where a band
+        fails, its worker dies or the cluster has ended.
+        """
         rest = iter(bands)
         running: dict[Future[Made], Job] = {}
         try:
@@ -81,7 +100,7 @@ class Dispatcher:
                 future = self.first_made(dict(islice(running.items(), 1)) if in_order else running)
                 for task in [task for task, owner in self.tasks.items() if owner is future][1:]:
                     task.cancel()  # but not the first: a worker that hangs should not get another
-                self.sent.pop(future, None)
+                self.sendings.pop(future, None)
                 band = running.pop(future)
                 yield band, self.made_of(band, future)
         finally:
@@ -97,35 +116,39 @@ class Dispatcher:
             if now - seen > DESERTED:
                 raise RenderError(f"{self.where} has had no workers for {DESERTED:.0f} s")
             for future, band in running.items():
-                sent, patience = self.sent[future]
-                if now - sent > max(patience, LONGER * (self.longest or LATE)):
+                sending = self.sendings[future]
+                if now - sending.at > max(sending.patience, LONGER * (self.longest or LATE)):
                     self.has_late = True
-                    self.send(band, future, 2 * patience)
+                    self.send(band, future, 2 * sending.patience)
         return next(iter(made))
 
     def send(self, band: Job, future: Future[Made], patience: float) -> None:
-        """Send a band to a worker, whose result will be that of a future unless another one's is first. Scenes that
-        differ in the camera alone are packed once."""
+        """Send a band to a worker, which has `patience` seconds for it.
+
+        The future gets the result, unless another worker with the same band is faster. Scenes that differ in the camera
+        alone are packed once.
+        """
         scene, settings = band.scene, band.settings
-        others = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
-        if self.last[0] != others:
-            there: Any = packed(scene, with_files=not self.is_pool)
-            data = there
+        contents = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
+        if self.scene.contents != contents:
+            at_workers: Any = packed(scene, with_files=not self.is_pool)
+            data = at_workers
             if self.client is not None and len(data) > LARGE:
-                there = self.client.submit(bytes, data, key=f"minirt-{hashlib.sha256(data).hexdigest()}")
-            self.last = others, data, there
+                at_workers = self.client.submit(bytes, data, key=f"minirt-{hashlib.sha256(data).hexdigest()}")
+            self.scene = SentScene(contents, data, at_workers)
         if settings.threads is None and self.is_pool:
             settings = settings.replace(threads=max(1, usable_cores() // self.count))
         nowhere: Any = None
         # A worker that hangs may be the only one that has a large scene.
-        arguments = version(), self.last[1 if self.has_late else 2], scene.camera
+        arguments = version(), self.scene.data if self.has_late else self.scene.at_workers, scene.camera
         how = {} if self.client is None else {"pure": False}  # dask makes the same again
         try:
             with held_signals(), terminal_signals_blocked():  # the first task starts the processes of a pool
-                task = self.executor.submit(work, *arguments, band._replace(scene=nowhere, settings=settings), **how)
+                sent = band._replace(scene=nowhere, settings=settings)
+                task = self.executor.submit(render_sent_band, *arguments, sent, **how)
         except RuntimeError as error:
             raise RenderError(f"the executor takes no tasks: {error}") from error
-        self.sent[future] = perf_counter(), patience
+        self.sendings[future] = Sending(perf_counter(), patience)
         self.tasks = {each: owner for each, owner in self.tasks.items() if not each.done()} | {task: future}
         task.add_done_callback(partial(self.hand_over, future, perf_counter()))
 
@@ -152,7 +175,8 @@ class Dispatcher:
                 if processes:  # whose exit statuses a thread of the pool collects
                     self.executor._executor_manager_thread.join(COLLECTING)
                 is_unguarded = any(each.exitcode == UNGUARDED for each in processes)
-                raise RenderError(f"{band.what}: its worker died" + f": {GUARD}" * is_unguarded) from error
+                why = f": {GUARD}" if is_unguarded else ""
+                raise RenderError(f"{band.what}: its worker died{why}") from error
             raise RenderError(f"{band.what} failed: {type(error).__name__}: {error}") from error
 
     def processes(self) -> list[Any]:
@@ -163,7 +187,8 @@ class Dispatcher:
         """Cancel what has not been made, and end the executor if it was made here."""
         with held_signals():
             unfinished = [each for each in self.tasks if not each.done()]
-            if not (self.is_own and self.is_pool):  # which fails with InvalidStateError, if it breaks with such tasks
+            # A pool whose processes are killed fails with InvalidStateError if some of its tasks are cancelled.
+            if not (self.is_own and self.is_pool):
                 for each in unfinished:
                     each.cancel()
             if self.is_own:

@@ -62,9 +62,8 @@ class Job(NamedTuple):
         pairs = enumerate(rows_of(self.region, samples))
         return [Job(self.scene, self.size, self.settings.replace(region=each), number, bits) for number, each in pairs]
 
-    def work(self, *more: object) -> str:
-        """Return what tells the job from others: a hash of all that the bits of the picture, or of `more`, depend
-        on."""
+    def identity(self, *more: object) -> str:
+        """Return a hash of all that the bits of the picture depend on, and of `more`: it tells the job from others."""
         settings = f"{__version__} {self.size} {self.settings.replace(threads=None)} {more}"
         return rendering_settings.identity(self.scene, settings)
 
@@ -189,9 +188,11 @@ def folder() -> Path:
     return Path(path)
 
 
-def work(asked: str, data: bytes, camera: Camera, band: Job) -> Made:
-    """Render a band of a packed scene, with another camera. RenderError where this version is not the one `asked` for,
-    which might draw other bits."""
+def render_sent_band(asked: str, data: bytes, camera: Camera, band: Job) -> Made:
+    """Render a band at a worker: of the scene that is packed in `data`, seen by `camera`; `band.scene` is not used.
+
+    RenderError where this version is not the one `asked` for, which might draw other bits.
+    """
     if asked != version():
         raise RenderError(f"a worker has another miniRT: {version()} in place of {asked}")
     scene = unpacked(data)

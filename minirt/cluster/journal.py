@@ -48,13 +48,14 @@ class Journal:
         keeps_all: bool = False,
         has_parts: bool = True,
     ) -> None:
-        """Go on with the journal of an output, or delete it.
+        """Go on with the journal of an output, or, without `resume`, delete it.
 
-        One that `keeps_all` bands, of which the output is put together, begins anew where it is of other work. Without
-        parts it has what is done, and not what was rendered. `again` and `what` are words of the note. RenderError
-        where another program writes it, and where it is of other work.
+        `work` is a line that says what is rendered, and how: the same for the same pixels. One that `keeps_all` bands,
+        of which the output is put together, begins anew where it is of other work. Without parts it has what is done,
+        and not what was rendered. `again` and `what` are words of the note. RenderError where another program writes
+        it, and where it is of other work.
         """
-        self.path = path_for(output)
+        self.path = journal_path(output)
         self.start = TITLE + work.encode() + b"\n"
         self.again, self.what, self.total = again, what, 0
         self.keeps_all, self.has_parts = keeps_all, has_parts
@@ -103,16 +104,17 @@ class Journal:
         return file
 
     def keep(self, number: int, made: Made, seconds: float) -> None:
-        """Keep what took so long to make, unless keeping has taken its share of the time or the disk is full.
+        """Keep what was made of band `number` in so many seconds, unless keeping took its share of the time before or
+        the disk is full.
 
-        OSError where all is kept and cannot be written.
+        OSError where the journal `keeps_all` and cannot be written.
         """
         self.credit += SHARE * seconds
         if self.credit < 0 and not self.keeps_all:
             return
         start = perf_counter()
         try:
-            self.append(number, packed(made if self.has_parts else Strips((), made.reached)))
+            self.append(number, record_of(made if self.has_parts else Strips((), made.reached)))
         except OSError:
             if self.keeps_all:
                 raise
@@ -135,7 +137,7 @@ class Journal:
         start, length = self.places[band.number]
         with file_io.told_errors(self.path, "cannot be read"):
             self.file.seek(start)
-            return unpacked(self.file.read(length), band)
+            return made_of_record(self.file.read(length), band)
 
     def close(self) -> None:
         """Close the file, if there is one."""
@@ -163,8 +165,11 @@ def write_all(file: IO[bytes], data: bytes) -> None:
         data = data[file.write(data) :]
 
 
-def packed(made: Made) -> bytes:
-    """Return a band as a record: a line of JSON, then compressed arrays, or strips as they are."""
+def record_of(made: Made) -> bytes:
+    """Return what was made of a band as a record: a line of JSON, then compressed arrays, or strips as they are.
+
+    The line has the sizes of these parts in bytes and the outcome; for a picture also its tone and `not_finite`.
+    """
     about: list[Any] = [made.reached]
     if isinstance(made, Strips):
         parts = list(made.parts)
@@ -174,8 +179,8 @@ def packed(made: Made) -> bytes:
     return json.dumps([[*map(len, parts)], *about]).encode() + b"\n" + b"".join(parts)
 
 
-def unpacked(data: bytes, band: Job) -> Made:
-    """Return what a record holds of a band."""
+def made_of_record(data: bytes, band: Job) -> Made:
+    """Return what was made of a band, from its record: see `record_of`."""
     line, _, rest = data.partition(b"\n")
     sizes, reached, *about = json.loads(line)
     parts = [rest[start:end] for start, end in pairwise(accumulate(sizes, initial=0))]
@@ -188,7 +193,7 @@ def unpacked(data: bytes, band: Job) -> Made:
     return Image(levels, light[0] if light else None, reached, *about)
 
 
-def path_for(output: str | os.PathLike[str]) -> Path:
+def journal_path(output: str | os.PathLike[str]) -> Path:
     """Return the path of the journal of an output: `.spin.gif.journal` beside `spin.gif`."""
     path = Path(output)
     return path.with_name(f".{path.name}.journal")

@@ -99,7 +99,7 @@ def stream(
     bands, outcomes = job.bands(bits), []
     with file_io.told_errors(path):
         file_io.probe(path)
-    with Journal(path, job.work(bits), keeps_all=True) as journal, file_io.told_errors(path):
+    with Journal(path, job.identity(bits), keeps_all=True) as journal, file_io.told_errors(path):
         for band, made in results(bands, executor, journal, on_progress):
             outcomes.append((band.region, made.reached))
         strips = chain.from_iterable(each.parts for each in map(journal.restore, bands) if each)

@@ -26,7 +26,7 @@ import tifffile
 import minirt
 from minirt.cli import main, render
 from minirt.cluster import executor
-from minirt.cluster.job import Job, Made, share_of_cores, work
+from minirt.cluster.job import Job, Made, render_sent_band, share_of_cores
 from minirt.errors import RenderError
 from minirt.rendering.settings import RenderSettings
 from tests.cli.program import environment
@@ -44,7 +44,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_worker_that_dies_ends_the_work_and_what_is_done_is_kept(make: Callable[[], Any], tmp_path: Path) -> None:
     """`dies` is run by an executor of the caller, and by one that a function makes."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(executor, "work", dies)
+        patch.setattr(executor, "render_sent_band", dies)
         with pytest.raises(RenderError, match=r"rows \d+ to \d+: its worker died"):
             minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=make())
     assert not (tmp_path / "a.tif").exists()
@@ -58,7 +58,7 @@ def dies(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
     """Die of one band."""
     if band.region.y > 300:
         os.kill(os.getpid(), signal.SIGKILL)
-    return work(version, data, camera, band)
+    return render_sent_band(version, data, camera, band)
 
 
 def fails(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
@@ -67,7 +67,7 @@ def fails(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
 
 
 def test_an_error_of_a_worker_is_told_with_its_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executor, "work", fails)
+    monkeypatch.setattr(executor, "render_sent_band", fails)
     with ThreadPoolExecutor(1) as pool, pytest.raises(RenderError, match=r"(rows \d+ to \d+) failed: KeyError: '\1'"):
         minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=pool)
 
@@ -110,12 +110,12 @@ def sends_half(version: str, data: bytes, camera: minirt.Camera, band: Job) -> M
 
     if band.region.y:
         Connection._send_bytes = send  # type: ignore[method-assign]
-    return work(version, data, camera, band)
+    return render_sent_band(version, data, camera, band)
 
 
 def test_a_pool_ends_though_half_a_result_has_come(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HALF", str(tmp_path / "half"))
-    monkeypatch.setattr(executor, "work", sends_half)
+    monkeypatch.setattr(executor, "render_sent_band", sends_half)
     bands = Job(BALL, SIZE, RenderSettings()).bands(8)
     made = executor.Dispatcher(lambda: ProcessPoolExecutor(1, get_context("spawn"))).results(
         bands, lambda _: None, in_order=True

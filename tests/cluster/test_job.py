@@ -15,7 +15,18 @@ from hypothesis import strategies as st
 import minirt
 from minirt import Scene
 from minirt.cluster import job
-from minirt.cluster.job import LEAST_PIXELS, MOST_BANDS, MOST_PIXELS, ROWS, Job, packed, rows_of, unpacked, whole, work
+from minirt.cluster.job import (
+    LEAST_PIXELS,
+    MOST_BANDS,
+    MOST_PIXELS,
+    ROWS,
+    Job,
+    packed,
+    render_sent_band,
+    rows_of,
+    unpacked,
+    whole,
+)
 from minirt.errors import FileError, RenderError
 from minirt.kernel.frame import TILE
 from minirt.rendering.outcome import Outcome
@@ -100,7 +111,7 @@ def test_a_machine_without_the_files_draws_the_same_picture(tmp_path: Path) -> N
     data = packed(scene, with_files=True)
     shutil.rmtree(tmp_path / "home")
     for _ in range(2):
-        made = work(job.version(), data, scene.camera, Job(BALL, (40, 30), RenderSettings()))
+        made = render_sent_band(job.version(), data, scene.camera, Job(BALL, (40, 30), RenderSettings()))
         assert np.array_equal(made.linear, expected.linear)
         assert len(list((tmp_path / "files").iterdir())) == 1  # a picture that is there twice
     assert unpacked.cache_info().misses == 1
@@ -144,4 +155,4 @@ def test_a_file_that_has_gone_is_an_error(tmp_path: Path) -> None:
 
 def test_another_version_refuses_to_draw() -> None:
     with pytest.raises(RenderError, match="another miniRT"):
-        work("0.0.9 0123", b"", BALL.camera, Job(BALL, (40, 30), RenderSettings()))
+        render_sent_band("0.0.9 0123", b"", BALL.camera, Job(BALL, (40, 30), RenderSettings()))

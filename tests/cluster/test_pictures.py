@@ -16,7 +16,7 @@ import tifffile
 import minirt
 from minirt import Scene
 from minirt.cluster import executor
-from minirt.cluster.job import Job, Made, rows_of, work
+from minirt.cluster.job import Job, Made, render_sent_band, rows_of
 from minirt.cluster.journal import HEAD
 from minirt.errors import RenderError
 from minirt.rendering.packing.camera import Region
@@ -232,12 +232,12 @@ def test_results_that_come_in_another_order_are_put_in_order(monkeypatch: pytest
 
     def late(version: str, data: bytes, camera: minirt.Camera, band: Job) -> Made:
         assert band.number or second.wait(HANG_LIMIT)
-        made = work(version, data, camera, band)
+        made = render_sent_band(version, data, camera, band)
         if band.number:
             second.set()
         return made
 
-    monkeypatch.setattr(executor, "work", late)
+    monkeypatch.setattr(executor, "render_sent_band", late)
     views = list(turntable(BALL, 4))
     with ThreadPoolExecutor(2) as pool:
         assert_same(minirt.render_all(views, *FRAME, executor=pool), views)
@@ -263,9 +263,9 @@ def test_scenes_that_differ_in_the_camera_alone_are_packed_once(monkeypatch: pyt
 
     def noted(version: str, data: bytes, *others: Any) -> Made:
         sent.append(data)
-        return work(version, data, *others)
+        return render_sent_band(version, data, *others)
 
-    monkeypatch.setattr(executor, "work", noted)
+    monkeypatch.setattr(executor, "render_sent_band", noted)
     with ThreadPoolExecutor(1) as pool:
         assert len(list(minirt.render_all([*turntable(BALL, 2), *sweep(1)], *FRAME, executor=pool))) == 3
     assert sent[0] is sent[1]
