@@ -21,8 +21,12 @@ from minirt.rendering.packing import camera
 from minirt.rendering.packing.camera import GOLDEN_RATIO, Crop
 from minirt.rendering.tone_mapping import NO_LINEAR
 
+# Columns of a plan: the place of a packet among those of the picture, the row of `rays` at which its samples begin,
+# their number, and the row at which two sets of as many references begin; 0 for a packet without any.
+COLUMN, ROW, FIRST, DRAWN, REFERENCES = range(5)
 ALL_PACKETS = np.zeros((0, 5), np.int32)
 NO_ERRORS = np.zeros(0)
+NOT_FINITE = 1  # in the last row of a thread's memory: the number of rays whose light was not finite
 
 
 @cache
@@ -52,11 +56,14 @@ class Frame(NamedTuple):
 
 
 def plan_of(packets: np.ndarray, columns: int, drawn: Any) -> np.ndarray:
-    """Return the plan that draws packets, counted row by row, in a picture of so many columns of packets. `drawn`
-    (k, 3) or (3,) has their other numbers. A plan without any packet has one that takes no samples."""
+    """Return the plan (k, 5) that draws k packets, counted row by row, in a picture of so many columns of packets.
+
+    `drawn` (k, 3) or (3,) has the columns `FIRST`, `DRAWN` and `REFERENCES`. A plan without any packet has one that
+    takes no samples.
+    """
     plan = np.zeros((max(len(packets), 1), 5), np.int32)
-    plan[: len(packets), 1], plan[: len(packets), 0] = np.divmod(packets, columns)
-    plan[: len(packets), 2:] = drawn
+    plan[: len(packets), ROW], plan[: len(packets), COLUMN] = np.divmod(packets, columns)
+    plan[: len(packets), FIRST:] = drawn
     return plan
 
 
@@ -77,11 +84,14 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
 
 
 def frame_rays(arrays: Any, samples: int) -> np.ndarray:
-    """Return the rays of each of some samples of a packed scene. One sample is that from the centre of a lens, and of
-    the centres of lights."""
+    """Return the rays of a packet of a packed scene, a row for each sample of each of its variants.
+
+    They are (k, 3 * lanes), or with apertures (k, 8 * lanes): see `minirt.rendering.packing.camera`. One sample comes
+    from the centre of a lens, and sees the centres of lights.
+    """
     lanes = width(arrays.camera)
     places = camera.by_pixel(camera.packet_places(lanes, sample_positions(samples)), samples)
-    rays = camera.packet_rays(arrays.camera[6:12], places)
+    rays = camera.packet_rays(arrays.camera[camera.STEPS], places)
     if not camera.has_apertures(arrays):
         return rays
     variants = camera.variants_of(samples) if samples > 1 else 1
@@ -142,6 +152,10 @@ class SampleTable:
     def __init__(
         self, levels: np.ndarray, pixels: int, with_places: bool = False, with_references: bool = True
     ) -> None:
+        """Place samples for packets of so many pixels, each with a level in `levels`, (n,).
+
+        Without references there are no second samples for an estimate of the error.
+        """
         self.with_references = with_references
         self.first, self.reference = np.zeros((2, len(COUNTS)), np.int32)  # rows of a level
         self.drawn_variants, self.variants = np.ones((2, len(COUNTS)), np.int32)
@@ -153,7 +167,7 @@ class SampleTable:
             pairs = min(max(REFERENCE_ROWS // (2 * count), 1), VARIANTS, most)
             drawn = min(camera.variants_of(count), most) if with_places else 1
             self.variants[level], self.drawn_variants[level] = pairs, drawn
-            pairs *= with_references
+            pairs = pairs if with_references else 0
             self.first[level], self.reference[level] = rows, rows + count * drawn
             parts.append(positions_of(count, drawn, pairs, pixels, with_places))
             rows += count * (drawn + 2 * pairs)

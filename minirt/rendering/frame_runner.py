@@ -16,10 +16,18 @@ from minirt.kernel.pixels import PACKET_HEIGHT, TILE
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.lights import TOGETHER
 from minirt.lanes import width
-from minirt.rendering.frame import Frame, frame_arguments, plan_of, plan_of_variants, thread_memory
+from minirt.rendering.frame import (
+    DRAWN,
+    REFERENCES,
+    Frame,
+    frame_arguments,
+    plan_of,
+    plan_of_variants,
+    thread_memory,
+)
 from minirt.rendering.kernels import KernelChoice, Kernels
 from minirt.rendering.outcome import Outcome
-from minirt.rendering.packing.camera import Crop, Request, has_apertures, packet_rays, with_apertures
+from minirt.rendering.packing.camera import STEPS, Crop, Request, has_apertures, packet_rays, with_apertures
 from minirt.rendering.sampling.auto import AutoSampler, CancelledError
 from minirt.rendering.sampling.packets import EDGE, Packets, contrast_classes
 from minirt.rendering.scene_packing import Packing
@@ -68,7 +76,8 @@ class FrameRunner:
         height, across = frame.pixels.shape
         few_rows = FEW_ROWS * self.threads if len(frame.scene.lights) <= TOGETHER else 0  # more lights need whole tiles
         if is_planned:
-            work = int(frame.plan[:, 3] @ np.where(frame.plan[:, 4], 3, 1)) * width(frame.scene.camera)
+            sets = np.where(frame.plan[:, REFERENCES], 3, 1)  # of samples: those that are drawn, and two of references
+            work = int(frame.plan[:, DRAWN] @ sets) * width(frame.scene.camera)
         elif work == frame.pixels.size and height < TILE * few_rows:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
@@ -105,8 +114,12 @@ class FrameRunner:
     def render_samples(
         self, packing: Packing, request: Request, samples: int, is_wanted: Callable[[], bool], edges_only: bool
     ) -> bool:
-        """Render a scene that has shapes; with `edges_only` only packets in which neighbouring pixels differ, unless a
-        lens or a light with a size blurs others, too. False where it was cancelled or `is_wanted` said no."""
+        """Render a scene that has shapes, each pixel with so many samples; False where it was cancelled or `is_wanted`
+        said no.
+
+        With `edges_only` only packets in which neighbouring pixels differ are drawn, unless a lens or a light with a
+        size blurs others, too.
+        """
         scene, pixels, light, crop = request
         counter = self.reset_counter()
         if not is_wanted():
@@ -125,8 +138,11 @@ class FrameRunner:
     def render_to_error(
         self, packing: Packing, request: Request, error: float, seconds: float, least: float
     ) -> Outcome | None:
-        """Render a scene that has shapes, see `minirt.rendering.sampling.auto`; None where `cancel` ended it early.
-        `least` is the error below which more samples are useless."""
+        """Render a scene that has shapes until the estimated `error` is reached or so many seconds have passed.
+
+        `least` is the error below which more samples are useless; see `minirt.rendering.sampling.auto`. None where
+        `cancel` ended it early.
+        """
         scene, pixels, light, crop = request
         start, cancellations = perf_counter(), self.cancellations
         height, across, _ = pixels.shape
@@ -140,7 +156,7 @@ class FrameRunner:
             counter = self.reset_counter()
             if self.cancellations != cancellations:
                 raise CancelledError
-            rays = packet_rays(arrays.camera[6:12], positions[..., :2])
+            rays = packet_rays(arrays.camera[STEPS], positions[..., :2])
             if with_places:
                 rays = with_apertures(rays, positions[..., 2:], arrays.lens)
             self.run(frame._replace(next_row=counter, rays=rays, plan=plan, errors=errors))

@@ -197,19 +197,25 @@ def calls_for(scene: Scene, precision: str, depth: int, samples: object = None) 
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1, samples=samples)
-    _, counter, *lists = recorder.calls["pack_frame"][1]
-    binning = functions.project_shapes.call(counter, lists[0]), functions.move_shape.call(0, *lists[:3])
-    others = *binning, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])
-    reading = [READ.call(call_for(b""))] * any(isinstance(shape, Mesh) for shape in examples(scene).values())
-    return [*recorder.calls.values(), *others, *reading, functions.frame.call(*frame_arguments(arrays, PIXEL))]
+    _, counter, binning, starts, members, *_ = recorder.calls["pack_frame"][1]  # as of `Bins.packing`
+    project, move = (
+        functions.project_shapes.call(counter, binning),
+        functions.move_shape.call(0, binning, starts, members),
+    )
+    others = [project, move, classify_call(), functions.copy_levels.call(np.zeros(1, np.int64), PIXEL[0], PIXEL[0])]
+    if any(isinstance(shape, Mesh) for shape in examples(scene).values()):
+        others.append(READ.call(call_for(b"")))
+    return [*recorder.calls.values(), *others, functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
 
 def generic_call(generic: GenericKernel) -> Call:
+    """Return a call of a generic kernel, for a scene without lights and shapes."""
     return functions.frame.call(*frame_arguments(generic_kernels.empty_arrays(generic), PIXEL))
 
 
 @cache
 def generic_identity(generic: GenericKernel) -> str:
+    """Return the name of a generic kernel in the library of compiled code."""
     return LIBRARY.identity(generic_call(generic))
 
 

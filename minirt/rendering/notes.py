@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from minirt.errors import counted
 from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.packing.lights import never_occludes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -24,8 +25,8 @@ NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for thes
 
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
-    """Describe the decisions."""
-    shapes = f"{len(shape_arrays.listed)} shape{'s' * (len(shape_arrays.listed) != 1)}"
+    """Describe how the shapes of a scene were packed: tiles, light buffers, and what has no effect."""
+    shapes = counted(len(shape_arrays.listed), "shape")
     sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if arrays.light_buffer_cells == 1:
@@ -69,7 +70,7 @@ def plurals(elements: set[type[Shape]]) -> str:
 def names_of(scene: Scene, indices: Sequence[int]) -> str:
     """Name the first of some shapes."""
     names = ", ".join(shape_name(scene, index) for index in indices[:MOST_NAMED])
-    return names + ", ..." * (len(indices) > MOST_NAMED)
+    return f"{names}, ..." if len(indices) > MOST_NAMED else names
 
 
 def shape_name(scene: Scene, index: int) -> str:

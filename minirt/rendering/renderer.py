@@ -15,6 +15,7 @@ from minirt.fields import Triple
 from minirt.helpers.system import ForkSafeLock, check_memory, renewables
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.kernel.shading.whitted import MAX_DEPTH
+from minirt.rendering.frame import NOT_FINITE
 from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.kernels import Kernels
 from minirt.rendering.notes import NO_GENERIC_KERNEL, kernel_notes
@@ -70,7 +71,7 @@ class Renderer:
     @property
     def not_finite(self) -> int:
         """The number of rays of the last picture whose light was infinite or NaN, and is 0 in it."""
-        return int(sum(memory[-1, 1] for memory, _ in self.runner.memories))
+        return int(sum(memory[-1, NOT_FINITE] for memory, _ in self.runner.memories))
 
     @property
     def about(self) -> list[str]:
@@ -156,7 +157,7 @@ class Renderer:
 
         Otherwise there is a kernel that can draw it."""
         for memory, _ in self.runner.memories:
-            memory[-1, 1] = 0.0
+            memory[-1, NOT_FINITE] = 0.0
         has_shapes = bool(request.scene.runs and request.pixels.size)
         if has_shapes and not self.kernels.is_ready(request.scene, samples):
             self.kernels.compile(request.scene, samples)

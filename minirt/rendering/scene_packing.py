@@ -16,7 +16,6 @@ from minirt.kernel.frame import tile_count
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.kernel.shading.lights import LightGrid
-from minirt.lanes import Vec
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, light_buffers, lights, materials, visibility
 from minirt.rendering.packing.bvh import build_bvh
@@ -130,8 +129,8 @@ class Packing:
             sources = [each.replace(size=None) if each.size else each for each in sources]
         lens = None
         if "lens" in used:
-            key, middle = ("middle", numbers.tobytes()), (Vec(*numbers[:3]), Vec(*numbers[9:12]))
-            focus = scene.camera.focus or cached(key, nearest_hits, shapes, *middle)[0]
+            key = "middle", numbers.tobytes()
+            focus = scene.camera.focus or cached(key, nearest_hits, shapes, *camera.middle_ray(numbers))[0]
             lens = camera.lens_numbers(scene.camera, float(focus))
         radius, _ = camera.radius_and_focus(lens)
         cells, binned, keys = self.light_buffers_that_fit(sources, numbers[:3], cached, radius)
@@ -153,7 +152,7 @@ class Packing:
         of_kinds = [triangles if kind is Mesh else None for kind in shapes.group_numbers]
         tinted = cached("tinted", materials.tinted, shapes) if "media" in used else []
         paint: Any = scene.background and scene.background.paint
-        environment_key = "environment", paint, colours
+        environment_key, colours_key = ("environment", paint, colours), ("colours", colours.decodes)
         environment = (
             cached(environment_key, materials.pack_environment, scene, paint) if "environment" in used else None
         )
@@ -161,9 +160,7 @@ class Packing:
             camera=np.append(camera.pixel_rays(scene.camera, crop.width, crop.height), (crop.left, crop.top)),
             ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
             lights=emitted,
-            colours_and_extents=cached(
-                ("colours", colours.decodes), colours.surface_colours, shapes.colours_and_extents
-            ),
+            colours_and_extents=cached(colours_key, colours.surface_colours, shapes.colours_and_extents),
             slots=shapes.slots,
             listed=shapes.listed,
             tile_shapes=in_tiles.members,
@@ -174,7 +171,7 @@ class Packing:
             groups=tuple(map(Group, shapes.tables, in_tiles.starts, light_starts, count(), trees, of_kinds)),
             spots=spots,
             light_grid=cached(grid_key, lights.light_grid, emitted, spots),
-            soft=lights.sizes(sources) if "soft" in used else None,
+            soft=lights.light_sizes(sources) if "soft" in used else None,
             lens=lens,
             eye_medium=materials.medium_at(scene.camera, tinted) if "media" in used else None,
             smooth=cached("smooth", shapes.smooth) if "smooth" in used else None,
@@ -190,9 +187,11 @@ class Packing:
     def light_buffers_that_fit(
         self, sources: list[Lamp], eye: np.ndarray, cached: Callable[..., Any], radius: float
     ) -> tuple[int, Any, Any]:
-        """Return how many cells a side of a cube has, so that there is room, and the results of `seen_by_lights`.
+        """Return the cells along an edge of the lights' cubes, and the two results of `seen_by_lights` for so many.
 
-        TooLargeError where even the coarsest have no room.
+        There are as many as usual, or half as many, a quarter and so on, until the lists have room in memory;
+        TooLargeError where the coarsest ones have none. `eye` (3,) is the camera's position, `radius` that of its lens,
+        and `cached` keeps what is computed for a light.
         """
         usual_cells = self.cells_that_fit.get(len(sources), light_buffers.light_buffer_cells(self.shape_arrays))
         cells = 1 if LIGHT_BUFFERS in self.without else usual_cells
@@ -208,9 +207,9 @@ class Packing:
     def seen_by_lights(
         self, sources: list[Lamp], eye: np.ndarray, cells: int, cached: Callable[..., Any], radius: float
     ) -> tuple[list[BinnedShapes], Hashable]:
-        """Bin the shapes into the light buffers of all lights, and return also what they depend on.
+        """Return the shapes that each light sees, in light buffers of so many cells an edge, and a key of these lists.
 
-        `TooLargeError` where memory does not suffice for so many cells.
+        The other arguments are those of `light_buffers_that_fit`. `TooLargeError` where there is no room for the lists.
         """
         if LIGHT_BUFFERS in self.without:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)

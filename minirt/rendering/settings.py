@@ -170,12 +170,12 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
     light = np.zeros((*shape, 3)) if settings.linear else None
     chosen, reached = settings.renderer, None
     if settings.samples == "auto":
-        default = DEFAULT_ERROR if settings.time is None else 0.0
-        goal = settings.error or default, inf if settings.time is None else settings.time
+        error = settings.error or (DEFAULT_ERROR if settings.time is None else 0.0)
+        seconds = inf if settings.time is None else settings.time
         if settings.time is not None:
             chosen.prepare(scene, settings.samples)
         with in_notebooks(lambda: WorkState("sampling")):
-            reached = chosen.reach(scene, pixels, *goal, light, crop)
+            reached = chosen.reach(scene, pixels, error, seconds, light, crop)
         is_done = reached is not None
     else:
         with in_notebooks(lambda: WorkState("picture", chosen.rows_done(len(pixels)))):

@@ -17,7 +17,7 @@ from minirt.fields import Direction, Length, Lengths, MeshField, Picture, Point
 from minirt.materials import Attributes, Clouds, Compound
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import APERTURES, ATTRIBUTES, PLAIN, WORDS, features, material_features
+from minirt.rendering.packing.features import APERTURES, ATTRIBUTES, NO_MATERIALS, WORDS, features, material_features
 from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
 from minirt.scene import Background, Scene, SpotLight
 from minirt.shapes import ALL_KINDS, Shape
@@ -157,7 +157,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
 
 def without_material(element: Element, feature: Hashable) -> Element:
     """Return an element without the materials of a feature."""
-    if not isinstance(element, Shape) or ATTRIBUTES(element) == PLAIN:
+    if not isinstance(element, Shape) or ATTRIBUTES(element) == NO_MATERIALS:
         return element
     values = ((field, getattr(element, field.name)) for field in fields_of(Attributes))
     gone = [field.name for field, value in values if value and feature in field.features_of(value)[:1]]

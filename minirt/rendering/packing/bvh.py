@@ -82,7 +82,8 @@ def wide_nodes(
     boxes: np.ndarray, kernel: Any, width: int = WIDTH, margin: float = MARGIN, run: Run | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Build a binary tree over boxes, sorting them, on all threads by `run`, and collapse it into nodes of some width;
-    see `minirt.kernel.bvh_build`.
+    see `minirt.kernel.bvh_build`, also for the columns of boxes, (m, 8). They grow by a share, `margin`, of their
+    coordinates.
 
     Returns the nodes, (n, 7, width): the boxes of their children and the references to these; and for each leaf its
     first box and the box behind its last.

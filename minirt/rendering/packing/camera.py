@@ -21,6 +21,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fields import Triple, clamp, upright
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
+from minirt.lanes import Vec
 from minirt.scene import Camera, Scene
 from minirt.scene.elements import linear_combination
 
@@ -112,10 +113,18 @@ def camera_numbers(camera: Camera, width: int, height: int) -> np.ndarray:
     return np.array([*camera.position, *(across * part for part in right), *(down * part for part in up), *forward])
 
 
+def middle_ray(numbers: np.ndarray) -> tuple[Vec, Vec]:
+    """The origin and the unit direction of the ray through the centre of a picture with these `camera_numbers`."""
+    return Vec(*numbers[:3]), Vec(*numbers[9:12])
+
+
 def slopes_at_edges(camera: Camera, width: int, height: int) -> tuple[float, float]:
     """The slopes, to the side and up, of the directions through the edges of a camera's picture."""
     half = tan(radians(clamp(camera.fov, NARROWEST, WIDEST)) / 2)
     return half, half * height / width
+
+
+STEPS = slice(6, 12)  # of `pixel_rays`: the changes of the direction a pixel to the right and a pixel down
 
 
 def pixel_rays(camera: Camera, width: int, height: int) -> list[float]:

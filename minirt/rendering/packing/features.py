@@ -68,7 +68,7 @@ DEPTH = 8  # reflections and refractions of a ray, at most
 MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
 NEEDS = {name: field.facts.needs for name, field in MATERIALS}
 ATTRIBUTES = attrgetter(*(name for name, _ in MATERIALS))
-PLAIN = (None,) * len(MATERIALS)
+NO_MATERIALS = (None,) * len(MATERIALS)  # the `ATTRIBUTES` of a shape that has none
 
 
 def features(scene: Scene, samples: object = None) -> frozenset[Hashable]:
@@ -97,30 +97,38 @@ def examined(items: Sequence[Element | str]) -> Sequence[Element | str]:
 
 
 def examples_among(items: Sequence[Element | str]) -> dict[tuple[Any, ...], Shape]:
+    """A shape of some items for each kind, with each set of features, by these."""
     shapes = [item for item in examined(items) if isinstance(item, Shape)]
     looks = chain.from_iterable(item.looks if isinstance(item, Mesh) else (item,) for item in shapes)
     return {(type(item), *shape_features(item)): item for item in looks}
 
 
 def features_among(items: Sequence[Element | str]) -> frozenset[Hashable]:
+    """The kinds of shapes among some items, and the features of these and of the other elements."""
     beside_shapes = (features_of(item) for item in examined(items) if not isinstance(item, Shape))
     return frozenset().union(*examples_among(items), *beside_shapes)
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:
+    """The features that an item which is no shape needs; none for one without effect, such as a light that is off."""
     if isinstance(item, Lamp) and item.brightness and any(item.colour):
         return item.features()
     if isinstance(item, Background):
-        return (("environment",) if isinstance(item.paint, str) else ("background",)) if any(item.paint) else ()
+        if isinstance(item.paint, str):
+            return ("environment",)
+        return ("background",) if any(item.paint) else ()
     return ()
 
 
 def shape_features(shape: Shape) -> Iterable[str]:
-    return [*["smooth"] * shape.smooth, *material_features(shape)]
+    """The features that a shape needs, beside its kind."""
+    smooth = ["smooth"] if shape.smooth else []
+    return [*smooth, *material_features(shape)]
 
 
 def material_features(shape: Shape) -> Iterable[str]:
-    if ATTRIBUTES(shape) == PLAIN:
+    """The features that the materials of a shape need, without those of attributes that lack another one."""
+    if ATTRIBUTES(shape) == NO_MATERIALS:
         return ()
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
     of_materials = {name: field.features_of(value) for (name, field), value in values if value is not None}

@@ -37,16 +37,16 @@ class GenericKernel(NamedTuple):
 
 OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
 ROWS = tuple(name for name in OPTIONAL if name in FEATURES and name not in ("patterns", "environment"))
-PLAIN = frozenset({"smooth"})  # as meshes are among all kinds of shapes
+FEWEST = frozenset({"smooth"})  # as meshes are among all kinds of shapes
 FULL = frozenset(OPTIONAL + MAPS)
-FULL_SINGLE = PLAIN | {"surface_maps", "light_grid"} | {name for name, feature in FEATURES.items() if feature.single}
+FULL_SINGLE = FEWEST | {"surface_maps", "light_grid"} | {name for name, feature in FEATURES.items() if feature.single}
 
 FULL_DOUBLE = GenericKernel("full", "double", FULL)
 # The most specialised first.
 GENERIC_KERNELS = (
-    GenericKernel("plain", "double", PLAIN),
+    GenericKernel("plain", "double", FEWEST),
     FULL_DOUBLE,
-    GenericKernel("plain", "single", PLAIN),
+    GenericKernel("plain", "single", FEWEST),
     GenericKernel("full", "single", FULL_SINGLE),
 )
 

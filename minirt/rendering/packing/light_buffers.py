@@ -53,7 +53,7 @@ def cube_grid(cells: int) -> Grid:
 def seen_by_light(
     kernel: Any,
     shape_arrays: ShapeArrays,
-    light: np.ndarray,
+    position: np.ndarray,
     cells: int,
     skipped: np.ndarray,
     radius: float = 0.0,
@@ -62,20 +62,21 @@ def seen_by_light(
     run: Run | None = None,
     spare: Bins | None = None,
 ) -> BinnedShapes:
-    """Bin the shapes within some reach into the light buffer of a light of some radius, without the planes that are
-    `skipped` (p,).
+    """Bin the shapes that a light sees into its light buffer, with so many `cells` along an edge of its cube.
 
-    `spare` bins are used again where they fit. `TooLargeError` where there is no room for so many copies of its lists.
+    The light is a ball of some radius about its `position`, (3,). Shapes beyond its `reach`, in scene units, and planes
+    for which `skipped` (p,) is True are left out. `spare` bins are used again where they fit. `TooLargeError` where
+    there is no room for so many `copies` of the lists.
     """
     grid = cube_grid(cells)
     fits = spare and spare.fit(shape_arrays, grid, radius, reach)
     bins = spare if spare and fits else Bins(kernel, shape_arrays, grid, radius, reach=reach)
-    bins.seen.shown[:], bins.shown, bins.copies = 1 - skipped, skipped.tobytes(), copies
+    bins.arrays.shown[:], bins.shown, bins.copies = 1 - skipped, skipped.tobytes(), copies
     bins.largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    bins.see_from(tuple(light.tolist()), run)
+    bins.see_from(tuple(position.tolist()), run)
     if cells == 1:
-        return in_all_cells(shape_arrays, 1, skipped, bins.seen.cones)
-    return BinnedShapes(bins.starts, bins.members[: bins.starts[-1, -1]], bins.seen.cones, bins)
+        return in_all_cells(shape_arrays, 1, skipped, bins.arrays.cones)
+    return BinnedShapes(bins.starts, bins.members[: bins.starts[-1, -1]], bins.arrays.cones, bins)
 
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:

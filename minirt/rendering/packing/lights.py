@@ -98,7 +98,7 @@ def tangent_of(light: Lamp) -> float:
     return 0.0 if light.position else tan(radians(light.size or 0.0) / 2)
 
 
-def sizes(lights: list[Lamp]) -> np.ndarray:
+def light_sizes(lights: list[Lamp]) -> np.ndarray:
     """A row for each of m lights, (m, 4): see `minirt.kernel.shading.lights`."""
     rows = [(radius_of(each), tangent_of(each), cos(TURN * i), sin(TURN * i)) for i, each in enumerate(lights)]
     return np.array(rows, np.float64).reshape(len(lights), 4)
@@ -143,7 +143,11 @@ def sources_of_cells(
     centres: np.ndarray, reach: np.ndarray, counts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Return the lengths of the lists of all cells, and their members one after the other; None where they are too
-    long. Centres (m, 3) and reach (m, 1) are in edges of a cell; the list of a cell holds up to an edge above it."""
+    long.
+
+    Centres (m, 3) and reach (m, 1) are in edges of a cell; the list of a cell holds up to an edge above it. There are
+    `counts` (3,) cells along x, y and z.
+    """
     ends = centres - reach - 1 - FARTHER, centres + reach + FARTHER
     first, last = (np.clip(end, 0, counts - 1).astype(np.int64) for end in ends)
     spans = last - first + 1

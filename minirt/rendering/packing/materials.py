@@ -19,7 +19,7 @@ from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.lanes import Vec, cross, dot, unit
 from minirt.materials import Placement, pictures
 from minirt.materials.pictures import check_textures
-from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, PLAIN
+from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, NO_MATERIALS
 from minirt.rendering.packing.lights import Colours, colours_of
 from minirt.rendering.packing.ray_casting import cast
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -46,7 +46,7 @@ def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -
     if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
         return {}
     shapes, owner = primitives.looks()
-    with_materials = [(i, shape) for i, shape in enumerate(shapes) if ATTRIBUTES(shape) != PLAIN]
+    with_materials = [(i, shape) for i, shape in enumerate(shapes) if ATTRIBUTES(shape) != NO_MATERIALS]
     reader = Reader(scene)
     arrays = {name: FEATURES[name].rows(len(shapes)) for name in FEATURES if name in used & OF_SHAPES}
     for i, shape in with_materials:
@@ -106,8 +106,10 @@ def pack_environment(scene: Scene, file: str) -> Environment:
 def pack_patterns(
     shapes: Iterable[tuple[int, Shape]], count: int, owner: np.ndarray, used: Set[Hashable], colours: Colours
 ) -> Patterns:
-    """Pack the patterns of shapes, given with their indices below `count`; `owner` (n,) has the shape of each
-    primitive, and may name no primitive of some."""
+    """Pack the patterns of shapes, given with their indices below `count`, for kernels with the `used` features.
+
+    `owner` (n,) has the shape of each primitive, and may name no primitive of some.
+    """
     rows: list[list[float]] = []
     heights: list[float] = []
     ranges = np.zeros((count, 2), np.int64)
@@ -117,14 +119,14 @@ def pack_patterns(
             pattern = getattr(shape, name)
             if pattern:
                 numbers = [kind, *colours.shares(pattern.colour), pattern.octaves, 1 / pattern.size]
-                rows.append([*numbers, *(part for v in frame(shape, pattern.size) for part in (v.x, v.y, v.z))])
+                rows.append([*numbers, *(part for v in pattern_frame(shape, pattern.size) for part in (v.x, v.y, v.z))])
                 heights.append(pattern.height * pattern.size)
         ranges[index] = first, len(rows)
     packed = np.array(rows, np.float64).reshape(-1, COLUMNS)
     return Patterns(ranges[owner], packed, np.array(heights) if "raised_patterns" in used else None)
 
 
-def frame(shape: Shape, size: float) -> Frame:
+def pattern_frame(shape: Shape, size: float) -> Frame:
     """Return the frame in which a pattern of this size lies: it moves and turns with the shape.
 
     The grain of wood runs along the axis of a shape, and on flat shapes to the right.
@@ -195,7 +197,7 @@ TOWARDS = Vec(*np.array([0.5773, 0.2113, 0.7887]) / np.linalg.norm([0.5773, 0.21
 
 def tinted(primitives: ShapeArrays) -> list[Shape]:
     """Return the shapes of tinted glass."""
-    shapes = (shape for shape in primitives.shapes if ATTRIBUTES(shape) != PLAIN)
+    shapes = (shape for shape in primitives.shapes if ATTRIBUTES(shape) != NO_MATERIALS)
     return [shape for shape in shapes if shape.tint and shape.glass and shape.glass.share]
 
 
@@ -216,14 +218,14 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
     at, bounds = (point[0], point[1], point[2]), shape.bounds()
     if bounds and union_of_bounds(bounds, (at, at)) != bounds:
         return False  # it is outside of the bounding box
-    plane = shape.flat()
-    if plane:
-        return bool(np.dot(np.subtract(point, plane[0]), plane[1]) < 0.0)
+    if plane := shape.flat():
+        on_plane, normal = plane
+        return bool(np.dot(np.subtract(point, on_plane), normal) < 0.0)
     packed, origin = shape.pack(), Vec(*point)
     kind = kind_of_packed(type(packed))
     distances = np.atleast_1d(cast(packed, origin, TOWARDS))
     first = np.argmin(distances)
     with np.errstate(all="ignore"):
-        _, normal = kind.surface(packed, origin + distances[first] * TOWARDS)
-        leaving = np.atleast_1d(dot(normal, TOWARDS))[first]
+        _, hit_normal = kind.surface(packed, origin + distances[first] * TOWARDS)
+        leaving = np.atleast_1d(dot(hit_normal, TOWARDS))[first]
     return bool(distances[first] < np.inf and leaving > 0.0)

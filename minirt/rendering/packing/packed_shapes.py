@@ -45,7 +45,8 @@ def column(shapes: Sequence[Shape], name: str, width: int) -> np.ndarray:
         return shapes.columns[name][:, 0] if width == 1 else shapes.columns[name]
     values = map(attrgetter(name), shapes)
     flat: Iterable[Any] = values if width == 1 else chain.from_iterable(values)
-    return np.fromiter(flat, np.float64, width * len(shapes)).reshape((len(shapes), width)[: 1 + (width > 1)])
+    numbers = np.fromiter(flat, np.float64, width * len(shapes))
+    return numbers if width == 1 else numbers.reshape(len(shapes), width)
 
 
 def bounding_balls(shapes: Sequence[Shape]) -> np.ndarray:

@@ -67,7 +67,8 @@ def hit_distances(arrays: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarra
 
 
 def nearest_hits(arrays: ShapeArrays, origin: Vec, direction: Vec) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distances of the primitives that rays hit first, infinite where there is none, and their indices."""
+    """Return the distances of the primitives that rays hit first, and their indices; infinity and -1 where a ray hits
+    none. Origins and directions broadcast, and the results have the shape of all rays."""
     shape = np.broadcast(origin.x, origin.y, origin.z, direction.x, direction.y, direction.z).shape
     nearest, found = np.full(shape, inf), np.full(shape, -1)
     for group, rows in enumerate(arrays.rows):

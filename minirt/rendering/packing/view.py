@@ -30,7 +30,7 @@ from minirt.rendering.packing.camera import (
 )
 from minirt.rendering.packing.light_buffers import has_cones
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.visibility import STILL, BinnedShapes, Bins, Run, screen_grid, square_edge
+from minirt.rendering.packing.visibility import CROSSED, STILL, BinnedShapes, Bins, Run, screen_grid, square_edge
 from minirt.scene import Camera, Scene
 
 SPARE = 0.25  # of the lists of a camera that moves
@@ -52,16 +52,19 @@ class View:
         precision: str,
         spare: View | None,
     ) -> None:
-        """The bins of a `spare` view are used again where they fit."""
+        """Prepare lists for shapes in the picture of a camera, or a rectangle of it, in "double" or "single" precision.
+
+        `lens` are its `lens_numbers`, or None. The bins of a `spare` view are used again where they fit.
+        """
         self.size = place[2][:2]  # of the whole picture
         radius, per_focus = radius_and_focus(lens)
         if radius:
             shapes = copy(shapes)
             shapes.balls = blurred_balls(shapes.balls, camera_numbers(camera, *self.size), radius, per_focus)
-        extents = np.zeros((len(shapes.slots) * (precision == "single"), 4), np.float32)
+        extents = np.zeros((len(shapes.slots) if precision == "single" else 0, 4), np.float32)
         self.square = square_edge(shapes, width(extents if len(extents) else shapes.balls) // PACKET_HEIGHT)
         grid = screen_grid(*slopes_at_edges(camera, *self.size), place, self.square)
-        if spare and spare.bins.fit(shapes, grid, radius) and len(spare.bins.seen.extents) == len(extents):
+        if spare and spare.bins.fit(shapes, grid, radius) and len(spare.bins.arrays.extents) == len(extents):
             self.bins = spare.bins
         else:
             self.bins = Bins(kernel, shapes, grid, radius, radius * per_focus, extents=extents)
@@ -71,12 +74,12 @@ class View:
         """Bin the shapes that a camera sees into tiles."""
         right, (x, y, z), forward = camera_frame(camera)
         self.bins.see_from((*camera.position, *right, -x, -y, -z, *forward), run, SPARE)
-        return BinnedShapes(self.bins.starts, self.bins.members, self.bins.seen.cones)
+        return BinnedShapes(self.bins.starts, self.bins.members, self.bins.arrays.cones)
 
     def complete(self, arrays: SceneArrays, is_single: bool) -> SceneArrays:
         """Let the arrays of a scene follow the camera; return them, or those that are rounded to float32."""
         self.rounding, bins = Rounding(), self.bins
-        single = in_single(arrays, bins.seen.extents, self.rounding) if is_single else arrays
+        single = in_single(arrays, bins.arrays.extents, self.rounding) if is_single else arrays
         rays = frame_rays(single, 1).astype(np.float64)
         followed = self.rounding.rounded(rays.reshape(-1, 1), (OTHER,)).reshape(1, -1) if is_single else rays
         self.rays = None if arrays.lens is not None else followed
@@ -93,7 +96,7 @@ class View:
         members = self.bins.members
         pack_into("12d", self.bins.followers.camera.data, 0, *pixel_rays(camera, *self.size))
         self.look(camera, run)
-        return members is self.bins.members and not self.bins.seen.found[1]
+        return members is self.bins.members and not self.bins.arrays.found[CROSSED]
 
 
 def blurred_balls(balls: np.ndarray, camera: np.ndarray, radius: float, per_focus: float) -> np.ndarray:

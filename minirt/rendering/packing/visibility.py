@@ -28,6 +28,7 @@ SQUARES_BY_SHAPES = ((50_000, TILE), (500_000, TILE // 2), (np.inf, TILE // 4))
 RECTANGLE = 32  # bytes of a rectangle of cells, and of its places in a sorted list
 MOST_MEMBERS = 2**24  # of all cells that have every shape
 LITTLE = 1 / 64  # of lists to spare, in which shapes may move
+MEMBERS, CROSSED = 0, 1  # of what is `found`: members of all lists, and planes whose side changed
 PARALLEL = 4096  # shapes from which on several threads project them
 
 NO_EXTENTS = np.zeros((0, 4), np.float32)
@@ -100,7 +101,7 @@ class Bins:
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
         self.pose = np.append(np.zeros(3), grid.frames)
-        self.seen = BinningArrays(
+        self.arrays = BinningArrays(
             origin=self.pose[:3],
             grid=grid._replace(frames=self.pose[3:].reshape(-1, 3, 3)),
             radius=radius,
@@ -114,47 +115,51 @@ class Bins:
             cones=cones,
             cone_bits=cones.view(np.int64),  # the same memory, as integers
             sides=np.zeros(planes, np.int64),  # of each plane, on which the point lies
-            found=np.zeros(2, np.int64),  # members of all lists, and planes whose side changed
+            found=np.zeros(2, np.int64),
             extents=extents,
         )
         self.counter, self.entries = np.zeros(1, np.int64), np.empty((2, room), np.int64)
         self.starts, self.members = np.zeros((kinds, grid.cells + 1), np.int32), np.zeros(0, np.int32)
         if self.is_large:
-            self.project = bound(kernel.project_shapes, self.counter, self.seen)
+            self.project = bound(kernel.project_shapes, self.counter, self.arrays)
 
     def fit(self, shape_arrays: ShapeArrays, grid: Grid, radius: float, reach: float = np.inf) -> bool:
         """Whether these bins can be used for shapes in the same arrays, as seen in such a grid."""
-        seen = self.seen
-        is_alike = (seen.grid[1:], seen.radius, seen.reach) == (grid[1:], radius, reach)
-        return seen.balls is shape_arrays.balls and is_alike
+        mine = self.arrays
+        is_alike = (mine.grid[1:], mine.radius, mine.reach) == (grid[1:], radius, reach)
+        return mine.balls is shape_arrays.balls and is_alike
 
     def packing(self) -> Callable[[], Any]:
         """Return the call that bins the shapes and lets the followers follow."""
-        lists = self.seen, self.starts.reshape(-1), self.members, self.entries, np.empty(2**RADIX, np.int64)
+        lists = self.arrays, self.starts.reshape(-1), self.members, self.entries, np.empty(2**RADIX, np.int64)
         return bound(self.kernel.pack_frame, self.followers, self.counter, *lists)
 
     def see_from(self, pose: tuple[float, ...], run: Run | None = None, spare: float = LITTLE) -> None:
-        """Bin the shapes as seen from a point, or from that and a frame, many of them on all threads by `run`. New
-        lists leave room for a `spare` share of members. `TooLargeError` where there is no room."""
+        """Bin the shapes as seen from a point, or from that and a frame, many of them on all threads by `run`.
+
+        Where nothing is moved but one shape, its entries alone change. New lists leave room for a `spare` share of
+        members. `TooLargeError` where there is no room.
+        """
         if not len(self.members):
             self.check(0)
         view: Any = *pose, self.shown
         moved: Any = np.flatnonzero(self.shapes.written > self.updates) if self.shapes.updates > self.updates else []
         same = view == self.last and not self.shapes.is_plane[self.shapes.listed[moved[:2], 0]].any()
-        self.updates, self.last, self.counter[0], self.seen.found[1] = self.shapes.updates, (), 0, 0
+        self.updates, self.last = self.shapes.updates, ()  # an error leaves none
+        self.counter[0], self.arrays.found[CROSSED] = 0, 0
         pack_into(f"{len(pose)}d", self.pose.data, 0, *pose)
         if same and len(moved) == 1:
-            self.kernel.move_shape(int(moved[0]), self.seen, self.starts.reshape(-1), self.members)
+            self.kernel.move_shape(int(moved[0]), self.arrays, self.starts.reshape(-1), self.members)
         elif not same or len(moved):
             if run and self.is_large:
                 run(self.project)
             self.pack = self.pack or self.packing()
             self.pack()
-        count = int(self.seen.found[0])
+        count = int(self.arrays.found[MEMBERS])
         if count > len(self.members):
             self.check(count)
             self.members = np.zeros(int(count * (1.0 + spare)), np.int32)
-            self.pack, self.counter[0] = self.packing(), len(self.seen.used)  # all are projected
+            self.pack, self.counter[0] = self.packing(), len(self.arrays.used)  # all are projected
             self.pack()
         self.last = view
 

@@ -66,7 +66,7 @@ class ExactFields(NamedTuple):
 def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
     """Collect the fields of shapes of a kind; for a batched kind, the points and directions of the packed form."""
     if kind.element.batched:
-        points, lengths, directions = packed_columns(kind, shapes)
+        points, lengths, directions = columns_of_packed(kind, shapes)
     else:
         points, lengths, directions = (
             {
@@ -93,8 +93,8 @@ def lengths_of(vectors: Array) -> Array:
     return np.hypot(np.hypot(vectors[:, 0], vectors[:, 1]), vectors[:, 2])
 
 
-def packed_columns(kind: Kind, shapes: list[Shape]) -> tuple[Columns, Columns, Columns]:
-    """The points, no lengths and the directions of all parts of shapes, in their packed form."""
+def columns_of_packed(kind: Kind, shapes: list[Shape]) -> tuple[Columns, Columns, Columns]:
+    """The points, lengths and directions of all parts of shapes, in their packed form, which has no lengths."""
     packed = [shape.pack() for shape in shapes]
     columns: dict[object, Columns] = {Position: {}, Vec: {}}
     for name, hint in get_type_hints(kind.packed).items():

@@ -147,6 +147,7 @@ class Watch:
     def on_shade(
         self, result: tuple[Vec, Surface], scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask
     ) -> None:
+        """Note the surface where a ray was shaded, and the light that it sends back along the ray."""
         light, surface = result
         primitive, point, normal = int(lane(found[1], 0)), triple(surface.point), triple(surface.normal)
         shape, side = int(self.shapes.owner[primitive]), lane(surface.side, 0)

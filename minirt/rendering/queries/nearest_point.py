@@ -69,6 +69,7 @@ def chosen(face: Integers, normals: list[Vec]) -> Vec:
 def way_to_surface(heights: list[Array], normals: list[Vec], face: Integers, inside: Any, is_sheet: bool) -> Vec:
     """The shortest way from a point to where planes bound a convex solid, or to a sheet on the first of them.
 
+    The point lies at these `heights` above the planes, along their unit normals; it may be `inside` of the solid.
     From inside it leads to the nearest `face`. From outside it is the longest of the shortest ways to one plane, to the
     edge of two and to the corner of three of them, of those that lead straight against a sum of their normals with
     factors that are not negative (Karush 1939; Kuhn and Tucker 1951).
@@ -89,7 +90,8 @@ def way_to_surface(heights: list[Array], normals: list[Vec], face: Integers, ins
 
 
 def least_way(heights: list[Array], normals: list[Vec]) -> tuple[Vec, list[Array]]:
-    """The shortest way to where one to three planes meet, and the factors of their normals in its opposite."""
+    """The shortest way from a point to where one to three planes meet, and the factors of their normals in its
+    opposite. The point lies at these `heights` above the planes, along their unit normals."""
     h, n = heights, normals
     if len(h) == 1:
         return -h[0] * n[0], [h[0]]

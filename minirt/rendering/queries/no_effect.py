@@ -27,7 +27,7 @@ COARSE = 48, 27  # pixels of pictures that show what a light lights
 MOST_LIT = 100  # shapes, times lights: in a twentieth of a second, and mostly in a fiftieth of that
 
 
-def covers(shape: Shape) -> bool:
+def is_one_square(shape: Shape) -> bool:
     """Whether one square of a checkerboard covers all of a shape whose u and v run from 0 to 1."""
     is_usual = not (shape.infinite or shape.uv or isinstance(shape, Mesh))
     return bool(is_usual and shape.checker and shape.checker.size >= 1)
@@ -40,7 +40,7 @@ def is_clear(shape: Shape) -> bool:
 
 
 LOST: dict[str, Callable[[Shape], bool]] = {
-    "the checker: of {} is not seen: a square with sides of 1 covers the shape, try 0.125": covers,
+    "the checker: of {} is not seen: a square with sides of 1 covers the shape, try 0.125": is_one_square,
     "the colour of {} is not seen: it is of clear glass, which tint:R,G,B colours": is_clear,
 }
 

@@ -93,7 +93,8 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
 def enclosing_rectangle(
     shape: Shape, camera: Camera, width: int, height: int, margin: float
 ) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom of the pixels that enclose a shape and a margin; the picture for an unbounded one."""
+    """Left, top, right and bottom of the pixels that enclose a shape and a margin, in pixels, around it; the picture
+    for an unbounded shape."""
     spheres = np.array([(*centre, radius) for centre, radius in shape.balls()])
     if not len(spheres):
         return 0, 0, width, height
@@ -107,10 +108,11 @@ def enclosing_rectangle(
 
 
 def clearance(shape: Shape, others: Iterable[Shape]) -> tuple[float, Shape | None]:
-    """Height of a bounded shape above that of `others` which it meets first, and this one; negative if it sinks in.
+    """Return how far a bounded shape can fall until it meets one of `others`, and that one.
 
-    Infinite if there is none beneath its top. Vertical rays sample the shape's footprint. Their middle one is exact, so
-    that shapes whose middles lie above each other touch; elsewhere the error is of the second order in the spacing.
+    The distance is negative if the shape sinks into the other one; it is infinite, and there is no other one, if none
+    lies beneath its top. Vertical rays sample the shape's footprint. Their middle one is exact, so that shapes whose
+    middles lie above each other touch; elsewhere the error is of the second order in the spacing.
     """
     box = shape.bounds()
     assert box

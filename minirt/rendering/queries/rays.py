@@ -140,23 +140,25 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
         raise ValueError(f"directions must not be 0,0,0, got it at {int(np.argmax(none))}")
     count, chosen = len(starts), renderer(threads)
     # The kernel writes them all, also where nothing is hit: for coherent rays filling them took a tenth of the time.
-    found = np.empty(count), np.empty(count, np.int64), np.empty((count, 3)), np.empty((count, 3))
-    owner, first_primitive = found[1], np.zeros(1, np.int64)
+    distance, primitive = np.empty(count), np.empty(count, np.int64)
+    point, normal = np.empty((count, 3)), np.empty((count, 3))
+    owner, first_primitive = primitive, np.zeros(1, np.int64)
     if count and scene.runs:
         with chosen.busy:
             # The caller's thread only waits, so that Ctrl+C reaches it.
             counter = np.zeros(1, np.int64)
-            job = query(chosen.packing.bvh_of(*scene.runs), counter, starts, vectors, *found)
+            bvh = chosen.packing.bvh_of(*scene.runs)
+            job = query(bvh, counter, starts, vectors, distance, primitive, point, normal)
             chosen.runner.pool.run([job] * chosen.threads, partial(counter.fill, count))
             shapes = chosen.packing.shape_arrays
             first_primitive = shapes.first_primitive
             if len(shapes.owner) > len(scene.shapes):
                 owner = np.where(owner < 0, -1, shapes.owner[owner])
     else:
-        for array, value in zip(found, (np.inf, -1, np.nan, np.nan), strict=True):
+        for array, value in (distance, np.inf), (primitive, -1), (point, np.nan), (normal, np.nan):
             array.fill(value)
-    hits = Hits(found[0], owner, *found[2:])
-    hits.traced = Traced(scene.shapes, found[1], first_primitive, starts, vectors)
+    hits = Hits(distance, owner, point, normal)
+    hits.traced = Traced(scene.shapes, primitive, first_primitive, starts, vectors)
     return hits
 
 

@@ -24,7 +24,7 @@ from minirt.scene import Scene
 from minirt.shapes import Mesh, Shape
 
 
-def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
+def defining_lengths(shapes: Sequence[Shape]) -> NDArray[np.float64]:
     """Return the lengths that define each shape of one type, or the distances of its points, (n, k).
 
     A plane has none; a mesh has the diagonal of its bounding box.
@@ -120,7 +120,7 @@ def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray, boxes: np.nda
         if not tables.is_plane[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
             nearest[selected] = np.clip(nearest[selected], *boxes[selected].swapaxes(0, 1))
         owners, part_of = np.unique(tables.owner[selected], return_inverse=True)
-        size[selected] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
+        size[selected] = defining_lengths([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
     # At the exact centre no point is nearest.
     return np.where(np.isfinite(nearest), nearest, boxes.mean(axis=1)), size
 

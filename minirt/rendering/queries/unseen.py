@@ -177,7 +177,8 @@ def rectangles(camera: Camera, size: tuple[int, int], boxes: np.ndarray) -> np.n
 def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = False) -> Camera | None:
     """Return the first camera that shows most of the bounded shapes, if there are any; None where none shows one.
 
-    `straight`: rather one with the direction of the scene's camera, if that shows any.
+    `size` is the picture's width and height. `straight`: rather one with the direction of the scene's camera, if that
+    shows any.
     """
     arrays = arrays_of(scene)
     if not arrays or not len(arrays.shapes):
@@ -196,17 +197,18 @@ def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = Fals
 
 def candidates(camera: Camera, centre: Triple, radius: float, aspect: float, straight: bool) -> list[Camera]:
     """Return cameras all around a ball that see it whole, those near to where the camera is first, and none beyond the
-    range of coordinates; the last one turns to the ball where the camera is. `straight`: the first one does not turn.
+    range of coordinates; the last one turns to the ball where the camera is.
+
+    `aspect` is the height of the picture by its width. `straight`: the first one does not turn.
     """
     fov = camera.fov if NARROWEST <= camera.fov <= WIDEST else USUAL
     half = tan(radians(fov) / 2) * min(1.0, aspect)
     distance = MARGIN * radius / sin(atan2(half, 1.0))
-    x, _, z = (eye - middle for eye, middle in zip(camera.position, centre, strict=True))
-    start = atan2(x, z) if x or z else pi
+    from_x, _, from_z = (eye - middle for eye, middle in zip(camera.position, centre, strict=True))
+    start = atan2(from_x, from_z) if from_x or from_z else pi
     digits = DIGITS - 1 - floor(log10(radius))
     turns = [(-1) ** i * ceil(i / 2) * 2 * pi / AZIMUTHS for i in range(AZIMUTHS)]
-    x, y, z = camera.direction
-    ways = [(-x, -y, -z)] if straight else []
+    ways = [tuple(-part for part in camera.direction)] if straight else []
     for elevation in map(radians, ELEVATIONS):
         level = ((cos(elevation) * sin(start + turn), cos(elevation) * cos(start + turn)) for turn in turns)
         ways += [(x, sin(elevation), z) for x, z in level]

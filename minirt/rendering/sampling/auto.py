@@ -22,7 +22,7 @@ from time import perf_counter
 
 import numpy as np
 
-from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, SampleTable, plan_of
+from minirt.rendering.frame import ALL_PACKETS, DRAWN, NO_ERRORS, SampleTable, plan_of
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.sampling.packets import Packets, cost
 
@@ -120,7 +120,7 @@ class AutoSampler:
         table = SampleTable(levels, self.packet_pixels, self.with_places, with_references=is_probed)
         plan = plan_of(some, packets.columns, table.plan(levels))
         packets.levels[some], self.positions = levels, table.positions
-        drawn, references = float(plan[:, 3].sum()), REFERENCES * is_probed
+        drawn, references = float(plan[:, DRAWN].sum()), REFERENCES if is_probed else 0
         self.probed += drawn * references
         self.carry_out(table.positions, plan, errors, drawn * (1 + references))
         return errors

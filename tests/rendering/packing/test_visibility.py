@@ -279,7 +279,7 @@ def cone_from_origin(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]
     arrays.balls, arrays.first_ball = balls, np.array([0, len(balls)])
     bins = visibility.Bins(kernel, arrays, light_buffers.cube_grid(2))
     bins.see_from(np.zeros(3))
-    return bins.seen.cones[0, :3], float(bins.seen.cones[0, 3])
+    return bins.arrays.cones[0, :3], float(bins.arrays.cones[0, 3])
 
 
 # Lists of shapes that would take too much memory are made of coarser cells, and the picture stays the same.

@@ -12,7 +12,7 @@ from minirt.materials import Checker
 from minirt.rendering.notices import NOT_COMPUTED, notices_about
 from minirt.rendering.queries import no_effect, preview
 from minirt.rendering.queries import unseen as module
-from minirt.rendering.queries.no_effect import AMBIENT_ALONE, covers, idle_lights, without_effect
+from minirt.rendering.queries.no_effect import AMBIENT_ALONE, idle_lights, is_one_square, without_effect
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.queries.preview import render_interpreted
 from minirt.rendering.queries.unseen import is_blank, notice_about
@@ -314,7 +314,7 @@ def picture(size: float) -> np.ndarray:
     scene = EVERY
     for shape in EVERY.shapes:
         checked = shape.replace(checker=Checker(size, (1, 2, 3)), uv=None)
-        scene = scene.replace(shape, checked) if covers(checked.replace(checker=Checker(1))) else scene
+        scene = scene.replace(shape, checked) if is_one_square(checked.replace(checker=Checker(1))) else scene
     return render_interpreted(scene, 96, 54)[0]
 
 
