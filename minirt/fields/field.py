@@ -42,7 +42,7 @@ class Field(Immutable):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
 
     width: ClassVar[int] = 1  # components, with commas between them
-    kind: ClassVar[type[float] | None] = None  # of number that a component is; None if it is another value
+    number: ClassVar[type[float] | None] = None  # the type of a component; None if it is no number
     sort_of_value: ClassVar[str] = "a value"  # in messages
 
     doc: str

@@ -76,7 +76,7 @@ def scaled(sizes: Sequence[float], factor: float) -> list[float]:
 class Scalar(Field):
     """A number in [low, high]."""
 
-    kind: ClassVar[type[float]] = float
+    number: ClassVar[type[float]] = float
     sort_of_value: ClassVar[str] = "a number"
 
     low: float = -FARTHEST
@@ -106,7 +106,7 @@ class Scalar(Field):
 
     def values(self, numbers: Any) -> list[Any]:
         """The values of rows of numbers that fit."""
-        values: list[Any] = numbers[:, 0].astype(self.kind).tolist()
+        values: list[Any] = numbers[:, 0].astype(self.number).tolist()
         return values
 
     @property
@@ -163,7 +163,7 @@ class Factor(Real):
 class Whole(Scalar):
     """A whole number in [low, high], which a key press changes by one or more."""
 
-    kind = int
+    number = int
 
     def parse(self, text: str) -> int:
         return whole(text)

@@ -19,7 +19,7 @@ class Three(Field):
     """Three components with commas between them, called `names` in messages, each a number of its own."""
 
     width = 3
-    kind: ClassVar[type[float]] = float
+    number: ClassVar[type[float]] = float
     component: ClassVar[Scalar] = Scalar(doc="a component")
 
     names: str = "x,y,z"
@@ -55,7 +55,7 @@ class Three(Field):
         return self.component.fits(numbers)
 
     def values(self, numbers: Any) -> list[Triple]:
-        return list(map(tuple, numbers.astype(self.kind).tolist()))
+        return list(map(tuple, numbers.astype(self.number).tolist()))
 
     def format(self, value: Triple) -> str:
         return ",".join(map(self.component.format, value))
@@ -94,7 +94,7 @@ class Lengths(Three):
 class Colour(Three):
     """Red, green and blue, whole numbers from 0 to 255; a key press changes all three."""
 
-    kind, component = int, Whole(doc="a channel", low=0, high=255)
+    number, component = int, Whole(doc="a channel", low=0, high=255)
 
     names: str = "R,G,B"
     step: float = 8.0

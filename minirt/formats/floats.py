@@ -29,7 +29,7 @@ def encode_exr(light: np.ndarray) -> bytes:
 
 
 def exr_header(width: int, height: int) -> bytes:
-    """Return the header, from the magic number to the end of the attributes."""
+    """Return the header of an EXR file of so many pixels, from the magic number to the end of the attributes."""
     channels = b"".join(name + b"\0" + struct.pack("<iB3xii", FLOAT32, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     attributes = (

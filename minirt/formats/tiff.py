@@ -59,7 +59,10 @@ def strips(levels: np.ndarray, level: int = FAST) -> tuple[bytes, ...]:
 def directory(
     width: int, height: int, bits: int, places: Sequence[int], sizes: Sequence[int], start: int, is_big: bool
 ) -> bytes:
-    """Return the directory that begins at byte `start` of a file with strips of these places and sizes."""
+    """Return the directory that begins at byte `start` of a file with strips at these places, of these sizes in bytes.
+
+    A channel of a pixel has so many `bits`. In a big file, a BigTIFF, places and sizes have 64 bits.
+    """
     number, word, kind_of_place = ("Q", "Q", LONG8) if is_big else ("H", "I", LONG)
     entries: list[tuple[int, int, Sequence[int]]] = [
         (256, LONG, [width]),

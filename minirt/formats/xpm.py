@@ -85,9 +85,12 @@ def read_pixels(strings: Iterator[bytes], header: XpmHeader) -> np.ndarray:
 
 
 def colour(definition: bytes, number: int) -> int:
-    """Return the colour 0xAARRGGBB of a definition such as ` c #FF8000 m white s roof`; XpmError, with its number."""
-    values: dict[str, str] = {}
-    key = ""
+    """Return the colour 0xAARRGGBB of a definition such as ` c #FF8000 m white s roof`.
+
+    XpmError for one without a colour, with the `number` of the definition.
+    """
+    values: dict[str, str] = {}  # by the keys before them
+    key = ""  # of the words that follow
     for word in definition[:LONGEST_DEFINITION].decode("latin-1").split():
         # A key is a value, too, where one is missing: `c g` is a colour named g.
         if word in KEYS and (not key or key in values):
@@ -99,7 +102,7 @@ def colour(definition: bytes, number: int) -> int:
         digits = len(match[1]) // 3
         most = int(16**digits) - 1
         levels = (int(match[1][at : at + digits], 16) for at in range(0, 3 * digits, digits))
-        red, green, blue = ((510 * level + most) // (2 * most) for level in levels)
+        red, green, blue = ((510 * level + most) // (2 * most) for level in levels)  # 255 * level / most, rounded
         return 0xFF000000 | red << 16 | green << 8 | blue
     name = value.lower().replace("grey", "gray")
     if name in ("none", "transparent"):

@@ -94,7 +94,7 @@ def ended_by_signals(end: Callable[[int], object] = interrupt) -> Iterator[None]
 
 @contextmanager
 def held_signals() -> Iterator[list[int]]:
-    """Hold the signals that this module handles until the end of the block, and yield the list of those that have come.
+    """Hold the signals that this module handles until the end of the block; yield the list of those that have come.
 
     The block is brief, or looks at the list: it starts processes, takes locks or clears up, which an exception at any
     instruction would leave half done. Outside of the main thread, which alone gets signals, nothing changes.
@@ -157,9 +157,9 @@ def interruptible(interrupted: Callable[[], None], wake: Callable[[], None]) -> 
     watcher = Thread(target=watch, daemon=True)
     old_descriptor = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
     watcher.start()
-    is_mine = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    mine = [signal.SIGINT] if signal.getsignal(signal.SIGINT) is signal.default_int_handler else []
     try:
-        with signal_handlers(*[signal.SIGINT] * is_mine, handler=handle):
+        with signal_handlers(*mine, handler=handle):
             yield
     finally:
         signal.set_wakeup_fd(old_descriptor)

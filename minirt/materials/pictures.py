@@ -210,7 +210,8 @@ def opened_by_pillow(path: Path, data: bytes) -> Iterator[Any]:
         raise FileError(path, "needs more memory than there is to decode it") from None
     except Exception as error:  # damaged files make decoders raise anything, and quote what they have read
         is_cut = isinstance(error, EOFError) or "truncated" in str(error)
-        raise FileError(path, "is a damaged picture" + is_cut * ": the file ends too early") from None
+        why = ": the file ends too early" if is_cut else ""
+        raise FileError(path, f"is a damaged picture{why}") from None
 
 
 @cache

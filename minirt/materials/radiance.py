@@ -61,7 +61,10 @@ def read_header(data: bytes) -> RadianceHeader:
 
 
 def read_pixels(data: bytes, header: RadianceHeader) -> np.ndarray:
-    """Return the light of the pixels, float32 (height, width, 3), the upper row first; RadianceError."""
+    """Return the light of the pixels that follow a header, float32 (height, width, 3), the upper row first.
+
+    RadianceError where a scanline is damaged.
+    """
     by_columns = header.axes[0] in (b"+X", b"-X")
     count, length = (header.width, header.height) if by_columns else (header.height, header.width)
     rgbe = np.empty((count, length, 4), np.uint8)
@@ -94,14 +97,18 @@ def read_scanline(data: bytes, at: int, pixels: np.ndarray) -> int:
 
 
 def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
-    """Read a scanline in the new encoding: all red, green, blue, exponents; a byte above 128 begins a run."""
+    """Read a scanline in the new encoding: all red, green, blue, exponents; a byte above 128 begins a run.
+
+    It begins at byte `at`, and fills `pixels`, uint8 (length, 4). Returns the byte behind it. RadianceError.
+    """
     length = len(pixels)
     for component in range(4):
         line = bytearray()
         while len(line) < length:
             if at >= len(data):
                 raise RadianceError(f"byte {at}: the file ends")
-            is_run, size = data[at] > 128, data[at] - 128 * (data[at] > 128)
+            is_run = data[at] > 128
+            size = data[at] - 128 if is_run else data[at]
             if not 0 < size <= length - len(line):
                 raise RadianceError(f"byte {at}: {size} pixels, where {length - len(line)} of {length} are missing")
             part = data[at + 1 : at + 2] * size if is_run else data[at + 1 : at + 1 + size]
@@ -114,7 +121,10 @@ def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
 
 
 def read_whole_pixels(data: bytes, at: int, pixels: np.ndarray) -> int:
-    """Read a scanline of whole pixels; 1, 1, 1, n repeats the last one n times, the next one 256 n times, and so on."""
+    """Read a scanline of whole pixels; 1, 1, 1, n repeats the last one n times, the next one 256 n times, and so on.
+
+    It begins at byte `at`, and fills `pixels`, uint8 (length, 4). Returns the byte behind it. RadianceError.
+    """
     size = pixels.nbytes
     line, end = bytearray(data[at : at + size]), at + size
     if len(line) < size or REPEAT in line:  # which few files have

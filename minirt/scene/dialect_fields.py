@@ -83,9 +83,10 @@ def with_words_joined(text: str) -> tuple[str, Changes]:
 def fields_of_words(
     kind: type[Element], words: list[str], colours: Mapping[str, str], changes: Changes
 ) -> tuple[list[str], list[str]] | None:
-    """Spell the fields of an element by the first words, and return the others, too.
+    """Spell the fields of an element by the first words, and return their texts and the other words.
 
-    None where a field is missing, or something else stands in its place; FieldError for a malformed word.
+    `colours` are those of named materials; `changes` gets what is not as the words say. None where a field is missing,
+    or something else stands in its place; FieldError for a malformed word.
     """
     fields = []
     for field in positional_fields(kind):
@@ -140,7 +141,7 @@ def spellings(field: Field, words: list[str], colours: Mapping[str, str]) -> Ite
 
 
 def readings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iterator[Spelling]:
-    """Yield texts that may spell the value of a field, not yet parsed."""
+    """Yield texts that may spell the value of a field, not yet parsed, each from one or three of the first words."""
     if not words:
         return
     word = words[0].strip("()[]{};,") if isinstance(field, Three) else words[0].removesuffix(",")

@@ -23,7 +23,11 @@ def unread_lines(log: Log) -> int:
 
 
 def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
-    """Do what takes all lines of a file: choose its camera, give it an ambient light, tell cones and missing shapes."""
+    """Change `items`, the lines of a file, as only a look at all of them allows: choose its camera, apply conventions,
+    add an ambient light. An error goes into the log where none of its shapes could be read.
+
+    `seen` has the first line of each identifier, and gets those of the camera and the ambient light.
+    """
     promote_camera(items, seen, log)
     apply_conventions(items, log)
     unread = [*log.changes.get(tables.MISSING, ()), *log.changes.get(tables.INCOMPLETE, ())]
@@ -47,9 +51,10 @@ def promote_camera(items: list[Any], seen: dict[str, int], log: Log) -> None:
 
 
 def apply_conventions(items: list[Any], log: Log) -> None:
-    """Give cones and cameras the meaning that was asked for, or say which one cones have in a file in a dialect.
+    """Give cones and cameras the meaning that the words in `log.lenient` ask for: change them in `items`.
 
-    ValueError for a word that asks for nothing.
+    `items` has an entry for each line of the file. In a dialect, cones without such a word get a notice that says how
+    they are read. ValueError for a word that asks for nothing.
     """
     words = log.lenient.split() if isinstance(log.lenient, str) else []
     if unknown := [word for word in words if word not in tables.OPTIONS]:

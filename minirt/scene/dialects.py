@@ -130,14 +130,17 @@ def in_order(code: str, words: list[str]) -> list[str]:
 
 
 def meanings(kind: type[Element], words: list[str], folder: Path | None, changes: Changes) -> list[str]:
-    """Return the attributes that words behind the fields mean."""
+    """Return the attributes that words behind the fields mean; `changes` gets each word that is not one as it stands.
+
+    The files that attributes name are tried, from the folder of the scene, if it has one.
+    """
     keyed = fields_by_key(kind)
     has_colour = tables.WHITE not in dict(changes)  # without one a number names a material
     are_guessed = has_colour and sum(re.fullmatch(NUMBER, word) is not None for word in words) <= MOST_NUMBERS
     found: dict[str, str] = {}
 
-    def hindrance(attribute: str) -> str:
-        """Return why a word is no further attribute of the element, as a sort of change; '' where it is one."""
+    def add(attribute: str) -> str:
+        """Add a word to the attributes that were `found`; return '' or, where it is none, why: a sort of change."""
         key, start = split_key(attribute)
         try:
             if (field := keyed.get(key)) is None or key in found:
@@ -153,10 +156,10 @@ def meanings(kind: type[Element], words: list[str], folder: Path | None, changes
 
     while words:
         used, attributes, sort = 1, "", ""
-        if hindrance(words[0].replace("=", ":", 1)):
+        if add(words[0].replace("=", ":", 1)):
             used, attributes, sort = meaning(words, are_guessed)
             attributes = attributes.replace(tables.USUAL, getattr(keyed.get("checker"), "bare", ""))
-        sort = next(filter(None, map(hindrance, attributes.split())), sort)
+        sort = next(filter(None, map(add, attributes.split())), sort)
         if sort:
             changes.append((sort, " ".join(words[:used])))
         words = words[used:]

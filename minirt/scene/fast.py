@@ -31,16 +31,18 @@ READ = "minirt.kernel.plain_lines:read_lines"
 
 @cache
 def forms() -> tuple[list[type[Element]], np.ndarray]:
-    """Return the kinds that are read, once for each of their identifiers, and the `forms` of the kernel.
+    """Return the n forms of lines that are read: the kind of element of each, and a table of them for the kernel.
 
-    They are those that a scene may have thousands of, of which all positional fields are numbers.
+    A row of the table, (n, `NAME` + `MOST`), is the bytes of an identifier and then, for each number behind it, bits
+    that tell whether it is whole and whether a comma precedes it. A kind has a form for each of its identifiers. Kinds
+    are those that a scene may have thousands of, of which all positional fields are numbers.
     """
     kinds: list[type[Element]] = []
     table = np.zeros((len(SPELLINGS), NAME + MOST), np.int8)
     for name, kind in SPELLINGS.items():
         fields = positional_fields(kind)
-        if not kind.once and kind is not FurtherCamera and all(field.kind for field in fields):
-            parts = [(field.kind is int, part > 0) for field in fields for part in range(field.width)]
+        if not kind.once and kind is not FurtherCamera and all(field.number for field in fields):
+            parts = [(field.number is int, part > 0) for field in fields for part in range(field.width)]
             bits = [NUMBER + WHOLE * is_whole + BEHIND_COMMA * is_behind for is_whole, is_behind in parts]
             table[len(kinds), : NAME + len(bits)] = [*name.encode().ljust(NAME, b"\0"), *bits]
             kinds.append(kind)
@@ -108,8 +110,8 @@ def values_of(kind: type[Element], attributes: str) -> dict[str, Any] | None:
     to say something about them, or has to try a file."""
     log = Log("", lenient=False)
     line = line_from(0, f"{kind.code} 0 {attributes}")
-    attributes = (split_line(line, log) or [])[2:]
-    slots = attribute_slots(kind, fields_by_key(kind), attributes, line, log)
+    words = (split_line(line, log) or [])[2:]
+    slots = attribute_slots(kind, fields_by_key(kind), words, line, log)
     values = parse_slots(slots, line, log)
     (element,) = kind.of_columns(1, {name: [value] for name, value in values.items()})
     tell_useless(element, slots, line, log)
@@ -121,15 +123,19 @@ def values_of(kind: type[Element], attributes: str) -> dict[str, Any] | None:
 def read_kind(
     kind: type[Element], sources: list[str], numbers: np.ndarray, lines: np.ndarray
 ) -> tuple[np.ndarray, Crowd]:
-    """Return the elements of a kind that `lines` with these numbers, (n, `MOST`), are, and which lines have one."""
+    """Return the lines that are elements of a kind, (k,), and these elements.
+
+    `lines` are the indices in `sources` of the lines that begin as this kind does; `numbers` (n, `MOST`) has a row for
+    each of all sources. Elements whose fields are out of range or in conflict are left out.
+    """
     columns, start = {}, 0
     fields: Any = positional_fields(kind)
     for field in fields:
         columns[field.name] = numbers[lines, start : start + field.width]
         start += field.width
     crowd = Crowd(kind, [sources[line] for line in lines.tolist()], columns)
-    fit = np.logical_and.reduce([field.fits(columns[field.name]) for field in fields])
+    in_range = np.flatnonzero(np.logical_and.reduce([field.fits(columns[field.name]) for field in fields]))
     if kind.conflict is not Element.conflict:
-        fit[fit] = [element.conflict() is None for element in crowd.some(np.flatnonzero(fit))]
-    fitting = np.flatnonzero(fit)
-    return lines[fitting], crowd.some(fitting)
+        has_conflict = [element.conflict() is not None for element in crowd.some(in_range)]
+        in_range = np.delete(in_range, np.flatnonzero(has_conflict))
+    return lines[in_range], crowd.some(in_range)

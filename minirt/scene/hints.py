@@ -143,7 +143,7 @@ def is_certain(change: tuple[str, str]) -> bool:
 
 
 def nearest_value(field: Field, text: str) -> str:
-    """Return the value of an attribute with its numbers in range; FieldError where that is uncertain."""
+    """Return the text of an attribute's value with its numbers in range; FieldError where that is uncertain."""
     parts = text.split(",")
     for _ in parts:
         try:

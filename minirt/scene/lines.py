@@ -113,9 +113,10 @@ class Log:
         self.changes.setdefault(sort, []).append((line, words))
 
     def tell_changes(self) -> None:
-        """Add a notice of one line for each sort of change, at its first place, with the words that it is about.
+        """Make notices of one line each: of each sort of change, and for a lenient reader of each message.
 
-        Of a lenient reader's notices with the same message the first stays, with the number of places.
+        A notice about changes stands at the first of them, and names the words that they are about. The first notice
+        with a message stays, and tells in how many places it holds.
         """
         if self.lenient:
             first: dict[str, Problem] = {}
@@ -124,9 +125,10 @@ class Log:
             places = Counter(each.message for each in self.notices)
             self.notices = [replace(each, message=told(message, places[message])) for message, each in first.items()]
         for sort, changes in self.changes.items():
-            (line, word), words = changes[0], list(dict.fromkeys(words for _, words in changes))
-            named = ", ".join(words[:MOST_NAMED]) + ", ..." * (len(words) > MOST_NAMED)
-            old = word.partition(TAKEN)[0]
+            line, first_words = changes[0]
+            about = [*dict.fromkeys(words for _, words in changes)]
+            named = ", ".join(about[:MOST_NAMED]) + (", ..." if len(about) > MOST_NAMED else "")
+            old = first_words.partition(TAKEN)[0]
             found = re.search(rf"(?<![^ \t]){re.escape(old)}(?![^ \t])", line.text)
             column = found.start() if found else max(0, line.text.find(old))
             self.notice(line._replace(text=""), told(f"{sort}: {named}", len(changes)), column + 1, len(old))

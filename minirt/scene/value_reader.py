@@ -92,7 +92,10 @@ def with_files(slot: Slot, value: Any, folder: Path) -> tuple[Any, list[Notice]]
 
 
 def load_file(read: Callable[[Path], Any], file: PictureFile, slot: Slot, folder: Path) -> tuple[Any, list[Notice]]:
-    """Return what is in a file that a value names, and notices about it; FieldError when it cannot be used."""
+    """Return what `read` finds in a file that a value names, and notices about it; FieldError when it cannot be used.
+
+    The file is looked for in the folder of the scene.
+    """
     path, notices = file_io.located(folder, file.name), list[Notice]()
     try:
         content = read(path)

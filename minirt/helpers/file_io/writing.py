@@ -84,8 +84,10 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
 
 @contextmanager
 def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> Iterator[Path]:
-    """Write a temporary file, with no more than the given permissions, which the block renames; it is deleted when
-    that fails."""
+    """Write data to a temporary file in a folder, which the block renames; it is deleted when that fails.
+
+    The data are bytes, or a function that writes them to the open file. The file has no more than these permissions.
+    """
     sweep(folder)
     path = folder / TEMPORARY.replace("*", os.urandom(8).hex())
     try:  # before the file is there: an interrupt may come behind every instruction

@@ -60,7 +60,7 @@ class DragStart(NamedTuple):
 
 
 def move(state: State, start: DragStart, x: int, y: int) -> State:
-    """Move the element parallel to the image plane, or along an axis, with its point under the pointer."""
+    """Move the element parallel to the image plane, or along an axis, with its point under the pointer at x, y."""
     if start.point is None or start.moves_camera:
         return look(state, start, x, y)
     axis = WORLD_AXES.get(state.frame)
@@ -76,7 +76,7 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
 
 
 def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -> State:
-    """Move a shape to the surface behind the pointer, with its middle on the grid, and drop it there.
+    """Move a shape to the surface behind the pointer at x, y, with its middle on the grid, and drop it there.
 
     `turns`: it stands there as a new one would, also on walls, with its axis along the normal.
     """

@@ -56,6 +56,7 @@ class HeldKey:
     first: tuple[State, State] | None = None  # states before the first step and after a part of it
 
     def steps(self, now: float) -> float:
+        """The steps that the key has taken at a time: `FIRST_PART` at the press."""
         seconds = now - self.since
         steps = RATE * (seconds + GROWTH / 2 * max(0.0, seconds - PATIENCE) ** 2)
         return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
@@ -103,6 +104,10 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 
 
 def change_value(sign: float, state: State, amount: float, now: float) -> State:
+    """Change the active value of the primary element by `sign * amount` steps; a message says where it cannot go on.
+
+    What stands on something stands there with its new size, too.
+    """
     active = state.active
     # Of several selected elements only the primary one changes, as in Blender: others may lack the value.
     new = active.stepped(state.element, sign * amount, state.scene, state.stride)
@@ -137,6 +142,7 @@ def next_value(step: int, state: State, _amount: float, _now: float) -> State:
 
 
 def next_frame(state: State, _amount: float, _now: float) -> State:
+    """Take the next axes along which elements move: those of the view, or one of the world."""
     frames = list(MoveAxes)
     return replace(state, frame=frames[(frames.index(state.frame) + 1) % len(frames)], last_change=None)
 

@@ -39,7 +39,8 @@ POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an
 
 
 def edit_all(state: State, element: Element, edit: Callable[[Element], Element], kind: str, now: float) -> State:
-    """Edit all selected elements as they were when the primary one was `element`: now, or at the start of a drag."""
+    """Edit all selected elements as they are now or, in a drag, as they were at its start: when the primary one was
+    `element`."""
     scene = state.scene if element is state.element or not state.others else state.undo_stack[-1].scene
     changed = {index: edit(scene.elements[index]) for index in state.others}
     return state.edit_elements({state.selected: edit(element), **changed}, kind, now)
@@ -53,15 +54,17 @@ def put(state: State, element: Element, placed: Element, kind: str, now: float) 
 
 
 def move(state: State, element: Element, axis: Triple, distance: float, kind: str, now: float) -> State:
-    """Move the selected elements along an axis from where they were when the primary one was `element`."""
+    """Move the selected elements along an axis from where they were when the primary one was `element`: now, or at the
+    start of a drag. The `distance` is in scene units."""
     state = edit_all(state, element, lambda each: shifted(each, axis, distance), kind, now)
     _, clamped = translate(element, axis, distance)
     return state.with_message("the end of the range: no further") if clamped else state
 
 
 def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kind: str, now: float) -> State:
-    """Turn the selected elements from what they were when the primary one was `element`; several turn about its place.
+    """Turn the selected elements; several turn about the place of the primary one.
 
+    `element` is the primary one as it was before, at the start of a drag, and all turn from where they were then.
     `turns` are about axes of the view: the number of an axis in `camera_frame`, and the angle in degrees by which the
     side that faces the camera goes right about UPWARD, up about RIGHT, or clockwise about FORWARD. Where `state.frame`
     names an axis of the world, all turns are about that one, right-handed. Turns of the same `kind` that follow each
@@ -73,18 +76,19 @@ def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kin
     rotations: list[tuple[Triple, float]] = []
     for axis, angle in turns:
         # Right-handed rotations turn that side right about UPWARD and clockwise about FORWARD, but down about RIGHT.
-        seen = handedness(camera) * (-angle if axis == RIGHT else angle)
-        rotations.append((world, angle) if world else (turn_axis(camera, axis), seen))
+        right_handed = handedness(camera) * (-angle if axis == RIGHT else angle)
+        rotations.append((world, angle) if world else (turn_axis(camera, axis), right_handed))
     return rotate_all(state, element, rotations, kind, now)
 
 
 def rotate_all(
     state: State, element: Element, rotations: Sequence[tuple[Triple, float]], kind: str, now: float
 ) -> State:
-    """Rotate the selected elements, one rotation after the other, from what they were when the primary one was
-    `element`. Several rotate about the place of the primary one; a single one that stands on something stays on it.
+    """Rotate the selected elements, one rotation after the other. Several rotate about the place of the primary one; a
+    single one that stands on something stays on it.
 
-    rotations: unit vectors and angles in degrees, right-handed.
+    `element` is the primary one as it was before, at the start of a drag, and all turn from where they were then.
+    `rotations` are axes, of unit length, and angles in degrees, right-handed.
     """
     pivot = mean_point(element) if state.others else None
 
@@ -197,6 +201,7 @@ def approach(state: State, ray: Triple, point: Triple | None, steps: float, now:
 
 
 def next_tone(state: State, _amount: float, now: float) -> State:
+    """Give the camera in view the next tone, and say which one."""
     camera = state.scene.camera
     tone = TONES[(TONES.index(camera.tone) + 1) % len(TONES)]
     return state.edit_camera(camera.replace(tone=tone), "tone", now).with_message(f"tone: {tone}")
@@ -214,6 +219,7 @@ def focus(state: State, point: Triple | None, now: float) -> State:
 
 
 def reset_camera(state: State, _amount: float, now: float) -> State:
+    """Give the camera in view the values that it has in the file; one that no file has stays as it is."""
     scene = state.scene
     in_file = state.file_cameras[scene.shown] if scene.shown < len(state.file_cameras) else scene.camera
     return state if scene.camera == in_file else state.change(scene.replace(scene.camera, in_file), "", now)

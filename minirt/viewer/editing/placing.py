@@ -34,9 +34,11 @@ TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a
 
 
 def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, point: Triple | None) -> Aim:
-    """Aim through a point of the picture, at the `point` of a shape, at the ground y = 0, or at `size` from the eye.
+    """Aim through x, y in the picture, in pixels, at the `point` of a shape that is seen there, or, without one, at the
+    ground y = 0, and beside that at `size` from the eye.
 
-    size: of the scene. On surfaces the aim is at the nearest point whose coordinates along them are on a grid.
+    size: of the scene; what is BACKGROUND times as far away is not aimed at. On surfaces the aim is at the nearest
+    point whose coordinates along them are on a grid.
     """
     ray, height = view.ray(x, y), view.eye[1]
     to_ground = -height / ray[1] if height * ray[1] < 0 else inf
@@ -46,8 +48,8 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     elif shape or to_ground > BACKGROUND * size:
         shape, point = None, linear_combination(1.0, view.eye, size, ray)
     else:
-        x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
-        point, normal = (x, 0.0, z), UP if height > 0 else (0.0, -1.0, 0.0)
+        ground_x, _, ground_z = linear_combination(1.0, view.eye, to_ground, ray)
+        point, normal = (ground_x, 0.0, ground_z), UP if height > 0 else DOWN
     length = length_at(view, shape, point, normal)
     if normal:
         point, normal = on_grid(shape, point, normal, nice_number(min(STEP_SHARE * size, length / 2)))
@@ -81,19 +83,20 @@ def length_at(view: Projection, shape: Shape | None, point: Triple, normal: Trip
 
 
 def on_grid(shape: Shape | None, point: Triple, normal: Triple, grid: float) -> tuple[Triple, Triple]:
-    """The point of a surface, and its normal, next to `point` with two coordinates on a grid; the same without one.
+    """Return the point of a surface that is next to `point` and has two coordinates on a grid, and the normal there.
 
-    The third coordinate is the one along which the normal is longest. The ground y = 0 is no shape.
+    The third coordinate is the one along which the `normal` at the point is longest. Without a shape the surface is the
+    ground y = 0. Where the shape has no such point close by, the result is `point` and `normal` themselves.
     """
     along = max(range(3), key=lambda axis: abs(normal[axis]))
-    way, reach = [0.0, 0.0, 0.0], GRID_REACH * grid
-    way[along] = -copysign(1.0, normal[along])
-    down = way[0], way[1], way[2]
     x, y, z = (part if axis == along else grid * round(part / grid) for axis, part in enumerate(point))
     if shape is None:
         return (x, y, z), normal
-    start = linear_combination(1.0, (x, y, z), -reach, down)
-    found = first_hit(shape, start, down)
+    way, reach = [0.0, 0.0, 0.0], GRID_REACH * grid
+    way[along] = -copysign(1.0, normal[along])
+    inward = way[0], way[1], way[2]
+    start = linear_combination(1.0, (x, y, z), -reach, inward)
+    found = first_hit(shape, start, inward)
     return found if found and dist(found[0], start) <= 2 * reach else (point, normal)
 
 
@@ -104,6 +107,7 @@ def aim_ahead(camera: Camera, size: float) -> Aim:
 
 
 def middle_of(shape: Shape) -> projection.Extent:
+    """Return the centre and the radius of a bounded shape: see `projection.extent`."""
     found = projection.extent(shape)
     assert found
     return found
@@ -221,7 +225,8 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
     centre = middle_of(support)[0] if support and below else None
     rise = 0.0
     if below and centre and hypot(centre[0] - x, centre[2] - z) <= radius:
-        x_to, z_to, rise = centre[0], centre[2], max(0.0, below[1][1] - box[0][1])  # all of it is above the other
+        (_, bottom, _), (_, top, _) = box[0], below[1]
+        x_to, z_to, rise = centre[0], centre[2], max(0.0, top - bottom)  # all of it is above the other
     else:
         x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
     there = shifted(shape, (x_to - x, rise, z_to - z))

@@ -132,12 +132,13 @@ class State:
     def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
         """Replace the scene, push the old one on the undo stack, and empty the redo stack.
 
+        `selected` is the index of the primary element in the new scene; None leaves it. `now` is a time in seconds.
         kind: changes of the same kind within MERGE_SECONDS are undone together; an empty kind is never merged.
         What was typed for a camera, or changed beside its place and direction, is noted in it as `edited`: that counts
         as unsaved, looking around does not.
         """
-        last = self.last_change
-        merged = bool(kind) and last is not None and last[0] == kind and now - last[1] <= MERGE_SECONDS
+        last_kind, then = self.last_change or ("", now)
+        merged = bool(kind) and kind == last_kind and now - then <= MERGE_SECONDS
         past = self.undo_stack if merged else (*self.undo_stack[1 - MAX_UNDO :], self.snapshot)
         selected = self.selected if selected is None else selected
         scene = with_edited_cameras(self.scene, scene, kind)

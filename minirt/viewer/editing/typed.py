@@ -110,7 +110,8 @@ def three_words(text: str) -> list[str]:
 
 
 def sum_of(text: str, change: Callable[[float, float], float] | None, present: float) -> float:
-    """The result of a sum, product or quotient of numbers, or of a `change` by it; FieldError if it is none."""
+    """The result of a sum, product or quotient of numbers, or of a `change` of the present value by it; FieldError if
+    the text is none."""
     if not change and not any(sign in text[1:] for sign in "*/+-()"):
         return number(text)
     try:

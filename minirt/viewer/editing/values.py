@@ -195,7 +195,10 @@ def round_point(point: Triple, stride: float) -> Triple:
 
 
 def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
-    """Round the edited value of a field."""
+    """Round the edited value of a field, which was `before`, by an invisible fraction of what an edit changes.
+
+    stride: a step of a movement in scene units. Components that are as they were, and words, stay as they are.
+    """
     if isinstance(before, Record) and isinstance(after, Record):
         return round_changes(before, after, stride)
     if isinstance(field, (Factor, Length)):
