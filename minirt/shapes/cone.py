@@ -96,16 +96,16 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     """`point` moved onto the side or the base, whichever is nearer, and the outward normal there.
 
-    At the apex the normal is opposite to the axis.
+    A point on the axis moves to the apex, where the normal is opposite to the axis.
     """
     p = own_point(cone, point)
     rho = sqrt(p.x * p.x + p.y * p.y)
     cosine = inverse_root(splat(1.0, rho) + cone.slope * cone.slope)  # of the angle between axis and side
     sine = cone.slope * cosine
-    off = rho * cosine - p.z * sine
+    on_axis = rho == 0.0
+    off = where(on_axis, -p.z, rho * cosine - p.z * sine)
     on_side = off >= p.z - cone.height
     flat = splat(0.0, rho)
-    on_axis = rho == 0.0
     per_rho = where(on_axis, 0.0, 1.0 / rho)
     aside = where(on_side, cosine, flat)
     up = where(on_side, where(on_axis, -1.0, -sine), 1.0)

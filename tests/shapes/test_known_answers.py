@@ -103,6 +103,8 @@ def test_points_beside_the_special_places_of_a_surface() -> None:
     assert np.abs(normal[0, 0] - [1, 0, 0]).max() <= 4 * U
     _, normal = surfaces([BOWL], np.array([[[0.6, -1.01, 5]]]))  # below the vertex
     assert np.abs(normal[0, 0] - [0, -1, 0]).max() <= 4 * U
+    on, normal = surfaces([TENT], np.array([[[0, 4 - 2.0**-40, 5]]]))  # on the axis: to the apex
+    assert (*on[0, 0], *normal[0, 0]) == (0, 4, 5, 0, 1, 0)
     on, normal = surfaces([RING], np.array([[[0, 1, 5.0]]]))  # on the axis, where every point of the ring is as near
     assert np.abs(np.linalg.norm(on[0, 0] - [0, 1, 5]) - 2) <= 8 * U * 5
     assert normal[0, 0, 1] == 0
