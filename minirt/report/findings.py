@@ -28,7 +28,9 @@ CLEAR = 2.0  # times the error of the reference: from there on an error is known
 LEVEL = 0.004  # RMSE, one of 255 levels
 ERRORS = (0.03, 0.01, LEVEL, 0.002, 0.001)  # target errors, RMSE
 NEAR = 1.5  # ratio of times up to which they are about equal
-MARGIN = 1.25  # ratio of times up to which a simpler setting is as good
+SLACK = 1.75  # ratio of times up to which noise may have made the difference, beside busy programs
+MARGIN = 1.25  # ratio of times up to which another setting is as good
+HARDLY = 1.1  # ratio of usual times up to which a simpler setting is preferred
 USUAL = {knob.name: knob.per_sample for knob in KNOBS}
 
 
@@ -142,16 +144,17 @@ class Findings:
     def choices(self) -> list[Recommendation]:
         """The best setting for each target error, of those that the command line has.
 
-        Of those that reach it in about the least time it is the one that usually takes least, or a simpler one that
-        usually takes hardly more. So noise in the times does not change it, and two reports of a scene say the same.
+        Of those that reach it in at most `SLACK` of the least time it is the one that usually takes least, or a simpler
+        one that usually takes hardly more. What is usual follows from numbers of samples, which are the same in every
+        run: so noise in the times does not change it, and two reports of a scene say the same.
         """
         found = []
         for most in ERRORS:
             rows = [row for row in self.pictures if row.options and row.rmse_high <= most and isfinite(row.ms)]
             least = min((row.ms for row in rows), default=nan)
-            near = [(row, USUAL.get(row.knob, 1.0) * row.samples) for row in rows if row.ms <= NEAR * least]
+            near = [(row, USUAL.get(row.knob, 1.0) * row.samples) for row in rows if row.ms <= SLACK * least]
             usual = min((work for _, work in near), default=nan)
-            best = next((row for row, work in near if work <= MARGIN * usual), None)
+            best = next((row for row, work in near if work <= HARDLY * usual), None)
             others = [row.name for row in rows if best and row != best and row.ms <= MARGIN * best.ms]
             equal = "".join(others[:1]) + (f", {len(others) - 1} more" if len(others) > 1 else "")
             told = (best.options, best.ms, best.rmse, equal, best) if best else ()
