@@ -89,8 +89,11 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number |
         if rarely(close):
             near = where(close & (approach > 0.0), product / far, near)
             far = where(close & (approach <= 0.0), product / near, far)
-        t = where(near > 0.0, near, far)
-        hit = hit & (t > 0.0)  # NaN where there is no chord
+        least = splat(0.0, t)
+        if limit is None:  # what is nearer than the start is known is the start, also on spheres that are hardly larger
+            least = position_error(origin, f)
+        t = where(near > least, near, far)
+        hit = hit & (t > least)  # NaN where there is no chord
     return hit, t
 
 

@@ -139,6 +139,16 @@ def test_a_flat_paraboloid_whose_intervals_must_overlap_has_holes(monkeypatch: p
     assert holes("paraboloid", on_arrays) > 0
 
 
+def test_a_ray_leaves_a_sphere_of_hardly_more_than_the_rounding_of_its_place() -> None:
+    """Coordinates there are 1.2e-4 apart, an eighth of the radius."""
+    far = Sphere((-68368846870, -174649699512.5, -618464938073.5), 0.0018690041051300042, GREY)
+    start = np.array([[-68368846869.999405, -174649699512.50034, -618464938073.5006]])
+    leaving = np.array([[0.3292206323176564, 0.4573309292429209, -0.8261127020051011]])
+    assert on_arrays([far], start[None], leaving[None])[0, 0] == np.inf
+    through = on_arrays([far], start[None], -leaving[None])[0, 0]
+    assert through == pytest.approx(oracle.nearest(far, start[0], -leaving[0]), rel=0.1)  # of a blurred start
+
+
 @KIND
 def test_the_length_of_a_direction_does_not_matter(kind: Kind) -> None:
     random = np.random.default_rng(RUN)
