@@ -67,14 +67,13 @@ def automatic(found: Findings) -> str:
     errors = np.array([(row.rmse_low, row.rmse, row.rmse_high) for row in rows])
     others = np.exp(np.interp(np.log(errors), *np.log(uniform).T))
     low, ratio, high = (times / others).T
-    faster, slower = (
-        ", ".join(f"{row.asked:g}" for row, so in zip(rows, each, strict=True) if so) for each in (high < 1, low > 1)
-    )
-    answer = "It makes no difference that can be measured"
-    if faster or slower:
-        answer = "Yes" if faster else "No"
-    if faster and slower:
-        answer = f"Yes for an error of {faster}, no for {slower}"
+    told = [
+        f"{word} for an error of {', '.join(f'{row.asked:g}' for row, so in zip(rows, which, strict=True) if so)}"
+        for word, which in (("yes", high < 1), ("no", low > 1))
+        if which.any()
+    ]
+    answer = ", ".join(told) or "it makes no difference that can be measured"
     extent = " to ".join(dict.fromkeys(f"{each:.2g}" for each in (ratio.min(), ratio.max())))
     last = f"{times[-1, 1]:.4g} ms instead of {others[-1, 1]:.4g} ms for RMSE {errors[-1, 1]:.2g}"
-    return f"{answer}: it takes {extent} times as long as uniform sampling with the same true error ({last})"
+    same = "uniform sampling with the same true error"
+    return f"{answer[0].upper()}{answer[1:]}: it takes {extent} times as long as {same} ({last})"

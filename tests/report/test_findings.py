@@ -182,14 +182,17 @@ def answer(*rows: Row) -> str:
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
-        ([(0.01, 0.01, 2.0)], r"Yes: it takes 0\.5 times as long .* \(2 ms instead of 4 ms for RMSE 0\.01\)"),
-        ([(0.01, 0.01, 6.0)], r"No: it takes 1\.5 times"),
+        (
+            [(0.01, 0.01, 2.0)],
+            r"Yes for an error of 0\.01: it takes 0\.5 times as long .* \(2 ms instead of 4 ms for RMSE 0\.01\)",
+        ),
+        ([(0.01, 0.01, 6.0)], r"No for an error of 0\.01: it takes 1\.5 times"),
         (
             [(0.01, 0.01, 6.0), (0.005, 0.004, 5.0)],
-            r"Yes for an error of 0\.005, no for 0\.01: it takes 0\.5 to 1\.5 times",
+            r"Yes for an error of 0\.005, no for an error of 0\.01: it takes 0\.5 to 1\.5 times",
         ),
         ([(0.01, 0.01, 4.2)], r"It makes no difference that can be measured: it takes 1\.1 times"),
-        ([(0.05, 0.08, 2.0)], r"No: it takes 2 times"),  # one sample takes 1 ms
+        ([(0.05, 0.08, 2.0)], r"No for an error of 0\.05: it takes 2 times"),  # one sample takes 1 ms
         ([(0.001, 0.0001, 2.0)], r"Yes: it has smaller errors than any uniform number"),
         ([], r"It was not measured"),
     ],
@@ -241,7 +244,10 @@ def test_exactness_and_what_is_left_out() -> None:
     more = replace(FINDINGS, stiff=FINDINGS.stiff * 3)
     assert told_by("Exactness:", more) == f"{hits}; sphere 1 is stiff (small), and 2 more below; {single}."
     bare = replace(FINDINGS, certificates=[], stiff=[], single=nan)
-    assert told_by("Exactness:", bare) == "nothing in this scene is stiff."
+    assert (
+        told_by("Exactness:", bare)
+        == "nothing in this scene is too small, too far away or too close to something to be drawn exactly."
+    )
     lacks = "the kernel of this scene lacks 3 kinds of shapes and 5 features"
     assert told_by("Left out:", FINDINGS) == f"{lacks}."
     more = [
