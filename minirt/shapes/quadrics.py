@@ -197,7 +197,9 @@ def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs,
     # A line that starts above a side or an end, if only by rounding, and gets beyond its rim stays outside.
     below = where(on & (near > last), near, below)
     starts = minimum(fabs(low), fabs(high)) <= slack
-    first = where(starts & (fabs(first) <= fabs(last)) & ~(first > above), 0.0, first)
+    # A line that starts above an end and is out of the side before it is below that end misses the solid.
+    missed = (first > above) & (above > 0.0)
+    first = where(starts & (fabs(first) <= fabs(last)) & ~missed, 0.0, first)
     last = where(starts & (fabs(last) < fabs(first)), 0.0, last)
     return Span(value(a), below, above, first, last, splat(1.0, like))
 

@@ -33,6 +33,7 @@ from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_
 from tests.stability.mutants import as_of_a_shadow_ray
 from tests.stability.rays import Pose, pose, rays
 from tests.stability.test_exact import EYE, KIND, struck
+from tests.stability.verdicts import BOUND, off
 
 SHAPES, DIRECTIONS = 40, 256
 DEEP = 0.5  # of the offset: the least depth of a start in a solid that no ray leaves unseen
@@ -147,6 +148,16 @@ def test_a_ray_leaves_a_sphere_of_hardly_more_than_the_rounding_of_its_place() -
     assert on_arrays([far], start[None], leaving[None])[0, 0] == np.inf
     through = on_arrays([far], start[None], -leaving[None])[0, 0]
     assert through == pytest.approx(oracle.nearest(far, start[0], -leaving[0]), rel=0.1)  # of a blurred start
+
+
+def test_a_steep_ray_from_a_rim_hits_the_other_side() -> None:
+    """It starts 1e-17 above the end and 2e-9 above the side, where coordinates are 1.5e-8 apart."""
+    tower = Hyperboloid((123346876, -23277840, 47204889), (0, 0.8, 0.6), 1.25, 2.5, 5, GREY)
+    start = np.array([[123346877.22273652, -23277837.844213143, 47204890.29228419]])
+    inwards = np.array([[-0.3008411937223423, -0.8852722804569826, -0.35466542771210385]])
+    found = on_arrays([tower], start[None], inwards[None])[0]
+    assert off(tower, start, inwards, found).max() <= BOUND
+    assert found[0] == pytest.approx(5.42878097)
 
 
 @KIND

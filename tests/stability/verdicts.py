@@ -8,7 +8,8 @@ such piece. A sheet has no inside: a hit is right within 64 roundings of its pla
 so close to the given one passes beside it.
 
 A ray that starts within 8 roundings of its coordinates of the surface starts on it. It may start on either side, and it
-must not hit the surface where it starts; a sheet it does not hit at all. One that is flatter than 2^-10 only touches.
+must not hit the surface where it starts; a sheet it does not hit at all. One that is flatter than 2^-10, or than its
+start is known on the scale of the shape, only touches.
 """
 
 from __future__ import annotations
@@ -68,7 +69,8 @@ def right(shape: Shape, origins: Array, directions: Array, t: Array, digits: boo
         near = np.abs(start.faces) <= 8 * rounding
         slope, steepest = np.where(near, steep, 1.0).min(axis=0), np.where(near, steep, 0.0).max(axis=0)
         again = (np.abs(start.above) <= rounding / 4) & (start.beyond <= -2 * rounding) & hit
-        again &= (slope > STEEP) & (t * slope <= 8 * rounding)
+        flat = np.maximum(STEEP, 4 * np.sqrt(rounding / oracle.size(shape)))
+        again &= (slope > flat) & (t * slope <= 8 * rounding)
         # Where the hit lies on a face on which the ray does not start, it is another crossing.
         again &= ~((np.abs(start.faces) > rounding) & (np.abs(at.faces) <= band + blur)).any(axis=0)
         if again.any():
