@@ -76,8 +76,8 @@ class Ablation:
         renderer, pixels = Renderer(self.threads, without=variant.without), np.zeros_like(self.pixels)
         compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
-        draw()
-        turns = take_turns([self.draw, draw], LEAST_PAIRS, PAIRS, self.seconds)
+        least = LEAST_PAIRS if draw().wall <= self.seconds else 1  # without culling, many shapes may take minutes
+        turns = take_turns([self.draw, draw], least, PAIRS, self.seconds)
         changes = [change(base, other) for base, other in turns]
         low, high = of_median(changes)
         return Part(

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import shlex
 from itertools import dropwhile
-from math import isfinite
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,8 @@ import numpy as np
 from minirt.report.against import changes, differences
 from minirt.report.findings import CLEAR, ERRORS, LEVEL, Findings
 from minirt.report.page import filled
-from minirt.report.pictures import Row
-from minirt.report.settings import AUTO, BRUTE_FORCE, UNIFORM
+from minirt.report.settings import AUTO, UNIFORM
+from minirt.report.variants import CULLING
 
 SPACES = re.compile(r"\s+(?=[,;.]\s|[,;.]$)")  # before a sign that ends a phrase
 
@@ -25,7 +25,6 @@ SPACES = re.compile(r"\s+(?=[,;.]\s|[,;.]$)")  # before a sign that ends a phras
 def answers(found: Findings) -> list[tuple[str, str]]:
     """Return questions and their answers."""
     best, *finer = found.choices[ERRORS.index(LEVEL) :]
-    first = {row.knob: row for row in found.pictures if row.samples == 1}
     added = [part for part in found.ablation if part.change == "added" and part.percent_low > 0]
     told: dict[str, Any] = {
         "found": found,
@@ -36,8 +35,8 @@ def answers(found: Findings) -> list[tuple[str, str]]:
         "worst": max(found.certificates, key=lambda each: each.backward_largest, default=None),
         "hits": sum(each.hits for each in found.certificates),
         "dearest": max(added, key=lambda part: part.percent, default=None),
-        "lean": first.get(UNIFORM.name, Row("", "")),
-        "brute": first.get(BRUTE_FORCE.name, Row("", "")),
+        "scene_ms": found.ablation[0].frame_ms if found.ablation else nan,
+        "brute": next((part for part in found.ablation if part.name == CULLING), None),
         "automatic": automatic(found),
     }
     if found.other:

@@ -40,8 +40,9 @@ def write_files(folder: str | os.PathLike[str], found: Findings, lights: dict[st
 
 def report_files(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, bytes]:
     """Build all files: their contents by their names."""
-    told = values(found, lights, reference)
-    texts = {PAGE: filled("page.html", told), "report.md": filled("page.txt", told), "diagram.svg": draw(found, WIDE)}
+    diagram = draw(found, WIDE)
+    told = values(found, lights, reference) | {"wide": on_page(diagram), "narrow": on_page(draw(found, NARROW))}
+    texts = {PAGE: filled("page.html", told), "report.md": filled("page.txt", told), "diagram.svg": diagram}
     texts["report.json"] = as_json(vars(found) | {"orders": found.orders, "choices": found.choices, "other": None})
     texts |= {f"{name}.csv": as_csv(getattr(found, name)) for name in TABLES}
     maps = {map_name(row): error_image(lights[row.name], reference) for row in found.pictures if row.name in lights}
@@ -58,14 +59,11 @@ def map_name(row: Row) -> str:
 def values(found: Findings, lights: dict[str, Light], reference: Light) -> dict[str, Any]:
     """Return what the page of a report tells, by the names in its templates."""
     equal = [row for row in found.of_equal_time if row.name in lights]
-    wide, narrow = (on_page(draw(found, size)) for size in (WIDE, NARROW))
     return {
         "found": found,
         "answers": answers(found),
         "share": found.subject.pixels / (found.subject.width * found.subject.height),
         "side": SIDE,
-        "wide": wide,
-        "narrow": narrow,
         "changes": list(changes(found, found.other)) if found.other else [],
         "pictures": list(compared(equal, lights, reference)) if equal else [],
         "crops": worst_crops(equal, lights, reference) if equal else [],

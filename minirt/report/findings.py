@@ -90,7 +90,6 @@ class Findings:
     stiff: list[Stiff] = field(default_factory=list)
     absent: str = ""  # numbers of the kinds of shapes and of the features that the scene's kernel lacks
     notes: list[str] = field(default_factory=list)  # how the scene was packed, and which features were left out
-    same: list[int] = field(default_factory=list)  # sample counts for which brute force gives the same bits
     not_measured: list[str] = field(default_factory=list)
     interrupted: str = ""  # what was being measured when the user interrupted the report, and what is missing
     other: Findings | None = None  # the report to compare with

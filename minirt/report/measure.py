@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-from math import inf, nan
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import NamedTuple
-
-import numpy as np
 
 from minirt.errors import RenderError, counted
 from minirt.helpers import file_io
@@ -28,13 +26,12 @@ from minirt.report.findings import Findings, subject
 from minirt.report.metrics import Picture, changed
 from minirt.report.pictures import FEW, LEFT_OUT, ReferencePicture, SettingRenderer, Step, crops_for, reference
 from minirt.report.precision import hit_certificates
-from minirt.report.settings import COUNTS, settings
+from minirt.report.settings import settings
 from minirt.report.variants import with_more, without_lists, without_unseen
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS
 
 SEED = 20240607
-CULLING = ("brute force", "uniform")  # knobs whose pictures must be the same
 NOTHING = "Interrupted before anything was measured; no report was written."
 COMPILING, CERTIFYING = 15.0, 3.0  # seconds that a kernel, and the certificates of hits, are expected to take
 JUDGING = 2e-6  # seconds for the errors of a pixel
@@ -129,8 +126,6 @@ class Measurement:
                 self.pictures[row.name] = picture
         self.step("run times")
         stage.take_times(plan.seconds)
-        brute, culled = ([self.pictures.get(f"{knob} {count}", nan) for count in COUNTS] for knob in CULLING)
-        found.same += [count for count, a, b in zip(COUNTS, brute, culled, strict=True) if np.array_equal(a, b)]
         one, uniform = (self.pictures.get(f"{knob} 1") for knob in ("single", "uniform"))
         if one is not None and uniform is not None:
             found.single = changed(one, uniform)

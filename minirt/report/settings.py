@@ -1,4 +1,4 @@
-"""Settings that a report varies: samples per pixel, adaptive and automatic sampling, precision, culling and bounces."""
+"""Settings that a report varies: samples per pixel, adaptive and automatic sampling, precision and bounces."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.renderer import Renderer
-from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
+from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 
 COUNTS = (1, 4, 16, 64)  # samples per pixel
@@ -72,9 +72,7 @@ BOUNCES = tuple(
     Knob(name, ABOUT_BOUNCES.format(depth, DEPTH), {"depth": depth}, values=COUNTS[::2])
     for depth, name in ((0, "no bounces"), (1, "1 bounce"), (3, "3 bounces"))
 )
-CULLING = (TILES, LIGHT_BUFFERS, BOXES)
-BRUTE_FORCE = Knob("brute force", "no culling: every ray tries every shape", {"without": CULLING}, values=COUNTS[:2])
-KNOBS = (UNIFORM, ADAPTIVE, AUTO, SINGLE, BRUTE_FORCE, *BOUNCES)  # the simplest first
+KNOBS = (UNIFORM, ADAPTIVE, AUTO, SINGLE, *BOUNCES)  # the simplest first
 
 
 class Setting(NamedTuple):
@@ -91,7 +89,7 @@ class Setting(NamedTuple):
     @property
     def options(self) -> str:
         """The options of the command line that draw so, such as `--samples 16`; empty where none do."""
-        if self.knob is BRUTE_FORCE or self.knob.draw not in OPTIONS:
+        if self.knob.draw not in OPTIONS:
             return ""
         others = (f" --{name} {value}" for name, value in self.knob.renderer.items())
         return OPTIONS[self.knob.draw].format(self.value) + "".join(others)

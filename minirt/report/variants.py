@@ -24,6 +24,7 @@ from minirt.shapes import ALL_KINDS, Shape
 
 SIZE = 1e-3  # of an added shape, as a share of the distance to it
 DARK = (0, 0, 1)  # of an added background, which may be seen: the least that is not black
+CULLING = "culling"  # name of the variant without any list
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 
 
@@ -38,12 +39,14 @@ class Variant(NamedTuple):
 
 
 def without_lists(scene: Scene) -> Iterator[Variant]:
-    """Yield the scene packed without each list that it has. Such variants need no kernel of their own."""
+    """Yield the scene packed without each list that it has, and without all, so that every ray tries every shape. Such
+    variants need no kernel of their own."""
     yield Variant("list", "tiles and their cones", "without", scene, (TILES,))
     if scene.lights:
         yield Variant("list", "light buffers and their cones", "without", scene, (LIGHT_BUFFERS,))
     if features(scene) & {"reflective", "parallel"}:
         yield Variant("list", "boxes of the BVH", "without", scene, (BOXES,))
+    yield Variant("list", CULLING, "without", scene, (TILES, LIGHT_BUFFERS, BOXES))
 
 
 def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:

@@ -59,5 +59,4 @@ FINDINGS = Findings(
     stiff=[Stiff("sphere 1", "small", {"size": 1e-9})],
     absent="3 kinds of shapes and 5 features",
     notes=["kernel for spheres"],
-    same=[1, 4],
 )

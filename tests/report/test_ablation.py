@@ -15,10 +15,9 @@ from minirt.materials import Specular
 from minirt.rendering.kernels import packing_calls
 from minirt.rendering.packing.features import APERTURES, WORDS, features
 from minirt.rendering.renderer import Renderer
-from minirt.rendering.scene_packing import BOXES, Packing
+from minirt.rendering.scene_packing import BOXES, LIGHT_BUFFERS, TILES, Packing
 from minirt.report import ablation
 from minirt.report.ablation import Ablation, Part
-from minirt.report.settings import CULLING
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
 from minirt.scene import FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS, Plane, Sphere, Torus
@@ -27,6 +26,7 @@ from tests.random_scenes import random_scene
 from tests.simulated_clock import PROCESSOR_SHARE, Clock, packets, simulate_clock
 
 WIDTH, HEIGHT = 32, 20
+ALL_LISTS = (TILES, LIGHT_BUFFERS, BOXES)
 DIMMER = Variant("feature", "dimmer light", "added", ALL.replace(ALL.lights[0], brightness=0.1))
 
 
@@ -52,7 +52,8 @@ def test_lists_change_the_time_and_not_the_picture(clock: Clock, monkeypatch: py
     scene, *lists = parts(*without_lists(ALL))
     assert (scene.sort, scene.change) == ("scene", "as it is")
     assert scene.frame_ms == pytest.approx(packets(WIDTH, HEIGHT) * 1e-3 * PROCESSOR_SHARE)
-    assert len(lists) == 2
+    assert [part.name for part in lists][-1] == "culling"
+    assert len(lists) == 3
     for part in lists:
         assert part.percent == pytest.approx(25)
         assert part.percent_low == pytest.approx(25)
@@ -74,7 +75,7 @@ def test_a_variant_with_a_kernel_of_its_own(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_a_variant_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("minirt.rendering.packing.visibility.MOST_MEMBERS", 1)
-    _, tiles, lights = parts(*without_lists(ALL))
+    _, tiles, lights, _ = parts(*without_lists(ALL))
     assert tiles.remark.startswith("failed: 6 shapes in each of")
     assert isnan(tiles.percent)
     assert not isnan(lights.percent)
@@ -172,12 +173,12 @@ MANY = ALL.add(*(Sphere((i % 16 - 7.5, i // 16 - 7.5, 4 + i % 7), 0.7, (90, 90, 
 
 @pytest.mark.parametrize("scene", [ALL, MANY, Scene((AMBIENT, EYE, *SHAPES)), *map(random_scene, range(1, 6))])
 def test_brute_force_gives_the_same_picture(scene: Scene) -> None:
-    brute = linear(scene, WIDE, HIGH, 3, Renderer(2, without=CULLING))
+    brute = linear(scene, WIDE, HIGH, 3, Renderer(2, without=ALL_LISTS))
     assert np.array_equal(brute, linear(scene, WIDE, HIGH, 3))
 
 
 def test_every_tile_and_every_light_has_every_shape() -> None:
-    traced = Packing(without=CULLING).pack(ALL, WIDE, HIGH)
+    traced = Packing(without=ALL_LISTS).pack(ALL, WIDE, HIGH)
     for kind, group in enumerate(traced.groups):
         expected = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
         assert len(group.tile_starts) == 15 + 1
@@ -199,5 +200,5 @@ def test_every_ray_visits_every_leaf_of_the_tree() -> None:
     used = (boxes[:, : REFERENCES // 2] <= boxes[:, REFERENCES // 2 :]).sum()
     assert 0 < used == np.isneginf(open_boxes[:, : REFERENCES // 2]).sum()
     assert np.array_equal(tree.nodes.reshape(-1, NODE)[:, REFERENCES:], wide.nodes.reshape(-1, NODE)[:, REFERENCES:])
-    brute = linear(mirrors, WIDE, HIGH, 1, Renderer(1, without=CULLING))
+    brute = linear(mirrors, WIDE, HIGH, 1, Renderer(1, without=ALL_LISTS))
     assert np.array_equal(brute, linear(mirrors, WIDE, HIGH))

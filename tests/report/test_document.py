@@ -161,7 +161,7 @@ def test_the_page_of_a_report(page: Page, tmp_path: Path) -> None:
     lights = {row.name: np.full((HEIGHT, WIDTH, 3), 0.001 * index) for index, row in enumerate(ROWS[:-1])}
     file = tmp_path / PAGE
     full = ROWS[0]._replace(flip=0.0123, error_median=1e-5, error_95=0.012, error_largest=0.9, estimated=0.00123)
-    slow = full._replace(knob="brute force", ms=12345.67, ms_low=12000.0, ms_high=13000.0, remark="left out: 1.2e+02 s")
+    slow = full._replace(knob="no bounces", ms=12345.67, ms_low=12000.0, ms_high=13000.0, remark="left out: 1.2e+02 s")
     failed = Part("kind", "light buffers and their cones", "without", remark="failed: 4096 shapes in each of 8 lists")
     crowded = replace(FINDINGS, pictures=[slow, *ROWS], ablation=[*FINDINGS.ablation, failed])
     file.write_bytes(report_files(crowded, lights, np.zeros((HEIGHT, WIDTH, 3)))[PAGE])

@@ -109,15 +109,12 @@ def test_knobs_do_what_they_say(clock: Clock) -> None:
     assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET_SECONDS * 1e3 * PROCESSOR_SHARE)
     assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
     assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
-    brute = rows()["brute force", 4]
-    errors = slice(Row._fields.index("samples"), Row._fields.index("not_finite"))
-    assert brute[errors] == rows()["uniform", 4][errors]
     assert all(row.not_finite == 0 for row in rows().values())
 
 
 def test_the_options_of_the_command_line_draw_the_picture_of_a_setting() -> None:
     """Settings that no options draw have none."""
-    assert rows()["adaptive", 16].options == rows()["brute force", 4].options == ""
+    assert rows()["adaptive", 16].options == ""
     for key in (("uniform", 4), ("single", 4), ("auto", 0.01)):
         options = argument_parser().parse_args(rows()[key].options.split())
         how = {"samples": options.samples, "precision": options.precision, "error": options.error}
@@ -130,8 +127,8 @@ def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     floor, ball, *_ = SHAPES
     mirrors = Scene((AMBIENT, EYE, LAMP, floor.replace(mirror=0.5), ball.replace(mirror=0.9)))
     plain, names = (list({each.knob.name: 0 for each in settings(scene, 16, 0.0)}) for scene in (ALL, mirrors))
-    assert plain == ["uniform", "adaptive", "auto", "single", "brute force"]
-    assert names == [*plain[:3], plain[4], "no bounces", "1 bounce", "3 bounces"]
+    assert plain == ["uniform", "adaptive", "auto", "single"]
+    assert names == [*plain[:3], "no bounces", "1 bounce", "3 bounces"]
     right = reference(mirrors, WHOLE, 256, seed=3)
     wanted = [setting for setting in settings(mirrors, 16, 1.0) if setting.value == 16]
     rmse = {row.knob: row.rmse for row in rows_for(*wanted, scene=mirrors, near=right)}
@@ -149,7 +146,6 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
     assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
     assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)
     assert counts["uniform", 1] < counts["adaptive", 4] < counts["uniform", 1] + counts["uniform", 4]
-    assert counts["brute force", 1] == counts["uniform", 1]
     assert all(isfinite(row.rmse) for row in rows)
 
 
