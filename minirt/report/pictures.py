@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
-from math import nan
+from math import inf, nan
 from statistics import median
 from typing import Annotated, NamedTuple
 
@@ -154,7 +154,8 @@ class Row(NamedTuple):
         """Return the row with the times of its runs: processor time of a thread, or wall time."""
         walls, cpus = [run.wall * 1e3 for run in runs], [run.cpu / threads * 1e3 for run in runs]
         low, high = metrics.of_median(times := cpus if by_processor else walls)
-        row = self._replace(ms=median(times), ms_low=low, ms_high=high, runs=len(runs))
+        remark = self.remark or ("" if len(runs) > 1 else ONE_RUN)
+        row = self._replace(ms=median(times), ms_low=low, ms_high=high, runs=len(runs), remark=remark)
         efficiency = 1e3 / (self.rmse**2 * row.ms) if self.rmse and row.ms else nan
         return row._replace(wall_ms=median(walls), cpu_ms=median(cpus), efficiency=efficiency)
 
@@ -174,7 +175,7 @@ class SettingRenderer:
         self.renderers: dict[str, Renderer] = {}
         self.ready: dict[str, Future[Drawn]] = {}
         self.compilers, self.queries = ThreadPoolExecutor(1), CompileProcess()
-        self.cost: dict[str, float] = {}  # seconds of a thread for a unit of work with a knob
+        self.cost: dict[str, float] = {}  # least seconds of a thread for a unit of work with a knob: of no slow moment
         self.drawn: list[Setting] = []
         self.times: dict[str, list[Run]] = {}  # of the settings that were drawn, by their names
 
@@ -236,15 +237,15 @@ class SettingRenderer:
         except RenderError as error:
             return row._replace(remark=f"failed: {error}"), None
         seconds = first.cpu / self.threads
-        self.cost[row.knob], self.times[row.name] = seconds / work, [first]
-        if seconds <= self.longest:
-            self.drawn.append(setting)
+        self.cost[row.knob] = min(self.cost.get(row.knob, inf), seconds / work)
+        self.times[row.name] = [first]
+        self.drawn.append(setting)
         picture = np.clip(right.crops.of(light), 0.0, 1.0)
-        remark = "" if seconds <= self.longest else ONE_RUN
-        return row._replace(**prepared, **drawn[0], remark=remark).with_errors(picture, right), picture
+        return row._replace(**prepared, **drawn[0]).with_errors(picture, right), picture
 
     def take_times(self, seconds: float) -> None:
-        """Run the settings that were drawn in turn until that takes so many seconds, at least a few times."""
-        works = [partial(timed, partial(self.draw, setting)) for setting in self.drawn]
-        for setting, runs in zip(self.drawn, zip(*take_turns(works, FEW, MANY, seconds), strict=True), strict=False):
+        """Run the settings that do not take long in turn until that takes so many seconds, at least a few times."""
+        short = [each for each in self.drawn if self.cost[each.knob.name] * each.knob.work(each.value) <= self.longest]
+        works = [partial(timed, partial(self.draw, setting)) for setting in short]
+        for setting, runs in zip(short, zip(*take_turns(works, FEW, MANY, seconds), strict=True), strict=False):
             self.times[setting.name] = list(runs)

@@ -121,7 +121,7 @@ def choices(rows: list[Row]) -> dict[str, Recommendation]:
 # Times in ms of a uniform setting and of another one, in runs beside twenty busy programs on two processors.
 MEASURED = [
     ("auto", 6.406, [(412, 361), (356, 265), (429, 277)]),  # scenes/gallery-stage.rt
-    ("1 bounce", 1.0, [(125, 80), (126, 97)]),  # scenes/gallery-rings.rt
+    ("1 bounce", 1.0, [(125, 80), (126, 97), (167, 87)]),  # scenes/gallery-rings.rt
 ]
 
 
@@ -135,7 +135,7 @@ def test_of_times_that_are_about_equal_the_usual_work_decides() -> None:
             noisy = [row._replace(ms=row.ms * factor) for row, factor in zip(rows, factors, strict=True)]
             assert choices(noisy)["0.01"].options == best.options
             assert choices(noisy)["0.01"].best.name == best.name
-    slow = single._replace(ms=17.6)  # more than 1.75 of the least time, whatever is usual
+    slow = single._replace(ms=20.1)  # more than twice the least time, whatever is usual
     assert choices([uniform, slow])["0.01"].best == uniform
     assert choices([uniform, single._replace(label="x")])["0.01"].equal == "uniform f"
     assert choices([uniform, SLOW])["0.01"].equal == ""

@@ -177,6 +177,24 @@ def test_a_setting_that_takes_long_is_run_once_and_one_that_would_take_far_too_l
             assert row.runs == {"": FEW, ONE_RUN: 1, left_out: 0}[remark]
 
 
+def test_a_slow_moment_does_not_make_a_setting_one_that_takes_long(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first picture takes five times as long as usual."""
+    wanted, measured = [Setting(KNOBS[0], samples) for samples in (1, 2)], SettingRenderer.measured
+
+    def at_first(self: SettingRenderer, setting: Setting, near: ReferencePicture) -> object:
+        clock.slowness = 5.0 if setting is wanted[0] else 1.0
+        found = measured(self, setting, near)
+        clock.slowness = 1.0
+        return found
+
+    monkeypatch.setattr(SettingRenderer, "measured", at_first)
+    for row in rows_for(*wanted, longest=2.1 * ONCE * PROCESSOR_SHARE):
+        assert (row.runs, row.remark) == (FEW, "")
+        assert row.ms == pytest.approx(row.samples * ONCE * 1e3)
+
+
 def test_automatic_sampling_tells_what_was_asked_and_its_own_estimate() -> None:
     row = rows()["auto", 0.005]
     assert row.asked == 0.005
