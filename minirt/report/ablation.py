@@ -20,7 +20,7 @@ from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.renderer import Renderer
 from minirt.report.bench import Run, take_turns, timed
 from minirt.report.metrics import Interval, of_median
-from minirt.report.pictures import Step
+from minirt.report.pictures import LEFT_OUT, Step
 from minirt.report.variants import Variant
 from minirt.scene import Scene
 
@@ -76,7 +76,8 @@ class Ablation:
         renderer, pixels = Renderer(self.threads, without=variant.without), np.zeros_like(self.pixels)
         compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
-        least = LEAST_PAIRS if draw().wall <= self.seconds else 1  # without culling, many shapes may take minutes
+        is_slow = draw().cpu / self.threads > LEFT_OUT * self.seconds  # many shapes may take minutes without culling
+        least = 1 if is_slow else LEAST_PAIRS
         turns = take_turns([self.draw, draw], least, PAIRS, self.seconds)
         changes = [change(base, other) for base, other in turns]
         low, high = of_median(changes)
