@@ -39,13 +39,16 @@ MEMORY = PACKET + (LEVELS + WIDTH) * PACKET_LEVEL
 class LeafGroup(NamedTuple):
     """The shapes of one kind. A leaf of the tree is a block of up to `WIDTH` shapes, in a structure of arrays."""
 
-    rows: Any  # a row for each shape
-    blocks: Any  # a block has `WIDTH` lanes for each number of a packed shape; lanes to spare repeat the last shape
+    rows: Any  # a row for each shape, or for each triangle of meshes
+    # A block has `WIDTH` lanes for each number of a packed shape, and for a mesh the row of its first triangle; lanes
+    # to spare repeat the last shape.
+    blocks: Any
     labels: Any  # (blocks, WIDTH, 2) index in the scene and extent of the shape in each lane of a block
     boxes: Any  # flat, for each block the low x, y, z and high x, y, z of its shapes; infinite in lanes to spare
     unbounded: Any  # (k,) indices in the scene of shapes without a bounding box; None for a kind that is not infinite
     number: int  # of the group in `Tree.slots`; -1 without rows
-    triangles: Any = None  # the rows have those of meshes, too
+    trees: Any = None  # of meshes: `minirt.kernel.beams.MeshTrees`
+    triangles: Any = None  # of meshes
 
 
 class Tree(NamedTuple):
@@ -56,7 +59,7 @@ class Tree(NamedTuple):
     """
 
     nodes: Any  # flat, `NODE` numbers for each node
-    extents: Any  # (n,) largest coordinate of each shape
+    extents: Any  # (n,) largest coordinate of each shape, 0 for triangles of meshes
     slots: Any  # (n, 2) index of each shape's group, and of its row in that group
     groups: Any  # a tuple of LeafGroup
 

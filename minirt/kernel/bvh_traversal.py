@@ -11,10 +11,13 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
+from minirt.kernel.beam_traversal import fold_over_mesh
+from minirt.kernel.beams import FACTOR
 from minirt.kernel.bvh_nodes import (
     DIRECTION,
     GROUPS,
     HIT,
+    INVERSE,
     NODE,
     ORIGIN,
     PACKET,
@@ -23,8 +26,10 @@ from minirt.kernel.bvh_nodes import (
     WIDTH,
     LeafGroup,
     Tree,
+    intersect_boxes,
     leaf_number,
     least_lane,
+    near_planes,
     packet_memory,
     rays_in_box,
     reference_of,
@@ -34,8 +39,9 @@ from minirt.kernel.bvh_nodes import (
     vec_at,
 )
 from minirt.kernel.bvh_single_rays import traverse
-from minirt.kernel.scene_arrays import has_rows, intersect, occludes, read, read_block, read_one
-from minirt.kernel.trace import Hit, closer_hit, for_each_kind
+from minirt.kernel.mesh_single_rays import triangles_along
+from minirt.kernel.scene_arrays import Group, has_rows, intersect, occludes, read, read_block, read_one, read_row
+from minirt.kernel.trace import Hit, closer_hit, for_each_kind, triangle_extent
 from minirt.lanes import (
     Mask,
     Number,
@@ -49,6 +55,7 @@ from minirt.lanes import (
     load,
     load_vec,
     lowest,
+    max_norm,
     outlined,
     save,
     save_vec,
@@ -58,14 +65,18 @@ from minirt.lanes import (
 
 FEW = 6  # rays of a packet that go on one by one
 FEW_IN_SMALL = 2  # likewise in a small tree, which has one node
+COHERENT = 0.25  # difference of directions up to which the rays of a packet enter a mesh together
+BESIDE = 2.0**-6  # difference of their origins, of half of the size of the mesh, likewise
 APART = 1.0  # square of the difference of directions from which on all rays of a packet go one by one
 
 
-def walk(visit: Callable[..., None], step: Callable[..., None], tree: Tree, memory: Any) -> None:
+def walk(
+    visit: Callable[..., None], step: Callable[..., None], touch: Callable[..., None], tree: Tree, memory: Any
+) -> None:
     """Intersect a packet with the shapes that its rays may hit, the nearest leaves first.
 
     `step(shape, index, extent, rays, memory)` may lessen the distances in `HIT`; where they are -infinity rays hit
-    nothing. `visit` does the same for single rays.
+    nothing. `visit` does the same for single rays, and `touch` for one of them and a triangle of a mesh.
 
     All rays traverse the tree together. Where few of them hit a box, each of these goes on by itself, see `traverse`;
     so does each ray of a packet whose directions differ much, unless the tree is small.
@@ -98,7 +109,7 @@ def walk(visit: Callable[..., None], step: Callable[..., None], tree: Tree, memo
             at += PACKET_LEVEL
             push_children(tree.nodes, reference, memory, at)
         else:
-            for_each_kind(visit_leaf, tree.groups, leaf_number(reference), (step, memory))
+            for_each_kind(visit_leaf, tree.groups, leaf_number(reference), (step, touch, memory))
 
 
 def are_few(rays: int, few: int) -> bool:
@@ -134,9 +145,9 @@ def visit_unbounded(group: LeafGroup, state: int, arguments: tuple[Callable[...,
     return state
 
 
-def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Any]) -> int:
+def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Callable[..., None], Any]) -> int:
     """Intersect a packet with the shapes of a leaf, if they are of this kind; the state is not changed."""
-    step, memory = arguments
+    step, touch, memory = arguments
     if has_rows(group.blocks) and leaf % GROUPS == group.number:
         block = leaf // GROUPS
         for i in range(WIDTH):
@@ -146,8 +157,56 @@ def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None]
             rays, _ = rays_in_box(group.boxes, at, memory, search_limit(load(memory, HIT)))
             if any(rays):
                 index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
-                step(read_one(group.blocks, block, i), index, extent, rays, memory)
+                if group.trees is None:
+                    step(read_one(group.blocks, block, i), index, extent, rays, memory)
+                else:
+                    visit_mesh(group, group.blocks[block, i], rays, step, touch, memory)
     return leaf
+
+
+def visit_mesh(
+    group: LeafGroup, row: int, rays: Mask, step: Callable[..., None], touch: Callable[..., None], memory: Any
+) -> None:
+    """Intersect some rays of a packet with a mesh, whose first triangle is in a row: by a beam if they are close
+    together, each by itself if not."""
+    origin, direction = load_vec(memory, ORIGIN), load_vec(memory, DIRECTION)
+    ray = first(rays)
+    aside = max_norm(direction - vec_at(memory, DIRECTION, ray))
+    away = max_norm(origin - vec_at(memory, ORIGIN, ray)) * group.trees.places[group.trees.numbers[row], FACTOR]
+    if any(rays & ((aside > COHERENT) | (away > BESIDE))):
+        remaining = bits(rays)
+        while remaining != 0:
+            triangles_along(touch, group, row, memory, lowest(remaining))
+            remaining = remaining & (remaining - 1)
+    else:
+        packet = origin, direction, splat(-1.0, direction.x)  # rays that start on no triangle
+        fold_over_mesh(step_of_triangle, reach_of_packet, group, row, packet, rays, 0, (step, memory))
+
+
+def step_of_triangle(
+    group: LeafGroup, row: int, index: int, rays: Mask, state: int, data: tuple[Callable[..., None], Any]
+) -> int:
+    """Intersect some rays of a packet with a triangle of a mesh; the state is not changed."""
+    step, memory = data
+    triangle = read_row(group, row)
+    step(triangle, index, triangle_extent(triangle), rays, memory)
+    return state
+
+
+def reach_of_packet(state: int, data: tuple[Callable[..., None], Any]) -> Number:
+    """Return how far to follow the rays of a packet."""
+    return search_limit(load(data[1], HIT))
+
+
+def visit_meshes(touch: Callable[..., None], group: LeafGroup, block: int, memory: Any, ray: int) -> None:
+    """Intersect one ray with the meshes of a block whose boxes it hits."""
+    planes = near_planes(vec_at(memory, INVERSE, ray))
+    limit = search_limit(memory[HIT + ray])
+    hit, _ = intersect_boxes(group.boxes, block * REFERENCES, memory, ray, planes, limit)
+    remaining = bits(hit)
+    while remaining != 0:
+        triangles_along(touch, group, group.blocks[block, lowest(remaining)], memory, ray)
+        remaining = remaining & (remaining - 1)
 
 
 @outlined
@@ -160,7 +219,7 @@ def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
     store_rays(memory, origin, direction)
     farthest = where(active, splat(inf, direction.x), -inf)
     save_vec(Vec(farthest, splat(-1.0, farthest), splat(0.0, farthest)), memory, HIT)
-    walk(closest_in_block, closest_of_shape, tree, memory)
+    walk(closest_in_block, closest_of_shape, closest_of_triangle, tree, memory)
     hit = load_vec(memory, HIT)
     return where(active, hit.x, inf), hit.y, hit.z, -1
 
@@ -175,6 +234,9 @@ def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
 
 def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Continue `closest_hit` of one ray over the shapes of a block, and store the result in `HIT`."""
+    if group.trees is not None:
+        visit_meshes(closest_of_triangle, group, block, memory, ray)
+        return
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
     candidates = bits(hit & (t <= search_limit(memory[HIT + ray])))
@@ -189,13 +251,26 @@ def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray:
         memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = best, owner, extent
 
 
+def closest_of_triangle(group: Group, row: int, index: int, memory: Any, ray: int) -> None:
+    """Continue `closest_hit` of one ray by a triangle of a mesh, and store the result in `HIT`."""
+    origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
+    triangle = read_row(group, row)
+    hit, t = intersect(triangle, origin, direction)
+    if hit:
+        state = memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray], -1
+        best, owner, extent, _ = closer_hit(
+            triangle, index, triangle_extent(triangle), True, t, origin, direction, state
+        )
+        memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = best, owner, extent
+
+
 @outlined
 def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active: Mask) -> Mask:
     """Trace shadow rays: the `active` rays that hit nothing nearer than `distance`."""
     memory = packet_memory()
     store_rays(memory, origin, direction)
     save(where(active, distance, -inf), memory, HIT)
-    walk(occlude_by_block, occlude_by_shape, tree, memory)
+    walk(occlude_by_block, occlude_by_shape, occlude_by_triangle, tree, memory)
     return load(memory, HIT) > -inf
 
 
@@ -208,6 +283,16 @@ def occlude_by_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
 
 def occlude_by_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
+    if group.trees is not None:
+        visit_meshes(occlude_by_triangle, group, block, memory, ray)
+        return
     origin, direction, distance = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray), memory[HIT + ray]
     occluded = any(occludes(read_block(group.blocks, block), origin, direction, distance))
+    memory[HIT + ray] = where(occluded, -inf, distance)
+
+
+def occlude_by_triangle(group: Group, row: int, index: int, memory: Any, ray: int) -> None:
+    """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a triangle of a mesh occludes it."""
+    origin, direction, distance = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray), memory[HIT + ray]
+    occluded = occludes(read_row(group, row), origin, direction, distance)
     memory[HIT + ray] = where(occluded, -inf, distance)

@@ -97,9 +97,14 @@ def closest_of_shape(group: Group, row: int, index: int, active: Mask, state: Hi
         hit, t = intersect(shape, origin, direction)
         extent = scene.colours_and_extents[index, 3]
         if group.triangles is not None:
-            extent = max(max_norm(shape.a), max_norm(shape.b), max_norm(shape.c))
+            extent = triangle_extent(shape)
         state = closer_hit(shape, index, extent, hit, t, origin, direction, state)
     return state
+
+
+def triangle_extent(shape: Any) -> float:
+    """Return the largest coordinate of a triangle of a mesh."""
+    return max(max_norm(shape.a), max_norm(shape.b), max_norm(shape.c))
 
 
 def search_limit(state: Hit, arguments: Arguments) -> Number:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_build import GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, LeafGroup, Tree
 from minirt.kernel.machine_code.library import bound
-from minirt.kernel.scene_arrays import kind_of, row_type
+from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
-from minirt.shapes import Kind
+from minirt.shapes import Kind, Mesh
 
+Meshes: TypeAlias = tuple[MeshTrees | None, MeshTriangles | None]
+NO_MESHES = None, None
 PARTS = 4  # into about so many a thread divides a tree before all threads divide these
 CACHE_LINE = 64  # bytes
 NO_LEAF = -GROUPS  # a reference for the lanes to spare of a node, which rays of NaN hit, too: to a leaf of no group
@@ -25,31 +28,39 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN, run: Run | None = None) -> Tree:
+def build_bvh(
+    shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN, run: Run | None = None, meshes: Meshes = NO_MESHES
+) -> Tree:
     """Build the BVH over the shapes with the functions of `kernel`, compiled or interpreted.
 
+    A mesh is one shape there, which has a tree of its own: `meshes` are those trees and the triangles of all meshes.
     All boxes are grown by a margin, a share of their coordinates. Where it is infinite each ray visits every leaf.
     """
+    first = shape_arrays.first_primitive[:-1]
+    slots, bounds, extents = shape_arrays.slots[first], shape_arrays.boxes, shape_arrays.colours_and_extents[:, 3]
     kinds_are_infinite = [element.infinite for element in shape_arrays.group_numbers]
-    is_infinite = np.array(kinds_are_infinite, bool)[shape_arrays.slots[:, 0]]
-    infinite, bounded = np.flatnonzero(is_infinite), np.flatnonzero(~is_infinite)
-    boxes, (bounds, extents) = np.empty((len(bounded), 8)), shape_arrays.primitive_boxes()
+    is_infinite = np.array(kinds_are_infinite, bool)[slots[:, 0]]
+    infinite, bounded = first[is_infinite], np.flatnonzero(~is_infinite)
+    boxes = np.empty((len(bounded), 8))
     boxes[:, :3], boxes[:, 3:6] = -bounds[bounded, 0], bounds[bounded, 1]
-    boxes[:, INDEX], boxes[:, GROUP] = bounded, shape_arrays.slots[bounded, 0]
+    boxes[:, INDEX], boxes[:, GROUP] = first[bounded], slots[bounded, 0]
     nodes, leaves = wide_nodes(boxes, kernel, margin=margin, run=run)
     # The blocks of each kind are in the order of the leaves.
     kinds, (places, spare) = boxes[leaves[:, 0], GROUP], lanes_of(leaves, WIDTH)
     blocks = np.zeros(len(leaves), np.int64)
     groups = []
-    for group, rows in enumerate(shape_arrays.rows):
+    for group, (kind, rows) in enumerate(zip(shape_arrays.group_numbers, shape_arrays.tables, strict=True)):
         of_group = np.flatnonzero(kinds == group)
         blocks[of_group] = np.arange(len(of_group))
         members = boxes[places[of_group], INDEX].astype(np.int64)
-        group_blocks = as_blocks(rows, shape_arrays.slots[members, 1])
+        group_blocks = shape_arrays.slots[members, 1]
+        if kind is not Mesh:
+            group_blocks = as_blocks(rows, group_blocks)
         labels = np.stack([members, extents[members]], axis=-1)
         leaf_boxes = aligned_copy(boxes_of(boxes[:, :6], places[of_group], spare[of_group], margin))
         unbounded = infinite[shape_arrays.slots[infinite, 0] == group] if kinds_are_infinite[group] else None
-        groups.append(LeafGroup(rows, group_blocks, labels, leaf_boxes, unbounded, group))
+        of_meshes = meshes if kind is Mesh else NO_MESHES
+        groups.append(LeafGroup(rows, group_blocks, labels, leaf_boxes, unbounded, group, *of_meshes))
     names = nodes[:, 6]
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)
@@ -57,7 +68,7 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any, margin: float = MARGIN, ru
     names[is_leaf] = -1 - (blocks[leaf] * GROUPS + kinds[leaf])
     names[names == 0] = NO_LEAF
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
-    return Tree(aligned_copy(nodes), extents, shape_arrays.slots, tuple(groups))
+    return Tree(aligned_copy(nodes), extents.copy(), shape_arrays.slots, tuple(groups))
 
 
 def lanes_of(leaves: np.ndarray, width: int) -> tuple[np.ndarray, np.ndarray]:

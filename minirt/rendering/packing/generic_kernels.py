@@ -19,7 +19,7 @@ from minirt.kernel.scene_arrays import TRIANGLE_ROW, Group, MeshTriangles, Scene
 from minirt.kernel.shading.lights import LightGrid
 from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
-from minirt.rendering.packing.bvh import block_type
+from minirt.rendering.packing.bvh import Meshes, block_type
 from minirt.rendering.packing.features import FEATURES, MAPS
 from minirt.shapes import ALL_KINDS, MESH, Kind
 
@@ -113,14 +113,22 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
             **dict.fromkeys(MAPS) | maps, used=integers(0), texels=NO_TEXELS, pictures=NO_PICTURES
         ),
         environment=Environment(NO_TEXELS, NO_PICTURES),
-        bvh=Tree(numbers(0), numbers(0), integers((0, 2)), tuple(map(empty_blocks, ALL_KINDS, rows))),
+        bvh=Tree(
+            numbers(0),
+            numbers(0),
+            integers((0, 2)),
+            tuple(empty_blocks(kind, each, (trees, triangles)) for kind, each in zip(ALL_KINDS, rows, strict=True)),
+        ),
         **features,
         background=numbers(3),
     )
     return whole._replace(**lacking)
 
 
-def empty_blocks(kind: Kind, rows: np.ndarray) -> bvh_nodes.LeafGroup:
+def empty_blocks(kind: Kind, rows: np.ndarray, meshes: Meshes) -> bvh_nodes.LeafGroup:
+    absent = np.zeros((0, WIDTH, 2)), np.zeros(0)
+    if kind is MESH:
+        blocks = np.zeros((0, WIDTH), np.int64)
+        return bvh_nodes.LeafGroup(np.zeros(0, TRIANGLE_ROW), blocks, *absent, None, ABSENT, *meshes)
     unbounded = np.zeros(0, np.int64) if kind.element.infinite else None
-    blocks = np.zeros(0, block_type(kind))
-    return bvh_nodes.LeafGroup(rows, blocks, np.zeros((0, WIDTH, 2)), np.zeros(0), unbounded, ABSENT)
+    return bvh_nodes.LeafGroup(rows, np.zeros(0, block_type(kind)), *absent, unbounded, ABSENT)

@@ -22,13 +22,11 @@ from minirt.shapes.smooth_triangle import BARYCENTRIC
 trees: WeakKeyDictionary[Triangles, np.ndarray] = WeakKeyDictionary()  # float32 nodes
 
 
-def pack_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> list[beams.MeshTrees | None]:
-    """Return for each kind of shape of a scene the trees of its meshes, or None for a kind that is no mesh."""
-    return [mesh_trees(shapes, kernel, run) if kind is Mesh else None for kind in shapes.group_numbers]
-
-
-def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> beams.MeshTrees:
-    """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet."""
+def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> beams.MeshTrees | None:
+    """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet, or None
+    without any."""
+    if Mesh not in shapes.group_numbers:
+        return None
     owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
     meshes: Any = [shapes.shapes[index] for index in owners]
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
