@@ -59,8 +59,8 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Nu
         waiting -= 1
         if memory[DEPTHS + waiting] > limit:
             continue
-        node = (start[0] + int(memory[waiting])) * NODE
-        if nodes[node + REFERENCES] < 0.0:
+        node = (start[0] + abs(int(memory[waiting]))) * NODE
+        if memory[waiting] < 0.0:
             children = bits(triangles_in_beam(nodes, node, beam, limit, memory))
             while children != 0:
                 place = lowest(children)

@@ -30,18 +30,17 @@ from minirt.lanes import (
     greatest,
     in_single,
     lane,
-    load,
+    load_half,
     max_norm,
     maximum,
     minimum,
     save,
-    save_vec,
     unit_roundoff,
     where,
     width,
 )
 
-WIDE = width(np.empty(0, np.float32))  # children of a node
+WIDE = width(np.empty(0, np.float32)) // 2  # children of a node
 # Numbers of a node: the low x, y, z and high x, y, z of its children, or the corners of the triangles of a leaf; and
 # references to them.
 NODE = 10 * WIDE
@@ -68,7 +67,8 @@ MEMORY = MARGINS + WIDE
 class MeshTrees(NamedTuple):
     """The trees of the k meshes of a scene.
 
-    The reference to a node is its number in its tree; the reference to triangle i is -1 - i. (float32 can count the
+    The reference to a node is its number in its tree, that to a leaf minus its number; the reference to triangle i is
+    -1 - i. (float32 can count the
     triangles of the largest file, see `minirt.meshes.obj`.)
     """
 
@@ -170,7 +170,7 @@ def boxes_in_beam(nodes: Any, node: int, beam: Beam, limit: float) -> tuple[Mask
     """Return which children of a node a beam may meet up to a depth, and the depths at which it enters their boxes.
 
     Depths are counted from the origin of the tree's space."""
-    near, far = beam.sign * load(nodes, node + beam.near), beam.sign * load(nodes, node + beam.far)
+    near, far = beam.sign * load_half(nodes, node + beam.near), beam.sign * load_half(nodes, node + beam.far)
     inside = (near <= limit) & (far >= beam.apex - beam.slack)
     inside = inside & between_slopes(nodes, node, beam.across) & between_slopes(nodes, node, beam.down)
     return inside, near
@@ -179,8 +179,8 @@ def boxes_in_beam(nodes: Any, node: int, beam: Beam, limit: float) -> tuple[Mask
 def between_slopes(nodes: Any, node: int, bounds: Bounds) -> Mask:
     """Return which boxes of a node lie at least partly between two planes through an apex."""
     axis, first_plane, last_plane, least, most, low, high = bounds
-    above = load(nodes, node + HIGH + axis) - least * load(nodes, node + first_plane) >= low
-    below = load(nodes, node + axis) - most * load(nodes, node + last_plane) <= high
+    above = load_half(nodes, node + HIGH + axis) - least * load_half(nodes, node + first_plane) >= low
+    below = load_half(nodes, node + axis) - most * load_half(nodes, node + last_plane) <= high
     return above & below
 
 
@@ -209,15 +209,22 @@ def triangles_in_beam(nodes: Any, node: int, beam: Beam, limit: float, memory: A
 
 def save_edge(corner: Vec, edge: Vec, memory: Any, at: int, beam: Beam) -> None:
     """Write the normals of the planes through the apex and an edge of each triangle, which begins at a corner."""
-    save_vec(cross(corner, edge), memory, PLANES + at)
+    save_children(cross(corner, edge), memory, PLANES + at)
     if not beam.is_point:
-        save_vec(edge, memory, EDGES + at)
+        save_children(edge, memory, EDGES + at)
+
+
+def save_children(v: Vec, memory: Any, at: int) -> None:
+    """Store a vector for each child of a node: all x, then all y, then all z."""
+    save(v.x, memory, at)
+    save(v.y, memory, at + WIDE)
+    save(v.z, memory, at + 2 * WIDE)
 
 
 def sheared(nodes: Any, at: int, beam: Beam) -> Vec:
     """Return corners of the triangles of a leaf: depths behind the apex, and places beside the central ray."""
-    depth = beam.sign * load(nodes, at + min(beam.near, beam.far))
-    x, y = load(nodes, at + beam.across[0]) - beam.passing.y, load(nodes, at + beam.down[0]) - beam.passing.z
+    depth = beam.sign * load_half(nodes, at + min(beam.near, beam.far))
+    x, y = load_half(nodes, at + beam.across[0]) - beam.passing.y, load_half(nodes, at + beam.down[0]) - beam.passing.z
     return Vec(depth - beam.apex, x - beam.central.y * depth, y - beam.central.z * depth)
 
 

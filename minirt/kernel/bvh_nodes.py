@@ -156,7 +156,7 @@ def reference_of(tagged: float) -> int:
 
 
 def least_lane(x: Number) -> float:
-    """Return the least of the lanes, none of which is negative or NaN."""
+    """Return the least of the lanes, none of which is NaN."""
     return float(x.min())
 
 

@@ -174,10 +174,7 @@ def visit_mesh(
     aside = max_norm(direction - vec_at(memory, DIRECTION, ray))
     away = max_norm(origin - vec_at(memory, ORIGIN, ray)) * group.trees.places[group.trees.numbers[row], FACTOR]
     if any(rays & ((aside > COHERENT) | (away > BESIDE))):
-        remaining = bits(rays)
-        while remaining != 0:
-            triangles_along(touch, group, row, memory, lowest(remaining))
-            remaining = remaining & (remaining - 1)
+        triangles_along(touch, group, row, memory, bits(rays))
     else:
         packet = origin, direction, splat(-1.0, direction.x)  # rays that start on no triangle
         fold_over_mesh(step_of_triangle, reach_of_packet, group, row, packet, rays, 0, (step, memory))
@@ -205,7 +202,7 @@ def visit_meshes(touch: Callable[..., None], group: LeafGroup, block: int, memor
     hit, _ = intersect_boxes(group.boxes, block * REFERENCES, memory, ray, planes, limit)
     remaining = bits(hit)
     while remaining != 0:
-        triangles_along(touch, group, group.blocks[block, lowest(remaining)], memory, ray)
+        triangles_along(touch, group, group.blocks[block, lowest(remaining)], memory, 1 << ray)
         remaining = remaining & (remaining - 1)
 
 

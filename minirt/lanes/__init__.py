@@ -187,6 +187,15 @@ def load(values: Any, start: int) -> Number:
     return values[start : start + width(values)].copy()
 
 
+def load_half(values: Any, start: int) -> Number:
+    """Load half as many float32 as a packet has rays, from index `start` on: as many as a register of AVX-512 holds."""
+    return values[start : start + width(values) // 2].copy()
+
+
+def prefetch(values: Any, start: int) -> None:
+    """Let the processor load the numbers around index `start` of an array into its cache, without waiting for them."""
+
+
 def in_single(x: Number) -> Number:
     """Return the numbers of rays, rounded to float32."""
     return x.astype(np.float32)
@@ -202,7 +211,7 @@ def gather(values: Any, start: int, indices: Number) -> Number:
 
 def save(x: Number, values: Any, start: int) -> None:
     """Store the numbers of all rays in an array, from index `start` on."""
-    values[start : start + width(values)] = x
+    values[start : start + np.size(x)] = x
 
 
 def load_vec(values: Any, start: int) -> Vec:

@@ -95,7 +95,8 @@ def register_memory(function: Callable[..., Any], number: types.Type, size: int)
 
 register_memory(bvh_nodes.packet_memory, types.float64, bvh_nodes.MEMORY)
 register_memory(beams.beam_memory, types.float32, beams.MEMORY)
-register_memory(mesh_single_rays.ray_memory, types.float32, mesh_single_rays.MEMORY)
+register_memory(mesh_single_rays.ray_numbers, types.float32, mesh_single_rays.MEMORY)
+register_memory(mesh_single_rays.ray_integers, types.int64, mesh_single_rays.INTEGERS)
 register_memory(whitted.ray_stack, types.float64, whitted.STACK_SIZE)
 
 
@@ -118,7 +119,7 @@ def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> A
     return builder.sext(builder.trunc(builder.bitcast(args[0], INTEGER), ir.IntType(32)), INTEGER)
 
 
-@register(bvh_nodes.least_lane, lambda x: types.float64)
+@register(bvh_nodes.least_lane, lambda x: x.number if isinstance(x, Lanes) else None)
 def _least_lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return reduced(builder, "fmin", args[0])
 

@@ -68,9 +68,29 @@ def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.load(place, align=sig.return_type.number.bitwidth // 8)
 
 
+def half_type(values: types.Type, start: types.Type) -> types.Type | None:
+    """Return the type of the lanes that `load_half` loads."""
+    lanes = load_type(values, start)
+    return lanes and Lanes(lanes.number, lanes.count // 2)
+
+
+@register(lanes.load_half, half_type)
+def _load_half(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return _load(context, builder, sig, args)
+
+
+@register(lanes.prefetch, lambda values, start: types.none if load_type(values, start) else None)
+def _prefetch(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    place, integer = address(context, builder, sig.args, args, ir.IntType(8)), ir.IntType(32)
+    kind = ir.FunctionType(ir.VoidType(), [ADDRESS, integer, integer, integer])
+    function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
+    builder.call(function, [place, *(ir.Constant(integer, each) for each in (0, 3, 1))])  # data to read, in all caches
+    return context.get_dummy_value()
+
+
 def save_type(x: types.Type, values: types.Type, start: types.Type) -> types.Type | None:
     """Return the type of no result, for lanes and an array or row of their numbers; None for other arguments."""
-    return types.none if isinstance(x, Lanes) and load_type(values, start) == x else None
+    return types.none if isinstance(x, Lanes) and x in (load_type(values, start), half_type(values, start)) else None
 
 
 @register(lanes.save, save_type)

@@ -67,7 +67,7 @@ def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.nda
         boxes[:, INDEX] = np.arange(len(boxes))
         nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE, run=run)
         names = nodes[:, 6]
-        names[names < 0] = len(nodes) - 1 - names[names < 0]
+        names[names < 0] -= len(nodes) - 1
         places, spare = lanes_of(leaves, beams.WIDE)
         inside = boxes[places, INDEX].astype(np.int64)
         del boxes
