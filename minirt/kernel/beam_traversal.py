@@ -9,8 +9,6 @@ from typing import Any
 from minirt.kernel.beams import (
     CHILDREN,
     DEPTHS,
-    NODE,
-    REFERENCES,
     TINY,
     Beam,
     beam_memory,
@@ -19,7 +17,8 @@ from minirt.kernel.beams import (
     boxes_in_beam,
     triangles_in_beam,
 )
-from minirt.kernel.scene_arrays import Group
+from minirt.kernel.mesh_nodes import NODE, REFERENCES, prefetch_node
+from minirt.kernel.scene_arrays import Group, prefetch_triangle
 from minirt.lanes import Mask, Number, Vec, any, bits, fabs, greatest, lowest, save, where
 
 Visit = Callable[..., Any]
@@ -62,6 +61,11 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Nu
         node = (start[0] + abs(int(memory[waiting]))) * NODE
         if memory[waiting] < 0.0:
             children = bits(triangles_in_beam(nodes, node, beam, limit, memory))
+            candidates = children
+            while candidates != 0:
+                triangle = int(-1.0 - nodes[node + REFERENCES + lowest(candidates)])
+                candidates = candidates & (candidates - 1)
+                prefetch_triangle(group.triangles, row + triangle)
             while children != 0:
                 place = lowest(children)
                 triangle = int(-1.0 - nodes[node + REFERENCES + place])
@@ -77,7 +81,9 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Nu
             while children != 0:
                 child = lowest(children)
                 children = children & (children - 1)
-                push(memory, waiting, nodes[node + REFERENCES + child], memory[CHILDREN + child])
+                reference = nodes[node + REFERENCES + child]
+                prefetch_node(nodes, start[0] + abs(int(reference)))
+                push(memory, waiting, reference, memory[CHILDREN + child])
                 waiting += 1
     return state
 

@@ -1,9 +1,5 @@
 """Beams of coherent rays, and which boxes and triangles in the tree of a mesh they meet.
 
-The tree of a mesh is a wide bounding volume hierarchy in a space of its own, whose unit is half of the mesh's size: it
-is built once for a file, and a mesh that is moved, turned or scaled keeps it. The triangles lie in the scene; leaves
-have float32 copies of their corners, by which a beam and then each ray is tested before a triangle itself.
-
 A beam encloses rays that share an apex. Along the axis on which they advance most, its bounds are the least and the
 greatest slope of the rays across it: so four products decide for all children of a node at once whether the beam
 meets their boxes (Boulos, Wald and Shirley, Geometric and Arithmetic Culling Methods for Entire Ray Packets, 2006).
@@ -17,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from minirt.kernel.mesh_nodes import APART, CENTRE, FACTOR, HIGH, HUGE, ROUNDING, WIDE
 from minirt.kernel.scene_arrays import LEVELS, vector
 from minirt.lanes import (
     Mask,
@@ -37,23 +34,13 @@ from minirt.lanes import (
     save,
     unit_roundoff,
     where,
-    width,
 )
 
-WIDE = width(np.empty(0, np.float32)) // 2  # children of a node
-# Numbers of a node: the low x, y, z and high x, y, z of its children, or the corners of the triangles of a leaf; and
-# references to them.
-NODE = 10 * WIDE
-HIGH, REFERENCES = 3 * WIDE, 9 * WIDE  # offsets in a node
-ROUNDING = 2.0**-20  # of the space of a tree: rounding of boxes, and of their test
 ROUNDINGS = 64  # unit roundoffs of the coordinates: rounding of rays and of triangles
 LOOSE = 4.0  # a beam that is widened by so much encloses the whole tree
 SPREAD = 0.25  # most difference of two slopes in a beam
-HUGE = 1e30  # more than any number of a box; a coordinate of triangles that no ray hits, in lanes to spare
 WIDENING = 4.0  # of a beam whose rays do not leave the apex itself, by so many times their distance from it
 TINY = 2.0**-100  # a ray that is shorter meets nothing
-
-CENTRE, FACTOR, APART = 9, 12, 13  # columns of `MeshTrees.places`
 
 # Memory of a traversal: references to nodes that wait, the depths at which the beam enters them, and those of a node;
 # of the triangles of a leaf, planes, edges and margins, see `between_planes`.
@@ -62,22 +49,6 @@ CHILDREN = 2 * DEPTHS
 PLANES = CHILDREN + WIDE
 EDGES, MARGINS = PLANES + 9 * WIDE, PLANES + 18 * WIDE
 MEMORY = MARGINS + WIDE
-
-
-class MeshTrees(NamedTuple):
-    """The trees of the k meshes of a scene.
-
-    The reference to a node is its number in its tree, that to a leaf minus its number; the reference to triangle i is
-    -1 - i. (float32 can count the
-    triangles of the largest file, see `minirt.meshes.obj`.)
-    """
-
-    nodes: Any  # float32, flat, `NODE` numbers for each node of all trees
-    starts: Any  # (k, 2) the number of the first node of each tree, and the index in the scene of its first triangle
-    # (k, 14) from the scene to the space of a tree: a rotation by rows, the point that is subtracted before it, the
-    # factor behind it; and how far from that point is the position of the mesh
-    places: Any
-    numbers: Any  # (rows,) the number of the mesh whose first triangle is in a row
 
 
 Bounds = tuple[int, int, int, float, float, float, float]

@@ -21,6 +21,7 @@ MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of dis
 TINY = 2.0**-500  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
 NODE = 7 * WIDTH  # numbers in a node: the low x, y, z and high x, y, z of its children, and references to them
 REFERENCES = 6 * WIDTH  # offset of the references in a node
+LINE = 8  # float64 in a line of the processor's cache
 GROUPS = 32  # groups that references to leaves can tell apart: more than there are kinds
 REFERENCE_BITS = 0xFFFFFFFF  # the bits of a float64 that hold a reference
 
@@ -47,7 +48,7 @@ class LeafGroup(NamedTuple):
     boxes: Any  # flat, for each block the low x, y, z and high x, y, z of its shapes; infinite in lanes to spare
     unbounded: Any  # (k,) indices in the scene of shapes without a bounding box; None for a kind that is not infinite
     number: int  # of the group in `Tree.slots`; -1 without rows
-    trees: Any = None  # of meshes: `minirt.kernel.beams.MeshTrees`
+    trees: Any = None  # of meshes: `minirt.kernel.mesh_nodes.MeshTrees`
     triangles: Any = None  # of meshes
 
 

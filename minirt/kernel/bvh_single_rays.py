@@ -16,7 +16,9 @@ from minirt.kernel.bvh_nodes import (
     GROUPS,
     HIT,
     INVERSE,
+    LINE,
     NEXT,
+    NODE,
     REFERENCES,
     STACK,
     STACK_LEVEL,
@@ -37,7 +39,7 @@ from minirt.kernel.bvh_nodes import (
 )
 from minirt.kernel.scene_arrays import has_rows
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import any, load, lowest, outlined, save, where
+from minirt.lanes import any, load, lowest, outlined, prefetch, save, where
 
 
 @outlined
@@ -69,7 +71,7 @@ def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int, sta
         while remaining != 0:
             ray = lowest(remaining)
             remaining = remaining & (remaining - 1)
-            node, leaf, last = advance(memory, ray)
+            node, leaf, last = advance(tree.nodes, memory, ray)
             at_node = at_node | node << ray
             at_leaf = at_leaf | leaf << ray
             unfinished = unfinished ^ last << ray
@@ -87,7 +89,7 @@ def descend(nodes: Any, memory: Any, ray: int) -> int:
     return pushed
 
 
-def advance(memory: Any, ray: int) -> tuple[int, int, int]:
+def advance(nodes: Any, memory: Any, ray: int) -> tuple[int, int, int]:
     """Pop the nearest child from the top row of a ray's stack, and make it the next to visit.
 
     Distances in rows are tagged with references, see `minirt.kernel.bvh_nodes`; a row in which nothing else is within
@@ -106,7 +108,10 @@ def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     put_integer(memory, TOP + ray, top)
     memory[NEXT + ray] = nearest
     in_reach = nearest < limit
-    is_node = reference_of(nearest) >= 0
+    reference = reference_of(nearest)
+    is_node = reference >= 0
+    for line in range(0, NODE, LINE):
+        prefetch(nodes, max(reference, 0) + line)
     return int(in_reach & is_node), int(in_reach & (not is_node)), int(top < STACK)
 
 

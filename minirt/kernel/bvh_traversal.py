@@ -11,13 +11,11 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.beam_traversal import fold_over_mesh
-from minirt.kernel.beams import FACTOR
+from minirt.kernel.bvh_meshes import visit_mesh, visit_meshes
 from minirt.kernel.bvh_nodes import (
     DIRECTION,
     GROUPS,
     HIT,
-    INVERSE,
     NODE,
     ORIGIN,
     PACKET,
@@ -26,10 +24,8 @@ from minirt.kernel.bvh_nodes import (
     WIDTH,
     LeafGroup,
     Tree,
-    intersect_boxes,
     leaf_number,
     least_lane,
-    near_planes,
     packet_memory,
     rays_in_box,
     reference_of,
@@ -39,7 +35,6 @@ from minirt.kernel.bvh_nodes import (
     vec_at,
 )
 from minirt.kernel.bvh_single_rays import traverse
-from minirt.kernel.mesh_single_rays import triangles_along
 from minirt.kernel.scene_arrays import Group, has_rows, intersect, occludes, read, read_block, read_one, read_row
 from minirt.kernel.trace import Hit, closer_hit, for_each_kind, triangle_extent
 from minirt.lanes import (
@@ -55,7 +50,6 @@ from minirt.lanes import (
     load,
     load_vec,
     lowest,
-    max_norm,
     outlined,
     save,
     save_vec,
@@ -65,8 +59,6 @@ from minirt.lanes import (
 
 FEW = 6  # rays of a packet that go on one by one
 FEW_IN_SMALL = 2  # likewise in a small tree, which has one node
-COHERENT = 0.25  # difference of directions up to which the rays of a packet enter a mesh together
-BESIDE = 2.0**-6  # difference of their origins, of half of the size of the mesh, likewise
 APART = 1.0  # square of the difference of directions from which on all rays of a packet go one by one
 
 
@@ -162,48 +154,6 @@ def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None]
                 else:
                     visit_mesh(group, group.blocks[block, i], rays, step, touch, memory)
     return leaf
-
-
-def visit_mesh(
-    group: LeafGroup, row: int, rays: Mask, step: Callable[..., None], touch: Callable[..., None], memory: Any
-) -> None:
-    """Intersect some rays of a packet with a mesh, whose first triangle is in a row: by a beam if they are close
-    together, each by itself if not."""
-    origin, direction = load_vec(memory, ORIGIN), load_vec(memory, DIRECTION)
-    ray = first(rays)
-    aside = max_norm(direction - vec_at(memory, DIRECTION, ray))
-    away = max_norm(origin - vec_at(memory, ORIGIN, ray)) * group.trees.places[group.trees.numbers[row], FACTOR]
-    if any(rays & ((aside > COHERENT) | (away > BESIDE))):
-        triangles_along(touch, group, row, memory, bits(rays))
-    else:
-        packet = origin, direction, splat(-1.0, direction.x)  # rays that start on no triangle
-        fold_over_mesh(step_of_triangle, reach_of_packet, group, row, packet, rays, 0, (step, memory))
-
-
-def step_of_triangle(
-    group: LeafGroup, row: int, index: int, rays: Mask, state: int, data: tuple[Callable[..., None], Any]
-) -> int:
-    """Intersect some rays of a packet with a triangle of a mesh; the state is not changed."""
-    step, memory = data
-    triangle = read_row(group, row)
-    step(triangle, index, triangle_extent(triangle), rays, memory)
-    return state
-
-
-def reach_of_packet(state: int, data: tuple[Callable[..., None], Any]) -> Number:
-    """Return how far to follow the rays of a packet."""
-    return search_limit(load(data[1], HIT))
-
-
-def visit_meshes(touch: Callable[..., None], group: LeafGroup, block: int, memory: Any, ray: int) -> None:
-    """Intersect one ray with the meshes of a block whose boxes it hits."""
-    planes = near_planes(vec_at(memory, INVERSE, ray))
-    limit = search_limit(memory[HIT + ray])
-    hit, _ = intersect_boxes(group.boxes, block * REFERENCES, memory, ray, planes, limit)
-    remaining = bits(hit)
-    while remaining != 0:
-        triangles_along(touch, group, group.blocks[block, lowest(remaining)], memory, 1 << ray)
-        remaining = remaining & (remaining - 1)
 
 
 @outlined

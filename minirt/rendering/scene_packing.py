@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Sequence
-from itertools import count, islice
+from itertools import islice
 from math import inf
 from typing import Any
 
@@ -176,8 +176,10 @@ class Packing:
             light_buffer_cells=cells,
             **lists_of_lights,
             groups=tuple(
-                Group(*each, *(of_meshes if kind is Mesh else NO_MESHES))
-                for kind, *each in zip(shapes.group_numbers, shapes.tables, in_tiles.starts, light_starts, count())
+                Group(table, by_tile, by_cell, number, *(of_meshes if kind is Mesh else NO_MESHES))
+                for (kind, number), table, by_tile, by_cell in zip(
+                    shapes.group_numbers.items(), shapes.tables, in_tiles.starts, light_starts, strict=True
+                )
             ),
             spots=spots,
             light_grid=cached(grid_key, lights.light_grid, emitted, spots),

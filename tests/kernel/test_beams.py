@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from minirt.fields import MeshFile
-from minirt.kernel import beam_traversal, beams, interpreted
+from minirt.kernel import beam_traversal, beams, interpreted, mesh_nodes
 from minirt.kernel.scene_arrays import Group
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
-from minirt.rendering.packing.mesh_trees import mesh_trees
+from minirt.rendering.packing.mesh_trees import mesh_trees, place_meshes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import MESH, Mesh
 from tests.meshes.examples import GREY, ball, soup
@@ -56,7 +56,7 @@ def visited(rays: Packet, number: type = np.float64, own: int = -1) -> np.ndarra
     arrays.update((mesh, mesh.replace(scale=2 * mesh.scale)))
     trees = mesh_trees(arrays, interpreted)
     if number is np.float32:
-        trees.places[:, beams.CENTRE : beams.FACTOR] -= eye
+        trees.places[:, mesh_nodes.CENTRE : mesh_nodes.FACTOR] -= eye
         trees, eye = trees._replace(places=trees.places.astype(np.float32)), np.zeros(3)
     lanes = LANES[number]
     way = Vec(*np.tile(directions, lanes // 16).astype(number))
@@ -70,7 +70,7 @@ def visited(rays: Packet, number: type = np.float64, own: int = -1) -> np.ndarra
         return np.full(lanes, np.inf)
 
     apexes = Vec(*(np.full(lanes, part, number) for part in eye))
-    group = Group(arrays.rows[0], None, None, 0, trees)
+    group = Group(arrays.rows[0], None, None, 0, trees, place_meshes(arrays, interpreted))
     active = np.ones(lanes, bool)
     starts = apexes, way, np.full(lanes, own, number)
     beam_traversal.fold_over_mesh(visit, reach, group, 0, starts, active, None, None)

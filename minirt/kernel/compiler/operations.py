@@ -10,7 +10,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
-from minirt.kernel import beams, bvh_nodes, mesh_single_rays, scene_arrays
+from minirt.kernel import beams, bvh_nodes, mesh_rays, mesh_single_rays, scene_arrays
 from minirt.kernel.compiler.by_reference import length
 from minirt.kernel.pixels import OPAQUE, PACKET_HEIGHT, fetch_add, store_block
 from minirt.kernel.shading import whitted
@@ -95,7 +95,7 @@ def register_memory(function: Callable[..., Any], number: types.Type, size: int)
 
 register_memory(bvh_nodes.packet_memory, types.float64, bvh_nodes.MEMORY)
 register_memory(beams.beam_memory, types.float32, beams.MEMORY)
-register_memory(mesh_single_rays.ray_numbers, types.float32, mesh_single_rays.MEMORY)
+register_memory(mesh_rays.ray_numbers, types.float32, mesh_rays.MEMORY)
 register_memory(mesh_single_rays.ray_integers, types.int64, mesh_single_rays.INTEGERS)
 register_memory(whitted.ray_stack, types.float64, whitted.STACK_SIZE)
 

@@ -6,10 +6,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_build import GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, LeafGroup, Tree
 from minirt.kernel.machine_code.library import bound
+from minirt.kernel.mesh_nodes import MeshTrees
 from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run

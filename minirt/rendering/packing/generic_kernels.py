@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel import bvh_nodes
-from minirt.kernel.beams import MeshTrees
 from minirt.kernel.bvh_nodes import WIDTH, Tree
+from minirt.kernel.mesh_nodes import MeshTrees
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import TRIANGLE_ROW, Group, MeshTriangles, SceneArrays, row_type
 from minirt.kernel.shading.lights import LightGrid

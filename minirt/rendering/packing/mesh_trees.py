@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from minirt.kernel import beams
+from minirt.kernel import mesh_nodes
 from minirt.kernel.bvh_build import INDEX
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import MeshTriangles
@@ -22,7 +22,7 @@ from minirt.shapes.smooth_triangle import BARYCENTRIC
 trees: WeakKeyDictionary[Triangles, np.ndarray] = WeakKeyDictionary()  # float32 nodes
 
 
-def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> beams.MeshTrees | None:
+def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh_nodes.MeshTrees | None:
     """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet, or None
     without any."""
     if Mesh not in shapes.group_numbers:
@@ -30,17 +30,19 @@ def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> beam
     owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
     meshes: Any = [shapes.shapes[index] for index in owners]
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
-    roots = np.cumsum([0, *map(len, nodes[:-1])]) // beams.NODE
+    roots = np.cumsum([0, *map(len, nodes[:-1])]) // mesh_nodes.NODE
     first = shapes.first_primitive[owners]
     rows = shapes.slots[first, 1]
     numbers = np.zeros(rows[-1] + 1, np.int64)
     numbers[rows] = np.arange(len(rows))
     joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
-    return beams.MeshTrees(joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers)
+    return mesh_nodes.MeshTrees(
+        joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers
+    )
 
 
 def place_of(mesh: Mesh) -> np.ndarray:
-    """Return a row of `minirt.kernel.beams.MeshTrees.places`."""
+    """Return a row of `minirt.kernel.mesh_nodes.MeshTrees.places`."""
     middle, size = space_of(mesh.triangles)
     (centre,) = mesh.placed(middle[None])
     apart = np.abs(centre - mesh.position).max()
@@ -65,16 +67,16 @@ def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.nda
                 boxes[start : start + BLOCK, axis] = -np.minimum(np.minimum(a, b), c)
                 boxes[start : start + BLOCK, 3 + axis] = np.maximum(np.maximum(a, b), c)
         boxes[:, INDEX] = np.arange(len(boxes))
-        nodes, leaves = wide_nodes(boxes, kernel, beams.WIDE, run=run)
+        nodes, leaves = wide_nodes(boxes, kernel, mesh_nodes.WIDE, run=run)
         names = nodes[:, 6]
         names[names < 0] -= len(nodes) - 1
-        places, spare = lanes_of(leaves, beams.WIDE)
+        places, spare = lanes_of(leaves, mesh_nodes.WIDE)
         inside = boxes[places, INDEX].astype(np.int64)
         del boxes
-        packed = np.zeros((len(nodes) + len(leaves), beams.NODE // beams.WIDE, beams.WIDE), np.float32)
+        packed = np.zeros((len(nodes) + len(leaves), mesh_nodes.NODE // mesh_nodes.WIDE, mesh_nodes.WIDE), np.float32)
         packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], names
         corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[inside]]
-        corners[spare] = beams.HUGE
+        corners[spare] = mesh_nodes.HUGE
         packed[len(nodes) :, :9] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
         packed[len(nodes) :, -1] = -1 - inside
         trees[triangles] = aligned_copy(packed)
