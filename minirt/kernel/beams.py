@@ -27,7 +27,6 @@ from minirt.lanes import (
     greatest,
     in_single,
     lane,
-    load_half,
     max_norm,
     maximum,
     minimum,
@@ -35,6 +34,7 @@ from minirt.lanes import (
     unit_roundoff,
     where,
 )
+from minirt.lanes.memory import load_half
 
 ROUNDINGS = 64  # unit roundoffs of the coordinates: rounding of rays and of triangles
 LOOSE = 4.0  # a beam that is widened by so much encloses the whole tree

@@ -39,7 +39,8 @@ from minirt.kernel.bvh_nodes import (
 )
 from minirt.kernel.scene_arrays import has_rows
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import any, load, lowest, outlined, prefetch, save, where
+from minirt.lanes import any, load, lowest, outlined, save, where
+from minirt.lanes.memory import prefetch
 
 
 @outlined

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.lanes import prefetch, width
+from minirt.lanes import width
+from minirt.lanes.memory import prefetch
 
 WIDE = width(np.empty(0, np.float32)) // 2  # children of a node
 # Numbers of a node: the low x, y, z and high x, y, z of its children, or the corners of the triangles of a leaf; and
@@ -32,8 +33,7 @@ class MeshTrees(NamedTuple):
     """The trees of the k meshes of a scene.
 
     The reference to a node is its number in its tree, that to a leaf minus its number; the reference to triangle i is
-    -1 - i. (float32 can count the
-    triangles of the largest file, see `minirt.meshes.obj`.)
+    -1 - i. (float32 can count the triangles of the largest file, see `minirt.meshes.obj`.)
     """
 
     nodes: Any  # float32, flat, `NODE` numbers for each node of all trees

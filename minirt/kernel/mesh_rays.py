@@ -22,7 +22,6 @@ from minirt.lanes import (
     dot,
     fabs,
     in_single,
-    load_half,
     max_norm,
     maximum,
     minimum,
@@ -30,6 +29,7 @@ from minirt.lanes import (
     unit_roundoff,
     where,
 )
+from minirt.lanes.memory import load_half
 
 FAR = 4.0  # more than the depth of anything in a tree
 TINY = 2.0**-60  # replaces 0 in a direction

@@ -28,12 +28,12 @@ from minirt.lanes import (
     any,
     bits,
     first,
-    load_half,
     load_vec,
     lowest,
     save,
     where,
 )
+from minirt.lanes.memory import load_half
 
 # Integers of a traversal: for each ray the node that it visits next, the top row of its stack, and which triangles of a
 # leaf it may hit; and for each row the node whose children are there.

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 
-from minirt.lanes import Mask, Number, Vec, prefetch, rounded_product
+from minirt.lanes import Mask, Number, Vec, rounded_product
+from minirt.lanes.memory import prefetch
 from minirt.shapes import ALL_KINDS, Kind
 from minirt.shapes.shape import Position
 from minirt.shapes.smooth_triangle import PackedMeshTriangle

@@ -187,15 +187,6 @@ def load(values: Any, start: int) -> Number:
     return values[start : start + width(values)].copy()
 
 
-def load_half(values: Any, start: int) -> Number:
-    """Load half as many float32 as a packet has rays, from index `start` on: as many as a register of AVX-512 holds."""
-    return values[start : start + width(values) // 2].copy()
-
-
-def prefetch(values: Any, start: int) -> None:
-    """Let the processor load the numbers around index `start` of an array into its cache, without waiting for them."""
-
-
 def in_single(x: Number) -> Number:
     """Return the numbers of rays, rounded to float32."""
     return x.astype(np.float32)

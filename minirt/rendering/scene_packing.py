@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Sequence
-from itertools import islice
+from itertools import count, islice
 from math import inf
 from typing import Any
 
@@ -18,10 +18,10 @@ from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.kernel.shading.lights import LightGrid
 from minirt.rendering.notes import notes
 from minirt.rendering.packing import camera, light_buffers, lights, materials, visibility
-from minirt.rendering.packing.bvh import NO_MESHES, Meshes, build_bvh
+from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import Crop, Place
 from minirt.rendering.packing.features import APERTURES, DEPTH, SECONDARY, SPREAD, features, fits_single
-from minirt.rendering.packing.mesh_trees import mesh_trees, place_meshes
+from minirt.rendering.packing.mesh_trees import pack_meshes
 from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.view import View, all_but_pose
@@ -79,16 +79,9 @@ class Packing:
         arrays = self.shape_arrays_for(*runs)
         if not self.bvh:
             margin = inf if BOXES in self.without else MARGIN
-            self.bvh = build_bvh(arrays, self.kernel, margin, self.run, self.meshes())
+            meshes = self.cache.get("meshes") or pack_meshes(arrays, self.kernel, self.run)
+            self.bvh = build_bvh(arrays, self.kernel, margin, self.run, meshes)
         return self.bvh
-
-    def meshes(self) -> Meshes:
-        """Return the trees of the meshes, and their triangles, which are kept until other shapes are packed."""
-        if "meshes" not in self.cache:
-            arrays = self.shape_arrays, self.kernel, self.run
-            self.cache["meshes"] = mesh_trees(*arrays), place_meshes(*arrays)
-        of_meshes: Meshes = self.cache["meshes"]
-        return of_meshes
 
     def pack(
         self, scene: Scene, width: int, height: int, crop: Crop | None = None, samples: object = None
@@ -125,7 +118,7 @@ class Packing:
         """
         width, height, crop = place
         shapes = self.shape_arrays_for(*scene.runs)
-        before, self.cache = self.cache, {"meshes": self.meshes()}
+        before, self.cache = self.cache, {}
 
         def cached(key: Hashable, compute: Callable[..., Any], *arguments: Any) -> Any:
             self.cache[key] = before[key] if key in before else compute(*arguments)
@@ -156,7 +149,8 @@ class Packing:
         emitted = lights.positions_and_intensities(sources, colours)
         grid_key = "light grid", emitted.tobytes(), spots is None or spots.tobytes()
         needs_bvh = "reflective" in used or (len(shapes.slots) > light_buffers.SMALL and not SPREAD.isdisjoint(used))
-        of_meshes = self.meshes()
+        meshes = cached("meshes", pack_meshes, shapes, self.kernel, self.run)
+        trees, triangles = ([part if kind is Mesh else None for kind in shapes.group_numbers] for part in meshes)
         tinted = cached("tinted", materials.tinted, shapes) if "media" in used else []
         paint: Any = scene.background and scene.background.paint
         environment_key, colours_key = ("environment", paint, colours), ("colours", colours.decodes)
@@ -175,12 +169,7 @@ class Packing:
             square=square,
             light_buffer_cells=cells,
             **lists_of_lights,
-            groups=tuple(
-                Group(table, by_tile, by_cell, number, *(of_meshes if kind is Mesh else NO_MESHES))
-                for (kind, number), table, by_tile, by_cell in zip(
-                    shapes.group_numbers.items(), shapes.tables, in_tiles.starts, light_starts, strict=True
-                )
-            ),
+            groups=tuple(map(Group, shapes.tables, in_tiles.starts, light_starts, count(), trees, triangles)),
             spots=spots,
             light_grid=cached(grid_key, lights.light_grid, emitted, spots),
             soft=lights.light_sizes(sources) if "soft" in used else None,

@@ -11,6 +11,7 @@ from numba.core import cgutils
 from numba.extending import register_model
 
 from minirt import lanes
+from minirt.lanes import memory
 from minirt.lanes.compiled.types import I32, Lanes, Mask, ValueModel, constant, llvm, register
 
 ADDRESS = ir.IntType(8).as_pointer()
@@ -74,12 +75,12 @@ def half_type(values: types.Type, start: types.Type) -> types.Type | None:
     return lanes and Lanes(lanes.number, lanes.count // 2)
 
 
-@register(lanes.load_half, half_type)
+@register(memory.load_half, half_type)
 def _load_half(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return _load(context, builder, sig, args)
 
 
-@register(lanes.prefetch, lambda values, start: types.none if load_type(values, start) else None)
+@register(memory.prefetch, lambda values, start: types.none if load_type(values, start) else None)
 def _prefetch(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     place, integer = address(context, builder, sig.args, args, ir.IntType(8)), ir.IntType(32)
     kind = ir.FunctionType(ir.VoidType(), [ADDRESS, integer, integer, integer])

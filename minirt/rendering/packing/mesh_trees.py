@@ -13,13 +13,18 @@ from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import MeshTriangles
 from minirt.meshes import Triangles
 from minirt.meshes.triangles import BLOCK
-from minirt.rendering.packing.bvh import aligned_copy, lanes_of, wide_nodes
+from minirt.rendering.packing.bvh import Meshes, aligned_copy, lanes_of, wide_nodes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.smooth_triangle import BARYCENTRIC
 
 trees: WeakKeyDictionary[Triangles, np.ndarray] = WeakKeyDictionary()  # float32 nodes
+
+
+def pack_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Meshes:
+    """Return the trees of the meshes of a scene, and the triangles of all of them."""
+    return mesh_trees(shapes, kernel, run), place_meshes(shapes, kernel, run)
 
 
 def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh_nodes.MeshTrees | None:
