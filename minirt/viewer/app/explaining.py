@@ -34,7 +34,7 @@ def choose_row(session: Session, button: int, x: int, y: int) -> bool:
     screen, shown = session.screen, session.screen.explained
     if not shown or screen.list_box or screen.help or not screen.level or button not in (Button.LEFT, *WHEEL):
         return False
-    row = layout_of(shown.box, *screen.size, screen.text_size).row_at(x, y)
+    row = layout_of(shown.box(screen.scale), *screen.size, screen.text_size).row_at(x, y)
     if row is None:
         return False
     row = min(max(shown.chosen + WHEEL[button], 0), len(shown.parts) - 1) if button in WHEEL else row

@@ -17,7 +17,8 @@ from minirt.rendering.queries.ray_tree import COLOURS, LightPart, RayNode
 from minirt.scene import Scene
 from minirt.scene.elements import linear_combination
 from minirt.viewer.display.jobs import Pixels
-from minirt.viewer.display.lists import ListBox
+from minirt.viewer.display.lists import MARGIN, ListBox
+from minirt.viewer.display.tool_row import SIDE
 from minirt.viewer.editing.projection import Pixel, Projection, projection_of
 from minirt.viewer.language import GAP
 
@@ -47,13 +48,16 @@ class Explained(NamedTuple):
     parts: tuple[ExplainedRay, ...]
     chosen: int = 0
 
-    @property
-    def box(self) -> ListBox:
-        """The list: what the pixel shows, and its rays with the light that they add."""
+    def box(self, scale: float) -> ListBox:
+        """Return the list: what the pixel shows, and its rays with the light that they add.
+
+        It leaves the pixel and the tool row free, if the window is wide enough.
+        """
         it = self.explanation
         title = f"pixel {it.x},{it.y}: {' '.join(map(str, it.level))}"
         lights = tuple(part.light for part in self.parts)
-        return ListBox(title, tuple(part.title for part in self.parts), self.chosen, lights)
+        titles, is_right = tuple(part.title for part in self.parts), it.x < it.width / 2
+        return ListBox(title, titles, self.chosen, lights, left=MARGIN + round(SIDE * scale), is_right=is_right)
 
     def fits(self, scene: Scene) -> bool:
         """Whether the rays are those of a scene, wherever its camera is."""

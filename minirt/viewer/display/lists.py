@@ -32,6 +32,7 @@ class ListBox(NamedTuple):
     keys: tuple[str, ...] = ()  # of the rows, in a column at their right
     place: tuple[int, int] | None = None  # pixel of its upper left corner; None: below the information
     left: int = MARGIN  # border there, in pixels
+    is_right: bool = False  # whether it is at the right, if it is below the information
 
 
 class Layout(NamedTuple):
@@ -60,13 +61,13 @@ def layout_of(box: ListBox, width: int, height: int, size: int) -> Layout:
     rows_width, keys_width = (measure("\n".join(column), size)[0] for column in translations(box))
     breadth = mark + rows_width + (keys_width + 4 * PADDING if keys_width else 0)
     head = line + 2 * PADDING  # height of the title
+    widest = max(breadth, measure(translated(box.title), size)[0])
     if box.place is None:
-        left, top = box.left, MARGIN + TOP * line
+        left, top = max(MARGIN, width - MARGIN - widest) if box.is_right else box.left, MARGIN + TOP * line
         most = (height - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM
     else:
         most = (height - 2 * MARGIN - head) // line
         tall = head + min(len(box.rows), max(1, most)) * line
-        widest = max(breadth, measure(translated(box.title), size)[0])
         left, top = (
             max(MARGIN, min(at, side - MARGIN - length))
             for at, side, length in zip(box.place, (width, height), (widest, tall), strict=True)

@@ -168,7 +168,7 @@ class Screen:
         if self.list_box and not self.help:
             draw_list(clear, self.list_box, size)
         elif self.explained and self.level and not self.help and self.explained.fits(state.scene):
-            draw_list(clear, self.explained.box, size)
+            draw_list(clear, self.explained.box(scale), size)
         elif self.tips and self.level and not self.covered:
             message = "\n".join(filter(None, (message, self.tips_that_fit(message))))
         if message and not self.help:  # above the text at the bottom

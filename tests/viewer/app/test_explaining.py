@@ -7,6 +7,7 @@ import pytest
 
 import minirt
 from minirt.viewer.app.session import Session
+from minirt.viewer.display import tool_row
 from minirt.viewer.display.explained import (
     FREE,
     SHADOWED,
@@ -48,7 +49,7 @@ def test_the_list_of_the_right_click_explains_the_pixel_where_it_was_asked_for()
 
 def test_a_click_on_a_row_shows_its_numbers_and_edits_nothing() -> None:
     before = play(MIDDLE, "press Y")
-    box = shown(before).box
+    box = shown(before).box(before.screen.scale)
     assert len(box.rows) == 2  # the ray, and that to the light
     at = layout_of(box, *SIZE, before.screen.text_size)
     on_list = f"{at.text_left},{at.rows_top + at.line + 2}"
@@ -59,6 +60,15 @@ def test_a_click_on_a_row_shows_its_numbers_and_edits_nothing() -> None:
         assert "cosine" in after.state.message
         assert after.state.selected == before.state.selected
         assert after.state.scene.camera == before.state.scene.camera
+
+
+@pytest.mark.parametrize("x", [250, 390])  # both on the sphere
+def test_the_list_leaves_the_pixel_and_the_tool_row_free(x: int) -> None:
+    screen = play(f"move {x},240", "press Y").screen
+    assert screen.explained
+    at = layout_of(screen.explained.box(screen.scale), *SIZE, screen.text_size)
+    assert not at.left <= x < at.right
+    assert (tool_row.SIDE * screen.scale <= at.left, at.right <= SIZE[0]) == (True, True)
 
 
 def test_rays_stay_while_the_camera_moves_and_go_with_the_shapes_that_they_met() -> None:
