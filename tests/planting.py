@@ -22,6 +22,7 @@ import minirt
 from minirt.compare import Comparison, compare, lighting
 from minirt.compare.geometry import reach, see
 from minirt.compare.pictures import EDGE
+from minirt.compare.sky import background
 from minirt.compare.table import OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
 
@@ -29,7 +30,7 @@ Bytes = NDArray[np.uint8]  # (h, w, 3)
 SIZE = 480, 270
 VISIBLE, LEVELS = 0.01, 6  # share of pixels that a planted hypothesis changes by more than so many levels
 VISIBLE_EDGES = 0.0015  # of one that only moves edges
-SKY = (40, 90, 160)
+SKY, RISING = (40, 90, 160), (0.4, 0.2, -0.3)  # at the horizon, and what is added up to the zenith, from 0 to 1
 SPECKS = 0.25
 KNOWN = 0.96
 SCENES, STRIDE = 20, 1000  # that are tried until one shows what is planted, and how far their seeds are apart
@@ -85,8 +86,9 @@ def draw(scene: Scene, guess: Guess, size: tuple[int, int] = SIZE, seed: int = 0
     factors[lighting.LAMPS :] *= (8 / reach(scene)) ** power
     factors[lighting.FADED] = 0.02 * reach(scene) * (guess["fading"] == "linear")
     terms = lighting.columns(scene, seen, guess, factors)
-    own = guess["background"] == "own"
-    shown = lighting.drawn(terms, seen, guess, factors, lighting.numbers(SKY) if own else lighting.background(scene))
+    skies = {"own": (lighting.numbers(SKY), np.zeros(3)), "gradient": (lighting.numbers(SKY), RISING)}
+    sky = np.array(skies.get(guess["background"], background(scene)))
+    shown = lighting.drawn(terms, seen, guess, factors, sky)
     if guess["acne"]:
         specks = (np.random.default_rng(seed).random(len(x)) < SPECKS) & (seen.owner >= 0)
         shown[specks] = lighting.shown_levels(terms[specks, :, :1] @ factors[:1], guess)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from minirt.compare import answer, lighting, pictures
 from minirt.compare.answer import Cause, Rest
+from minirt.compare.judge import Judge, at_edges, needed, shapes_alone
 from minirt.compare.search import Case, search
 from minirt.compare.table import OURS, Guess
 from minirt.rendering.settings import render
@@ -92,15 +93,15 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     tolerance = lighting.LEVEL * ((pictures.CLOSE_LOSSY if is_lossy else pictures.CLOSE) + 0.5)
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
-    judge = answer.at_edges(answer.needed(case, OURS if is_alike else search(case), tolerance))
+    judge = at_edges(needed(case, OURS if is_alike else search(case), tolerance))
     if not judge.judged.all():
         what = "textures, bumps, mirrors or glass"
         notices += (f"{1 - judge.judged.mean():.1%} of the pixels show {what}: their light is not judged.",)
     explained = 1 - judge.left(judge.fit) if judge.sees_enough() else 0.0
     is_known = explained >= KNOWN
-    guess = judge.guess if is_known else answer.shapes_alone(judge)
+    guess = judge.guess if is_known else shapes_alone(judge)
     if not is_known:
-        judge = answer.Judge(case, guess, tolerance)
+        judge = Judge(case, guess, tolerance)
     found = answer.causes(judge, guess) + (answer.factors(judge) if is_known else [])
     if side > 1:  # where in its block a ray went is a choice of a preview
         found = [each for each in found if each.name != "pixel"]

@@ -68,6 +68,10 @@ def frame(camera: Camera, guess: Guess) -> Floats:
     if guess["direction"] in CAMERAS:
         way = CAMERAS[guess["direction"]](camera, as_written(camera))["direction"]
     right, over, forward = looking(way, guess["up"], camera.roll + guess["roll"])
+    if guess["yaw"] or guess["pitch"]:
+        aside, above = radians(guess["yaw"]), radians(guess["pitch"])
+        right, forward = cos(aside) * right - sin(aside) * forward, sin(aside) * right + cos(aside) * forward
+        over, forward = cos(above) * over - sin(above) * forward, sin(above) * over + cos(above) * forward
     if guess["mirrored"] != camera.left_handed:
         right = -right
     return np.array([right, -over if guess["flipped"] else over, forward])
@@ -94,10 +98,11 @@ def looking(direction: tuple[float, float, float], way_up: str, roll: float) -> 
 
 
 def slopes(camera: Camera, aspect: float, guess: Guess) -> tuple[float, float]:
-    """Return the slopes, to the side and up, of the rays through the edges of the picture."""
+    """Return the slopes, to the side and up, of the rays through the edges of the picture; their angles, in radians,
+    for pixels at equal angles."""
     angle = camera.fov if guess["fov"] == "full angle" else camera.fov / 2
     angle = radians(min(max(angle, 1e-6), 89.99))
-    half = {"ignored": 1.0, "sine": sin(angle)}.get(guess["fov"], tan(angle)) * guess["scale"]
+    half = {"ignored": 1.0, "sine": sin(angle), "equal angles": angle}.get(guess["fov"], tan(angle)) * guess["scale"]
     level = max(hypot(camera.direction[0], camera.direction[2]), 1e-6)  # cosine of the tilt
     half *= {"not normalised": level, "too near": 1 / level}.get(guess["fov"], 1.0)
     if guess["fov"] == "vertical":
@@ -113,7 +118,10 @@ def directions(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess:
     right, up, forward = frame(scene.camera, guess)
     sideways = across * (2 * (x + inset) / width - 1)
     above = upward * (1 - 2 * (y + inset) / height)
-    return unit(forward + sideways[:, None] * right + above[:, None] * up)
+    ahead = np.ones(len(x))
+    if guess["fov"] == "equal angles":
+        sideways, above, ahead = np.sin(sideways), np.sin(above), np.cos(sideways) * np.cos(above)
+    return unit(ahead[:, None] * forward + sideways[:, None] * right + above[:, None] * up)
 
 
 def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.compare.geometry import Floats, Seen, dots, reach, unit
+from minirt.compare.sky import found_sky
 from minirt.compare.table import OURS, Guess
 from minirt.scene import Scene
 
@@ -18,6 +19,7 @@ PRICE = 0.02 * LEVEL  # of a difference from this program
 PRIOR = 1e-6  # how much a factor that the picture does not tell is drawn to that of this program
 HELD = 1e9  # times the prior, for a factor that is fixed
 SLACK, FADING_SLACK = 0.08, 0.5  # by which a factor may differ from 1 without a word; that of lamps that fade
+SQUARED_SLACK = 0.02  # of lamps whose squared brightness is a factor, too
 STEADY = 0.1  # a difference within a shape that is larger counts as this one
 MOST_ROWS = 4000  # of least squares
 MOST_SPECKS = 0.6  # of the pixels of shapes: more dark ones are no acne
@@ -34,7 +36,7 @@ class Fit(NamedTuple):
     shown: Floats  # (n, 3) levels under the guess, from 0 to 1
     factors: Floats  # of all terms of light
     diffuse: Floats  # (lamps,) factors; 1 in this program
-    background: Floats
+    sky: Floats  # the background, as `sky.background` has it
     odd: int  # factors, of ambient light and of lamps, that are not those of this program
 
 
@@ -153,8 +155,7 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
     for _ in range(MIRROR_ROUNDS if seen.mirror else 1):
         terms = columns(scene, seen, guess, factors)
         factors = least_squares(terms[own], theirs[own], guess["gamma"], usual, fixed)
-    own_sky = guess["background"] == "own" and beyond.any()
-    sky = np.median(theirs[beyond], axis=0) if own_sky else background(scene)
+    sky = found_sky(scene, seen.direction[beyond], theirs[beyond], guess["background"])
     shown = drawn(terms, seen, guess, factors, sky)
     error = np.abs(shown - theirs).max(axis=-1)
     if guess["acne"]:
@@ -163,7 +164,8 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray
         if specks.sum() < MOST_SPECKS * own.sum():
             error = np.where(specks, dark, error)
     diffuse = factors[LAMPS:] * reach(scene) ** exponent(guess)
-    odd = differs(float(factors[AMBIENT])) + differs(middle(diffuse), FADING_SLACK if exponent(guess) else SLACK)
+    slack = FADING_SLACK if exponent(guess) else SQUARED_SLACK if guess["brightness"] != 1 else SLACK
+    odd = differs(float(factors[AMBIENT])) + differs(middle(diffuse), slack)
     differences = [guess[name] != value for name, value in OURS.items()].count(True)
     score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
     return Fit(score + PRICE * (differences + odd), error, shown, factors, diffuse, sky, odd)
@@ -214,7 +216,8 @@ def drawn(terms: Floats, seen: Seen, guess: Guess, factors: Floats, sky: Floats)
     if guess["fading"] == "linear":  # to no less than 0
         shown -= np.minimum(added(terms, factors * (np.arange(len(factors)) >= FADED)), 0)
     shown = shown_levels(shown, guess)
-    shown[seen.owner < 0] = sky
+    beyond = seen.owner < 0
+    shown[beyond] = np.clip(sky[0] + seen.direction[beyond, 1:2] * sky[1], 0, 1)
     return shown
 
 
@@ -234,9 +237,3 @@ def shown_levels(light: Floats, guess: Guess) -> Floats:
         light = light % (256 * LEVEL)
     result: Floats = np.clip(light, 0, 1) ** (1 / guess["gamma"])
     return result
-
-
-def background(scene: Scene) -> Floats:
-    """The colour of the background."""
-    paint = scene.background.paint if scene.background else (0, 0, 0)
-    return np.zeros(3) if isinstance(paint, str) else numbers(paint)

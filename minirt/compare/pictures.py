@@ -121,9 +121,8 @@ def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
     for start in range(0, height, rows):
         y, x = np.mgrid[start : min(start + rows, height), 0:width].reshape(2, -1).astype(float)
         seen = see(scene, (width, height), x, y, guess)
-        shown = lighting.drawn(
-            lighting.columns(scene, seen, guess, fit.factors), seen, guess, fit.factors, fit.background
-        )
+        terms = lighting.columns(scene, seen, guess, fit.factors)
+        shown = lighting.drawn(terms, seen, guess, fit.factors, fit.sky)
         shown = shown[:, ::-1] if guess["colours"] == "swapped" else shown
         shown[~case.judged[seen.owner]] = 0
         under[start : start + rows] = np.rint(255 * shown).reshape(-1, width, 3)

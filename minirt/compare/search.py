@@ -13,18 +13,21 @@ from typing import Any
 import numpy as np
 
 from minirt.compare import lighting
+from minirt.compare.cameras import CAMERA, FOVS, TURNED, cameras, differences, drawn_by, is_aimed
 from minirt.compare.changed_shapes import SHAPES, changed_scene
-from minirt.compare.geometry import Floats, Seen, frame, plain_shapes, see, see_each, slopes
+from minirt.compare.geometry import Floats, Seen, plain_shapes, see, see_each, slopes
 from minirt.compare.lighting import Fit
 from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
 from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
-UPS = "y", "z", "-z", "x", "-x", "-y", "from the z", "from the -z", "x first"
-FOVS = "horizontal", "vertical", "square", "full angle", "sine", "ignored", "not normalised", "too near"
-SCALES = tuple(np.geomspace(0.35, 4.0, 22))
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
+ANGLES = range(-60, 61, 2)  # degrees, by which cameras are turned about one axis where none of the table fits
+TURNS = 2.0, 1.0, 1.0, 0.5, 0.5, 0.2, 0.2  # degrees, by which they are turned further, about each axis
+AIMED, CLEARLY = 8, 0.6  # how many, and how much evener one must be than those of the table
+ZOOM = 60.0  # degrees of a turn for which a field of view is twice as wide
+FINE_TURN = 0.2  # degrees
 EVEN = 0.001  # unevenness of a camera and of sizes that may be right
 NAMED, FREE = 7, 3  # cameras of the table, and those with another field of view, from which shapes are tried
 BEGINNINGS, FINALISTS = 8, 3
@@ -47,7 +50,8 @@ class Case:
         has_specks = speck_share(picture) > SPECKLED
         self.table = [row for row in TABLE if self.tells(row) and (row.name != "acne" or has_specks)]
         self.light = [row for row in self.table if row in LIGHT]
-        self.cameras = cameras(self)
+        self.aspect = self.width / self.height
+        self.cameras = cameras(scene.camera, self.aspect)
         self.kept: dict[Any, Seen] = {}
         self.samples: dict[int, tuple[Floats, Floats, Floats]] = {}
         self.scores: dict[Any, tuple[float, int]] = {}
@@ -113,8 +117,7 @@ class Case:
         return sorted(guesses, key=lambda each: self.unevenness[tuple(each.values())])
 
 
-CAMERA = "direction", "flipped", "mirrored", "up", "fov", "scale", "roll"
-GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "scale", "roll"
+GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "scale", *TURNED
 
 
 def search(case: Case) -> Guess:
@@ -125,12 +128,13 @@ def search(case: Case) -> Guess:
         named = [each for each in seen_from if each["scale"] == 1.0]
         seen_from = case.evenest([*seen_from, *(each | changes for each in named for changes in radii)])
     free = [each for each in seen_from if each["scale"] != 1.0]
-    seen_from = [each for each in seen_from if each["scale"] == 1.0][:NAMED] + free[:FREE]
+    named = [each for each in seen_from if each["scale"] == 1.0]
+    seen_from = named[:NAMED] + free[:FREE] + turned(case, case.unevenness[tuple(seen_from[0].values())])
     names = "cylinder", "radius", "cone"
     shaped = [[OURS[name], *(row.changes[name] for row in case.table if name in row.changes)] for name in names]
     combined = [dict(zip(names, values, strict=True)) for values in product(*shaped)]
     variants = case.evenest([each | changes for changes in combined for each in seen_from])
-    undrawn = [row for row in case.table if row.name == "missing"]  # black, which is one colour in any light
+    undrawn = [row for row in case.table if row.name in ("missing", "inside")]  # black: one colour in any light
     matt = undrawn + [row for row in case.light if row.name not in ("specular", "reflections")]
     lit = [descend(case, each, by_gain(case, each, matt), 1) for each in [OURS, *variants[:BEGINNINGS]]]
     best = sorted(lit, key=case.score)[:FINALISTS]
@@ -145,30 +149,30 @@ def speck_share(picture: Floats) -> float:
     return float((beside - light[:, 1:-1] > SPECK).mean())
 
 
-def cameras(case: Case) -> dict[tuple[float, ...], Guess]:
-    """Return guesses about the camera by what they draw, simple ones first; of those that draw the same the first."""
-    found: dict[tuple[float, ...], Guess] = {}
-    views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
-    names = "direction", "flipped", "mirrored", "up"  # of two that draw the same, the mirrored one is likelier
-    values = product(("as given", "reversed", "angles"), (False, True), (False, True), UPS)
-    frames = [OURS | dict(zip(names, each, strict=True)) for each in values]
-    for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
-        for fov, scale in views if each["direction"] == "as given" else views[:2]:
-            guess = each | {"fov": fov, "scale": scale}
-            found.setdefault(drawn_by(case, guess), guess)
-    return found
+def turned(case: Case, least: float) -> list[Guess]:
+    """Return a camera that is turned, rolled and zoomed, in steps that get smaller, until its regions are evenest; none
+    if the evenest camera of the table, of unevenness `least`, is nearly as even, or none fits."""
+
+    def unevenness(guess: Guess) -> float:
+        return case.unevenness[tuple(guess.values())]
+
+    if least < EVEN:
+        return []
+    starts = [{"mirrored": hand, name: angle} for hand in (False, True) for name in TURNED for angle in ANGLES]
+    found = case.evenest([OURS | each for each in starts])[:AIMED]
+    for step in TURNS:
+        near = [[each, *neighbours(each, step)] for each in found]
+        case.evenest([each for some in near for each in some])
+        found = [min(some, key=unevenness) for some in near]
+    best = min(found, key=unevenness)
+    return [best] if unevenness(best) < min(CLEARLY * least, EVEN) else []
 
 
-def drawn_by(case: Case, guess: Guess) -> tuple[float, ...]:
-    """Numbers that are equal for guesses whose cameras draw the same."""
-    edges = slopes(case.scene.camera, case.width / case.height, guess)
-    return tuple(np.round([*frame(case.scene.camera, guess).ravel(), *edges], 4) + 0.0)
-
-
-def differences(guess: Guess) -> int:
-    """The number of parameters in which a guess differs from this program; those with a free number count twice."""
-    costly = [guess["scale"] != 1.0, guess["roll"] != 0.0, guess["ambient"] == "light plus object"]
-    return [*(guess[name] != value for name, value in OURS.items()), *costly].count(True)
+def neighbours(guess: Guess, step: float) -> list[Guess]:
+    """Return cameras that are turned, rolled or zoomed by a step, in degrees, from that of a guess."""
+    moved = [guess | {name: guess[name] + sign * step} for name in TURNED for sign in (1, -1)]
+    zoom = 1 + step / ZOOM
+    return moved + [guess | {"scale": guess["scale"] * factor} for factor in (zoom, 1 / zoom)]
 
 
 def steps(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
@@ -185,12 +189,14 @@ def steps(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, lis
             near.append(guess | {name: OURS[name]})
     if "fov" in found:  # rows of the camera
         plain = guess | {"fov": "square" if guess["fov"] == "square" else "horizontal"}  # the others are factors, too
-        across = [slopes(case.scene.camera, case.width / case.height, each)[0] for each in (guess, plain)]
+        across = [slopes(case.scene.camera, case.aspect, each)[0] for each in (guess, plain)]
         scales = [guess["scale"] * across[0] / across[1] * factor for factor in FINER]
         found["fov"] = [each | {"scale": 1.0} for each in found["fov"]]
         found["scale"] = [plain | {"scale": scale} for scale in (*scales, 1.0)]
         found["roll"] = [guess | {"roll": guess["roll"] + sign * turn} for turn in ROLLS for sign in (1, -1)]
         found["roll"].append(guess | {"roll": 0.0})
+        if is_aimed(guess):
+            found["yaw"] = neighbours(guess, FINE_TURN)
     return found
 
 
@@ -224,9 +230,9 @@ def descend(case: Case, guess: Guess, rows: Iterable[Hypothesis], rounds: int, c
 def simplest(case: Case, guess: Guess) -> Guess:
     """Return the guess of fewest differences that explains the picture as well: with a camera of the table that draws
     nearly the same in place of free numbers, and with plainer light."""
-    key = drawn_by(case, guess)
+    key = drawn_by(case.scene.camera, case.aspect, guess)
     others = [guess | {"fov": fov, "scale": 1.0} for fov in FOVS] + [guess | {"roll": 0.0}]
-    cameras = [*case.cameras.items(), *((drawn_by(case, each), each) for each in others)]
+    cameras = [*case.cameras.items(), *((drawn_by(case.scene.camera, case.aspect, each), each) for each in others)]
     apart = np.abs(np.array([drawn for drawn, _ in cameras]) - key).max(axis=1)
     near = [each for away, (_, each) in zip(apart, cameras, strict=True) if away < NEAR]
     forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]

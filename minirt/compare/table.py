@@ -16,7 +16,9 @@ OURS: Guess = {
     "flipped": False,
     "direction": "as given",
     "up": "y",
-    "roll": 0.0,  # degrees
+    "roll": 0.0,  # degrees, as are the next two
+    "yaw": 0.0,  # by which the camera is turned to its right
+    "pitch": 0.0,  # up
     "fov": "horizontal",
     "scale": 1.0,  # of the tangent of half the field of view
     "pixel": "centre",
@@ -84,6 +86,8 @@ GEOMETRY = rows(
      "right and up are too short where the camera looks up or down: normalise the product direction x up"),
     ("fov", "too near", "the picture plane is too near where the camera looks up or down: normalise the product "
      "direction x up, and put the plane at distance 1 along the direction"),
+    ("fov", "equal angles", "neighbouring rays differ by equal angles, as of a fish eye: lay them through a plane of "
+     "equal pixels, direction + x * right + y * up"),
     ("pixel", "corner", "rays go through the corners of pixels: add 0.5 to x and y to hit their centres"),
     ("radius", "spheres", "the diameter of spheres is used as their radius: divide it by 2"),
     ("radius", "cylinders", "the diameter of cylinders is used as their radius: divide it by 2"),
@@ -151,11 +155,13 @@ LIGHT = rows(
       for form in ("phong", "blinn") for of in ("", " in the object's colour") for exponent in EXPONENTS),
     ("reflections", True, "all shapes are mirrors, too, for which the scene does not ask"),
     ("background", "own", "the background is {colour}: here it is {ours}"),
+    ("background", "gradient", "the background goes from one colour to another from below to above: here it is {ours}"),
     ("acne", True, "lit surfaces have dark specks: start shadow rays a little (0.0001) above the surface"),
 )  # fmt: skip
 # Numbers that are found without a row for each value.
 FREE = {
     "roll": "the camera is rolled by {value} degrees",
+    "direction": "the camera looks along {value} where the scene says {ours}: its frame is made in another way",
     "scale": "the field of view is {value} degrees across where the scene says {ours}",
     "ambient": "the ambient light is {value} times that of the scene",
     "diffuse": "the light of the lamps is {value} times that of the scene: no factor but brightness, colour and cosine",
