@@ -16,6 +16,7 @@ from PIL import Image
 
 import minirt
 from minirt.compare import pictures
+from minirt.compare.geometry import frame
 from minirt.compare.table import OURS, TABLE
 from minirt.scene import Scene
 from tests.paths import PACKAGE, ROOT
@@ -90,6 +91,9 @@ def test_what_an_edited_scene_shows_is_named(cause: tuple[str, object], tmp_path
         (0, ["axis in the formula"]),
         (0, ["diffuse brightness squared"]),
         (1, ["direction angles"]),
+        (2, ["fov equal angles"]),
+        (11, ["background gradient"]),
+        (2042, ["inside False"]),
     ],
 )
 def test_planted_causes_are_named_alone_and_in_pairs(seed: int, names: list[str], tmp_path: Path) -> None:
@@ -97,6 +101,14 @@ def test_planted_causes_are_named_alone_and_in_pairs(seed: int, names: list[str]
     assert are_visible(scene, rows)
     found = compared(scene, draw(scene, merged(rows)), tmp_path)
     assert judged(rows, found) == (True, False)
+
+
+def test_a_camera_that_looks_elsewhere_is_told(tmp_path: Path) -> None:
+    scene = student_scene(7)
+    found = compared(scene, draw(scene, OURS | {"pitch": 9.0}), tmp_path)
+    (cause,) = found.causes
+    assert (cause.name, found.explained > 0.96) == ("direction", True)
+    assert np.dot(cause.value, frame(scene.camera, OURS | {"pitch": 9.0})[2]) == pytest.approx(1, abs=1e-3)
 
 
 def test_equal_pictures_are_told(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from minirt.scene import Scene
 
 
 def background(scene: Scene) -> Floats:
-    """Return the background of a scene, (2, 3) from 0 to 1: the colour at the horizon, and what is added straight up."""
+    """Return the background of a scene, (2, 3) from 0 to 1: colour at the horizon, and what is added straight up."""
     paint = scene.background.paint if scene.background else (0, 0, 0)
     return np.array([np.zeros(3) if isinstance(paint, str) else np.array(paint) / 255, np.zeros(3)])
 
