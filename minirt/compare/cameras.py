@@ -44,9 +44,10 @@ def differences(guess: Guess) -> int:
     camera that looks another way three times."""
     plain = [guess[name] != value for name, value in OURS.items() if name not in TURNED].count(True)
     costly = [guess["scale"] != 1.0, guess["ambient"] == "light plus object"].count(True)
-    return plain + costly + (3 if is_aimed(guess) else 0) + (1 if is_aimed(guess) else 2) * (guess["roll"] != 0.0)
+    rolled = (1 if is_aimed(guess) else 2) if guess["roll"] else 0
+    return plain + costly + (3 if is_aimed(guess) else 0) + rolled
 
 
 def is_aimed(guess: Guess) -> bool:
     """Whether a camera looks another way than the scene says, by free numbers."""
-    return guess["yaw"] != 0.0 or guess["pitch"] != 0.0
+    return bool(guess["yaw"] or guess["pitch"])

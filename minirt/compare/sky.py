@@ -20,5 +20,5 @@ def found_sky(scene: Scene, ways: Floats, theirs: Floats, form: str) -> Floats:
         return background(scene)
     if form == "own":
         return np.array([np.median(theirs, axis=0), np.zeros(3)])
-    sky: Floats = np.linalg.lstsq(np.stack([np.ones(len(ways)), ways[:, 1]], axis=1), theirs, rcond=None)[0]
-    return sky
+    sky, *_ = np.linalg.lstsq(np.stack([np.ones(len(ways)), ways[:, 1]], axis=1), theirs, rcond=None)
+    return sky.astype(np.float64)
