@@ -102,10 +102,9 @@ class Row(NamedTuple):
     options: str = ""  # of the command line that draw so
     samples: Annotated[float, "samples", ".3g"] = nan  # per pixel: "adaptive" takes so many at most, "auto" on average
     rmse: Annotated[float, "RMSE", ".5f"] = nan  # of colours, 1 from black to white
-    rmse_low: Annotated[float, "from", ".5f", DETAIL] = (
-        nan  # 95 % confidence interval: bootstrap over blocks of pixels, and
-    )
-    rmse_high: Annotated[float, "to", ".5f", DETAIL] = nan  # the error of the reference
+    # 95 % confidence interval: bootstrap over blocks of pixels, and the error of the reference.
+    rmse_low: Annotated[float, "from", ".5f", DETAIL] = nan
+    rmse_high: Annotated[float, "to", ".5f", DETAIL] = nan
     rmse_8_bits: float = nan  # rounded to 8 bits per channel, as files have it
     error_median: Annotated[float, "median", ".1g"] = nan  # of the errors of pixels, over their channels
     error_95: Annotated[float, "95 %", ".2g"] = nan  # of the pixels have at most this error
