@@ -79,10 +79,11 @@ class Dispatcher:
     def results(
         self, bands: Iterable[Job], restore: Callable[[Job], Made | None], in_order: bool
     ) -> Generator[tuple[Job, Made], None, None]:
-        """Yield bands and what was made of them, the first that is done first, or `in_order`. All ends with the last.
+        """Yield bands and what was made of them, the first that is done first, or `in_order`.
 
-        `restore` returns what was made of a band before, or None where it has to be rendered. RenderError where a band
-        fails, its worker dies or the cluster has ended.
+        When the generator ends or is closed, what is not made yet is cancelled, as `close` does. `restore` returns what
+        was made of a band before, or None where it has to be rendered. RenderError where a band fails, its worker dies
+        or the cluster has ended.
         """
         rest = iter(bands)
         running: dict[Future[Made], Job] = {}

@@ -138,16 +138,17 @@ class FrameRunner:
     def render_to_error(
         self, packing: Packing, request: Request, error: float, seconds: float, least: float
     ) -> Outcome | None:
-        """Render a scene that has shapes until the estimated `error` is reached or so many seconds have passed.
+        """Render a scene that has shapes into the arrays of the request, until the estimated error is at most `error`,
+        or so many seconds have passed, packing included. The first sweep is always completed.
 
-        `least` is the error below which more samples are useless; see `minirt.rendering.sampling.auto`. None where
-        `cancel` ended it early.
+        `error` is the RMSE of light from 0 to 1. `least` is the error below which more samples are useless; see
+        `minirt.rendering.sampling.auto`. None where `cancel` ended it early.
         """
-        scene, pixels, light, crop = request
+        scene, pixels, linear, crop = request
         start, cancellations = perf_counter(), self.cancellations
         height, across, _ = pixels.shape
         arrays = packing.pack(scene, across, height, crop)
-        frame = frame_arguments(arrays, pixels, linear=light)
+        frame = frame_arguments(arrays, pixels, linear=linear)
         with_places = has_apertures(arrays)
         lanes = width(arrays.camera)
         packet_width = lanes // PACKET_HEIGHT

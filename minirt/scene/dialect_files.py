@@ -24,9 +24,10 @@ def unread_lines(log: Log) -> int:
 
 def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
     """Change `items`, the lines of a file, as only a look at all of them allows: choose its camera, apply conventions,
-    add an ambient light. An error goes into the log where none of its shapes could be read.
+    add an ambient light. If lines were not understood and no shape is left, an error goes into the log.
 
-    `seen` has the first line of each identifier, and gets those of the camera and the ambient light.
+    `seen` has a line for each identifier of the file. It gets one for a camera that is chosen here, and 0 for an
+    ambient light that is added here.
     """
     promote_camera(items, seen, log)
     apply_conventions(items, log)
@@ -34,7 +35,8 @@ def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
     if unread and not any(isinstance(item, SHAPES) for item in items):
         line, code = unread[0]
         log.error(line, f"none of the shapes can be read, of which {quoted(code)} is the first", 1, len(code))
-    if Camera.code in seen and seen.setdefault(Ambient.code, 0) == 0:
+    if Camera.code in seen and not seen.get(Ambient.code):
+        seen[Ambient.code] = 0
         items.insert(0, Ambient(0.0, (255, 255, 255)))
         log.change(line_from(1, ""), tables.DARK, Ambient.code)
 

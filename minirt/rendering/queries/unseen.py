@@ -190,16 +190,17 @@ def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = Fals
     cameras = candidates(scene.camera, (x, y, z), dist(low, high) / 2 or 1.0, size[1] / size[0], straight)
     cameras = cameras[: max(1, TESTS // (len(MANY) * len(arrays.slots)))]
     shown = [wanted[visible_shapes(arrays, camera, size)].sum() for camera in cameras]
-    if straight and shown[0]:
+    if straight and any(shown[:1]):
         return cameras[0]
     return cameras[np.argmax(shown)] if max(shown, default=0) else None
 
 
 def candidates(camera: Camera, centre: Triple, radius: float, aspect: float, straight: bool) -> list[Camera]:
     """Return cameras all around a ball that see it whole, those near to where the camera is first, and none beyond the
-    range of coordinates; the last one turns to the ball where the camera is.
+    range of coordinates. The last one stays at the camera's place and turns to the ball's centre; there is none if the
+    camera is at the centre.
 
-    `aspect` is the height of the picture by its width. `straight`: the first one does not turn.
+    `aspect` is the height of the picture by its width. `straight`: one that keeps the camera's direction comes first.
     """
     fov = camera.fov if NARROWEST <= camera.fov <= WIDEST else USUAL
     half = tan(radians(fov) / 2) * min(1.0, aspect)

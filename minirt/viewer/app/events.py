@@ -221,9 +221,9 @@ class EventDispatcher:
     def as_hook(self, handler: Callable[..., object]) -> Callable[..., object]:
         """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.
 
-        After it, the event loop ticks while a key is held, the panel is busy or words wait for their picture; otherwise
-        it sleeps until the next event.
-        An error is shown, and only one of the window system ends the window: nothing that a file holds does.
+        After each call of the handler the event loop ticks while a key is held, the panel is busy, or the words in the
+        window describe an older scene than the current one; otherwise it sleeps until the next event.
+        An error of the handler is shown as a message. Only an MlxError is raised again, and ends the window.
         """
 
         def hook(*arguments: object) -> None:

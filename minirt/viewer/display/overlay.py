@@ -84,8 +84,10 @@ def fitting_words(state: State, width: int, size: int) -> str:
 
 
 def value_at(state: State, x: int, y: int, width: int, size: int) -> Value | None:
-    """Return the value at a pixel of the line on top of a window of a width, or the part of it there; None beside the
-    values."""
+    """Return the value, or the part of one such as its y, that the line on top shows at pixel (x, y); None elsewhere.
+
+    width: of the window, in pixels. size: of the text, in pixels.
+    """
     line = fitting_words(state, width, size)
     for words, field in values_in_words(state).items():
         before, found, _ = line.partition(f", {words}")

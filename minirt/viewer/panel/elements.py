@@ -107,16 +107,19 @@ class Elements:
         if index == self._naming:
             self.type_name(index)
         else:
-            self.name(index)
+            self.show_name(index)
         imgui.end_group()
         if imgui.is_item_hovered():
             self._pointed = index
         imgui.pop_item_flag()
         imgui.pop_id()
 
-    def name(self, index: int) -> None:
-        """Show a name, and what it names. A click selects, with Shift or Ctrl beside others; one more begins to rename;
-        a double click brings into view, or looks through a camera."""
+    def show_name(self, index: int) -> None:
+        """Show the name of an element, and its kind at the right.
+
+        A click selects it; with Shift or Ctrl it is added or removed. A click on the only selected element begins to
+        rename it. A double click brings it into view, or looks through a camera.
+        """
         session, state = self.session, self.session.state
         name, kind = element_name(state.scene, index, translated), numbered_kind(state.scene, index, translated)
         flags, right = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK, imgui.get_cursor_pos_x()
@@ -169,7 +172,10 @@ class Elements:
 
 
 def found(word: str, scene: Scene) -> Sequence[int]:
-    """Indices of the elements whose kind, number, code, or comment on or above its line, has what is searched for."""
+    """Return the indices of the elements that contain a word, in small letters without accents; all for an empty one.
+
+    It is searched for in their kind and number, their code, their own name, and the last comment above them.
+    """
     if not word:
         return range(len(scene.elements))
     indices, numbers, comment = list[int](), Counter[str](), ""
