@@ -153,7 +153,10 @@ class User:
 def user_of(kind: type[Element], path: Path, attributes: bool = True) -> User:  # noqa: F811
     """A user of a scene with an element of a kind, with all attributes that it can have at once, which is selected."""
     state = holding(kind, path)
-    while attributes and (added := next(choices(state, ATTRIBUTE), ("", None))[1]):
+    while attributes:
+        added = next((each for _, each in choices(state, ATTRIBUTE) if each.scene is not state.scene), None)
+        if not added:
+            break
         state = added
     user = User(tilted(state).scene, select=state.selected)
     user.unfold(*FOLDED)
