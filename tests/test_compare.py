@@ -15,8 +15,10 @@ import pytest
 from PIL import Image
 
 import minirt
-from minirt.compare import pictures
+from minirt.compare import lighting, pictures
 from minirt.compare.geometry import frame
+from minirt.compare.judge import Judge
+from minirt.compare.search import Case
 from minirt.compare.table import OURS, TABLE
 from minirt.scene import Scene
 from tests.paths import PACKAGE, ROOT
@@ -71,7 +73,7 @@ def test_what_an_edited_scene_shows_is_named(cause: tuple[str, object], tmp_path
     scene = student_scene(7)
     found = compared(scene, EDITED[cause](scene), tmp_path)
     assert [(each.name, each.value) for each in found.causes] == [cause]
-    assert found.explained > 0.99
+    assert (found.explained > 0.99, found.sure, "likely" in str(found)) == (True, True, False)
 
 
 @pytest.mark.parametrize(
@@ -94,13 +96,59 @@ def test_what_an_edited_scene_shows_is_named(cause: tuple[str, object], tmp_path
         (2, ["fov equal angles"]),
         (11, ["background gradient"]),
         (2042, ["inside False"]),
+        (3, ["direction position added"]),
+        (4, ["fading 1/(1 + 0.1 distance)"]),
     ],
 )
 def test_planted_causes_are_named_alone_and_in_pairs(seed: int, names: list[str], tmp_path: Path) -> None:
     scene, rows = student_scene(seed), [ROWS[name] for name in names]
     assert are_visible(scene, rows)
     found = compared(scene, draw(scene, merged(rows)), tmp_path)
-    assert judged(rows, found) == (True, False)
+    assert (*judged(rows, found), found.sure) == (True, False, True)
+
+
+# What no row of the table says, so that a wrong cause explains nearly all of it.
+def from_behind(scene: Scene, step: float) -> Bytes:
+    """Draw a scene from an eye that lies behind the camera's position."""
+    camera = scene.camera
+    eye = tuple(p - step * d for p, d in zip(camera.position, camera.direction, strict=True))
+    return rendered(scene.replace(camera, position=eye))
+
+
+def bent(scene: Scene, power: float) -> Bytes:
+    return np.rint(255 * (rendered(scene) / 255) ** power).astype(np.uint8)
+
+
+WRONG = [
+    (7, from_behind, 0.3),
+    (0, from_behind, 0.3),
+    (1, from_behind, 1.0),
+    (7, bent, 1.1),
+    (0, bent, 0.93),
+    (2, bent, 0.93),
+]
+
+
+@pytest.mark.parametrize(("seed", "drawn", "number"), WRONG)
+def test_a_wrong_cause_is_no_fact(
+    seed: int, drawn: Callable[[Scene, float], Bytes], number: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = student_scene(seed)
+    theirs = drawn(scene, number)
+    found = compared(scene, theirs, tmp_path)
+    assert found.causes
+    assert found.explained > 0.96
+    assert (found.sure, found.json()["sure"]) == (False, False)
+    assert "; most likely th" in str(found)
+    x, y = found.rest[0].pixel
+    under = pictures.explained(scene, theirs, found.guess)
+    assert pictures.distance(under, theirs)[y, x] > pictures.EXACT
+    exact, close = (lighting.LEVEL * (levels + 0.5) for levels in pictures.tolerances(is_lossy=False))
+    judge = Judge(Case(scene, theirs / 255), found.guess, close)
+    assert not judge.is_right(exact)
+    for border in ("MOST_INEXACT", "MOST_AT_EDGES"):  # by the share that is explained alone, it would be one
+        monkeypatch.setattr(f"minirt.compare.judge.{border}", 1.0)
+    assert judge.is_right(exact)
 
 
 def test_a_camera_that_looks_elsewhere_is_told(tmp_path: Path) -> None:
@@ -176,7 +224,7 @@ def test_the_command_line_prints_and_writes_the_answer(
     Image.fromarray(rendered(scene.mirrored())).save("mine.ppm")
     assert cli.main(["scene.rt", "--compare", "mine.ppm", "-o", "four.png", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    assert set(told) == {"equal", "explained", "causes", "rest", "notices"}
+    assert set(told) == {"equal", "explained", "sure", "causes", "rest", "notices"}
     assert (told["equal"], told["causes"][0]["name"], told["causes"][0]["value"]) == (False, "mirrored", True)
     four = np.asarray(Image.open("four.png"))
     width, gap = SIZE[0], pictures.GAP

@@ -19,7 +19,7 @@ from minirt.compare.table import OURS, Guess
 from minirt.rendering.settings import render
 from minirt.scene import Scene, check_scene
 
-KNOWN = 0.8  # share of the inner pixels; what explains less is not told
+KNOWN, LIKELY = 0.8, 0.96  # shares of the inner pixels; what explains less is not told, or told with "perhaps"
 
 
 class Comparison(NamedTuple):
@@ -27,6 +27,7 @@ class Comparison(NamedTuple):
 
     equal: bool  # within a level, or within four but at edges
     explained: float  # share of the inner pixels that are equal, or are so under the causes
+    sure: bool  # that they are equal, or that the causes are right; the likeliest ones are told otherwise
     causes: tuple[Cause, ...]  # what the other program does in another way: name, value, sentence
     rest: tuple[Rest, ...]  # where other pixels lie: shape, part, share of all pixels, one pixel
     notices: tuple[str, ...]  # about the picture, such as a border that is cut off
@@ -39,6 +40,7 @@ class Comparison(NamedTuple):
         return {
             "equal": self.equal,
             "explained": round(self.explained, 4),
+            "sure": self.sure,
             "causes": [each._asdict() for each in self.causes],
             "rest": [each._asdict() | {"share": round(each.share, 4)} for each in self.rest],
             "notices": list(self.notices),
@@ -50,7 +52,8 @@ class Comparison(NamedTuple):
             return "\n".join(lines)
         lines += [f"- {each.name}: {each.sentence}" for each in self.causes]
         if self.rest:
-            lines.append("What is left:" if self.causes else "Where they differ:")
+            what = "What is left" if self.sure else "What still differs, by more than a level"
+            lines.append(f"{what}:" if self.causes else "Where they differ:")
         for each in self.rest:
             where = each.shape if each.part == "surface" else f"{each.part} of {each.shape}"
             lines.append(f"- {each.share:.1%} of all pixels: {where}, such as pixel {each.pixel[0]},{each.pixel[1]}")
@@ -63,9 +66,11 @@ class Comparison(NamedTuple):
         if self.explained < KNOWN:
             share = f"{self.explained:.0%} of the inner pixels are explained"
             if self.causes:
-                return f"The pictures differ. The light is not known ({share}), but these put shapes into their places:"
+                return f"The pictures differ. The light is not known ({share}); most likely these place the shapes:"
             return f"The pictures differ, and it is not known why: {share}."
         what = "this explains" if len(self.causes) == 1 else "these explain together"
+        if not self.sure:
+            what = f"{'most likely' if self.explained >= LIKELY else 'perhaps'} {what}"
         if not self.causes:
             return f"The pictures differ in parts: {self.explained:.1%} of the inner pixels are equal."
         return f"The pictures differ; {what} {self.explained:.1%} of the inner pixels:"
@@ -87,17 +92,18 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     height, width, _ = theirs.shape
     reference = render(scene, width, height).array
     if pictures.are_equal(theirs, reference, is_lossy):
-        return Comparison(True, 1.0, (), (), notices, scene, theirs, OURS)
+        return Comparison(True, 1.0, True, (), (), notices, scene, theirs, OURS)
     if int(np.ptp(theirs, axis=(0, 1)).max()) <= pictures.EDGE:
-        return Comparison(False, 0.0, (), (), (*notices, "The picture has one colour alone."), scene, theirs, OURS)
-    tolerance = lighting.LEVEL * ((pictures.CLOSE_LOSSY if is_lossy else pictures.CLOSE) + 0.5)
+        notices += ("The picture has one colour alone.",)
+        return Comparison(False, 0.0, False, (), (), notices, scene, theirs, OURS)
+    exact, tolerance = (lighting.LEVEL * (levels + 0.5) for levels in pictures.tolerances(is_lossy))
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
     judge = at_edges(needed(case, OURS if is_alike else search(case), tolerance))
     if not judge.judged.all():
         what = "textures, bumps, mirrors or glass"
         notices += (f"{1 - judge.judged.mean():.1%} of the pixels show {what}: their light is not judged.",)
-    explained = 1 - judge.left(judge.fit) if judge.sees_enough() else 0.0
+    explained = 1 - judge.left(judge.fit, tolerance) if judge.sees_enough() else 0.0
     is_known = explained >= KNOWN
     guess = judge.guess if is_known else shapes_alone(judge)
     if not is_known:
@@ -106,8 +112,11 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     if side > 1:  # where in its block a ray went is a choice of a preview
         found = [each for each in found if each.name != "pixel"]
     if is_alike and not found:
-        return Comparison(True, 1.0, (), answer.rest(judge), notices, scene, theirs, OURS)
-    return Comparison(False, explained, tuple(found), answer.rest(judge), notices, scene, theirs, guess)
+        return Comparison(True, 1.0, True, (), answer.rest(judge, tolerance), notices, scene, theirs, OURS)
+    is_told = is_known and bool(found)
+    is_sure = is_told and judge.is_right(exact)
+    rest = answer.rest(judge, exact, always=True) if is_told and not is_sure else answer.rest(judge, tolerance)
+    return Comparison(False, explained, is_sure, tuple(found), rest, notices, scene, theirs, guess)
 
 
 class CallableModule(ModuleType):

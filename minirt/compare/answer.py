@@ -12,9 +12,9 @@ from minirt.compare.cameras import is_aimed
 from minirt.compare.changed_shapes import changed_scene
 from minirt.compare.geometry import frame, on_cap, slopes
 from minirt.compare.judge import LEAST_GAIN, Judge
-from minirt.compare.search import Case
 from minirt.compare.sky import background
 from minirt.compare.table import FREE, TABLE, Guess
+from minirt.rendering.notes import shape_name
 
 LEAST_REST = 0.001  # share of pixels of a part that is worth a line
 MOST_REST = 6  # parts
@@ -88,10 +88,11 @@ def factors(judge: Judge) -> list[Cause]:
     return found
 
 
-def rest(judge: Judge) -> tuple[Rest, ...]:
-    """Return where the pixels lie that a guess does not explain, the largest part first."""
+def rest(judge: Judge, tolerance: float, always: bool = False) -> tuple[Rest, ...]:
+    """Return where the pixels lie that a guess does not explain to a tolerance, the largest part first; the largest one
+    `always`, however small it is."""
     seen, scene = judge.seen, changed_scene(judge.case.scene, judge.guess)
-    wrong = judge.judged & (judge.fit.error > judge.tolerance)
+    wrong = judge.judged & (judge.fit.error > tolerance)
     _, cosine = lighting.cosines(seen, judge.guess)
     shadow = (cosine > 0).any(axis=0) & ~((cosine > 0) & seen.open_to).any(axis=0)
     masks = {"edge": ~judge.inner, "cap": on_cap(scene, seen.owner, seen.normal), "shadow": shadow}
@@ -103,17 +104,8 @@ def rest(judge: Judge) -> tuple[Rest, ...]:
             x, y = judge.x[here], judge.y[here]
             middle = np.argmin(np.hypot(x - np.median(x), y - np.median(y)))
             place = int(x[middle]), int(y[middle])
-            found.append(Rest(shape_name(judge.case, int(owner)), part, len(here) / len(wrong), place))
+            name = shape_name(judge.case.scene, int(owner)) if owner >= 0 else "background"
+            found.append(Rest(name, part, len(here) / len(wrong), place))
         wrong &= ~mask
-    large = [each for each in found if each.share >= LEAST_REST]
-    return tuple(sorted(large, key=lambda each: -each.share)[:MOST_REST])
-
-
-def shape_name(case: Case, owner: int) -> str:
-    """Return the name of a shape: `cylinder 2` is the second one of the scene."""
-    if owner < 0:
-        return "background"
-    shapes = case.scene.shapes
-    kind = type(shapes[owner])
-    number = sum(type(shape) is kind for shape in shapes[: owner + 1])
-    return f"{kind.title} {number}"
+    large = [each.share >= LEAST_REST for each in found].count(True)
+    return tuple(sorted(found, key=lambda each: -each.share)[: min(max(large, always), MOST_REST)])

@@ -7,13 +7,12 @@ from itertools import product
 import numpy as np
 
 from minirt.compare.geometry import frame, slopes
-from minirt.compare.table import OURS, Guess
+from minirt.compare.table import OURS, Guess, values
 from minirt.scene import Camera
 
-UPS = "y", "-y", "z", "-z", "x", "-x", "from the z", "from the -z", "x first"
-FOVS = "horizontal", "vertical", "square", "full angle", "sine", "ignored", "not normalised", "too near", "equal angles"
 SCALES = tuple(np.geomspace(0.35, 4.0, 22))
 FRAME = "direction", "flipped", "mirrored", "up"
+FOVS = values("fov")
 TURNED = "roll", "yaw", "pitch"  # by free numbers
 CAMERA = *FRAME, "fov", "scale", *TURNED
 FEW_VIEWS = 2  # fields of view of cameras whose direction means something else
@@ -23,8 +22,7 @@ def cameras(camera: Camera, aspect: float) -> dict[tuple[float, ...], Guess]:
     """Return guesses about the camera by what they draw, simple ones first; of those that draw the same the first."""
     found: dict[tuple[float, ...], Guess] = {}
     views = [(fov, 1.0) for fov in FOVS] + [("horizontal", float(scale)) for scale in SCALES]
-    values = product(("as given", "reversed", "angles"), (False, True), (False, True), UPS)
-    frames = [OURS | dict(zip(FRAME, each, strict=True)) for each in values]
+    frames = [OURS | dict(zip(FRAME, each, strict=True)) for each in product(*map(values, FRAME))]
     # Of two that draw the same, the mirrored one is likelier.
     for each in sorted(frames, key=lambda each: (differences(each), each["up"] != OURS["up"])):
         for fov, scale in views if each["direction"] == "as given" else views[:FEW_VIEWS]:
@@ -35,7 +33,11 @@ def cameras(camera: Camera, aspect: float) -> dict[tuple[float, ...], Guess]:
 
 def drawn_by(camera: Camera, aspect: float, guess: Guess) -> tuple[float, ...]:
     """Numbers that are equal for guesses whose cameras draw the same."""
-    edges = *slopes(camera, aspect, guess), float(guess["fov"] == "equal angles")
+    edges = (
+        *slopes(camera, aspect, guess),
+        float(guess["fov"] == "equal angles"),
+        float(guess["direction"] == "position added"),
+    )
     return tuple(np.round([*frame(camera, guess).ravel(), *edges], 4) + 0.0)
 
 

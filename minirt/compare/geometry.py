@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.compare.changed_shapes import Floats, as_written, changed_scene, rotation
+from minirt.compare.changed_shapes import Floats, Mask, as_written, changed_scene, rotation
 from minirt.compare.table import Guess
 from minirt.element import fields_of
 from minirt.materials import Attributes
@@ -35,12 +35,12 @@ class Seen(NamedTuple):
     to_light: Floats  # (lamps, n, 3)
     distance: Floats  # (lamps, n) to the lamp
     strength: Floats  # (lamps, n) of spots and lamps that fade
-    open_to: NDArray[np.bool_]  # (lamps, n) whether nothing lies between the point and the lamp
-    open_beyond: NDArray[np.bool_]  # (lamps, n) nor behind the lamp
+    open_to: Mask  # (lamps, n) whether nothing lies between the point and the lamp
+    open_beyond: Mask  # (lamps, n) nor behind the lamp
     mirror: Seen | None = None  # what the reflected rays meet
 
 
-def plain_shapes(scene: Scene) -> NDArray[np.bool_]:
+def plain_shapes(scene: Scene) -> Mask:
     """Whether the light of each shape is that of its colour alone, without mirrors, glass and textures; and True for
     the background, unless it is a picture."""
     names = [each.name for each in fields_of(Attributes) if each.name not in PLAIN]
@@ -121,13 +121,16 @@ def directions(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess:
     ahead = np.ones(len(x))
     if guess["fov"] == "equal angles":
         sideways, above, ahead = np.sin(sideways), np.sin(above), np.cos(sideways) * np.cos(above)
-    return unit(ahead[:, None] * forward + sideways[:, None] * right + above[:, None] * up)
+    ways = ahead[:, None] * forward + sideways[:, None] * right + above[:, None] * up
+    if guess["direction"] == "position added":  # in units of pixels, where it is hardly seen
+        ways += 2 * across / width * np.array(scene.camera.position)
+    return unit(ways)
 
 
-def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> NDArray[np.bool_]:
+def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> Mask:
     """Whether hits lie on caps of cylinders and cones."""
     axes = np.array([shape.axis if isinstance(shape, Capped) else (0, 0, 0) for shape in scene.shapes] + [(0, 0, 0)])
-    result: NDArray[np.bool_] = np.abs(dots(normal, axes[owner])) > ON_CAP
+    result: Mask = np.abs(dots(normal, axes[owner])) > ON_CAP
     return result
 
 

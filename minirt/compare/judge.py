@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from minirt.compare import lighting
 from minirt.compare.cameras import CAMERA, differences
-from minirt.compare.geometry import Seen, see
+from minirt.compare.changed_shapes import Mask
+from minirt.compare.geometry import see
 from minirt.compare.lighting import Fit
 from minirt.compare.search import GEOMETRIC, Case
 from minirt.compare.sky import background
@@ -22,6 +22,7 @@ CLEARLY = 4  # times as many pixels are explained only with a cause as only with
 IN_PLACE, LEAST_IN_PLACE = 0.9, 0.01  # shares of pixels that fit to their shapes, and that do so by a cause alone
 LEAST_SEEN = 0.005  # share of pixels of a shape that tells the camera
 LEAST_EDGES = 50  # pixels of the sample
+MOST_INEXACT, MOST_AT_EDGES = 0.025, 0.05  # shares of inner pixels, and of those at edges, that a right guess leaves
 EDGE_GAIN, EDGES_LEFT = 0.5, 0.3  # of the unexplained pixels at edges, and of all, a cause that moves edges may leave
 TILTS = "horizontal", "not normalised", "too near"  # fields of view that differ little where the camera looks level
 AIM = "yaw", "pitch"
@@ -34,7 +35,7 @@ class Judge:
     def __init__(self, case: Case, guess: Guess, tolerance: float) -> None:
         self.case, self.guess, self.tolerance = case, guess, tolerance
         self.x, self.y, self.colours = case.sample(PIXELS)
-        self.seen = self.look(guess)
+        self.seen = case.see(guess, PIXELS)
         self.judged = case.judged[self.seen.owner]
         self.inner = self.judged & self.is_inner()
         self.fit = self.fitted(guess)
@@ -43,17 +44,12 @@ class Judge:
         self.counted = self.inner & (differ | (self.seen.owner >= 0))  # background where it is expected is no evidence
         self.lit = self.counted & (differ | drawn)  # nor are shadows alone that are as dark as the background
 
-    def look(self, guess: Guess, across: int = 0, down: int = 0) -> Seen:
-        """Trace the sample, or the pixels beside it."""
-        size = self.case.width, self.case.height
-        return see(self.case.scene, size, self.x + across, self.y + down, guess)
-
-    def is_inner(self) -> NDArray[np.bool_]:
+    def is_inner(self) -> Mask:
         """Whether pixels are neither beside another face nor at the edge of a shadow."""
-        inner = np.ones(len(self.x), bool)
+        inner, size = np.ones(len(self.x), bool), (self.case.width, self.case.height)
         normal, plain = np.nan_to_num(self.seen.normal), self.guess | {"reflections": False}
         for across, down in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            near = self.look(plain, across, down)
+            near = see(self.case.scene, size, self.x + across, self.y + down, plain)
             inner &= near.owner == self.seen.owner
             inner &= (near.open_to == self.seen.open_to).all(axis=0)
             inner &= np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1) < 0.5
@@ -61,13 +57,12 @@ class Judge:
 
     def fitted(self, guess: Guess, fixed: str = "") -> Fit:
         """Return how a guess explains the inner pixels."""
-        seen = self.seen if guess == self.guess else self.look(guess)
-        return lighting.fit(self.case.scene, seen, self.colours, guess, self.inner, fixed)
+        return self.case.fit(guess, PIXELS, self.inner, fixed)
 
-    def even(self, guess: Guess) -> NDArray[np.bool_]:
+    def even(self, guess: Guess) -> Mask:
         """Whether inner pixels fit to the others of their shapes, whatever their light."""
-        seen = self.look(guess)
-        even: NDArray[np.bool_] = lighting.unevenness(seen, self.colours, guess)[self.lit] < (lighting.STEADY / 2) ** 2
+        unevenness = lighting.unevenness(self.case.see(guess, PIXELS), self.colours, guess)
+        even: Mask = unevenness[self.lit] < (lighting.STEADY / 2) ** 2
         return even
 
     def sees_enough(self) -> bool:
@@ -76,10 +71,20 @@ class Judge:
         camera = OURS | {name: self.guess[name] for name in CAMERA}
         return differences(camera) <= int(np.count_nonzero(shapes)) + 1
 
-    def left(self, fit: Fit) -> float:
-        """The share of inner pixels that a fit does not explain."""
-        off = fit.error > self.tolerance
+    def left(self, fit: Fit, tolerance: float) -> float:
+        """The share of inner pixels that a fit does not explain to a tolerance."""
+        off = fit.error > tolerance
         return max(float(off[mask].mean()) if mask.any() else 1.0 for mask in (self.counted, self.lit))
+
+    def is_right(self, exact: float) -> bool:
+        """Whether a guess leaves as little as a right one: few inner pixels that are not exact, and few at edges.
+
+        A wrong cause may explain the levels of nearly all pixels within the tolerance, but bends their light by more
+        than rounding does, or moves edges.
+        """
+        edges = self.judged & ~self.inner
+        off = self.fit.error[edges] > self.tolerance
+        return self.left(self.fit, exact) <= MOST_INEXACT and int(off.sum()) <= MOST_AT_EDGES * len(off)
 
     def gain(self, without: Fit) -> float:
         """The share of inner pixels that are explained only with a cause.
@@ -95,7 +100,7 @@ class Judge:
         return gain(*(fit.error[counted] <= self.tolerance for fit in (self.fit, without)))
 
 
-def gain(explained: NDArray[np.bool_], before: NDArray[np.bool_]) -> float:
+def gain(explained: Mask, before: Mask) -> float:
     """The share of pixels that are explained only now; 0 if nearly as many were so only before."""
     won, lost = float((explained & ~before).mean()), float((before & ~explained).mean())
     return won - lost if won > CLEARLY * lost else 0.0
@@ -141,9 +146,7 @@ def at_edges(judge: Judge) -> Judge:
         return judge
 
     def left(each: Guess) -> float:
-        seen = see(case.scene, (case.width, case.height), judge.x[edges], judge.y[edges], each)
-        fit = lighting.fit(case.scene, seen, judge.colours[edges], each, case.judged[seen.owner])
-        return float((fit.error > judge.tolerance).mean())
+        return float((case.fit(each, PIXELS, edges).error[edges] > judge.tolerance).mean())
 
     tilts = TILTS if guess["fov"] in TILTS and guess["scale"] == 1.0 else (guess["fov"],)
     best = min((guess | {"pixel": pixel, "fov": fov} for pixel in ("centre", "corner") for fov in tilts), key=left)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from minirt.compare.changed_shapes import Mask
 from minirt.compare.geometry import Floats, Seen, dots, reach, unit
 from minirt.compare.sky import found_sky
-from minirt.compare.table import OURS, Guess
+from minirt.compare.table import OURS, SOFT_FADING, Guess
 from minirt.scene import Scene
 
 LEVEL = 1 / 255
@@ -88,6 +88,8 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     light = cosine * arrived
     distance = np.where(np.isfinite(seen.distance), seen.distance / reach(scene), 1.0)  # parallel light does not fade
     light = light / np.maximum(distance, 1e-3) ** exponent(guess)
+    if guess["fading"] in SOFT_FADING:
+        light /= 1 + SOFT_FADING[guess["fading"]] * np.where(np.isfinite(seen.distance), seen.distance, 0.0)
     tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
     grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
     plain, lamps_light = np.ones_like(colours), np.sum([0 * tint, *bright], axis=0)
@@ -123,8 +125,8 @@ def added(terms: Floats, factors: Floats) -> Floats:
 
 
 def exponent(guess: Guess) -> int:
-    """The power of the distance by which light fades."""
-    return 0 if guess["fading"] == "linear" else int(guess["fading"])
+    """The power of the distance by which light fades; 0 for other forms."""
+    return 0 if isinstance(guess["fading"], str) else int(guess["fading"])
 
 
 def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
@@ -143,7 +145,7 @@ def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
     return residual
 
 
-def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: NDArray[np.bool_], fixed: str = "") -> Fit:
+def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: Mask, fixed: str = "") -> Fit:
     """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
 
     `judged` are the pixels that count; the factor of the `fixed` term, ambient, diffuse or specular, is that of this

@@ -83,9 +83,14 @@ def distance(one: Levels, other: Levels) -> NDArray[np.int_]:
     return result
 
 
+def tolerances(is_lossy: bool) -> tuple[int, int]:
+    """Return by how many levels pixels of a format differ that are equal, and those that are nearly so."""
+    return (EXACT_LOSSY, CLOSE_LOSSY) if is_lossy else (EXACT, CLOSE)
+
+
 def are_equal(one: Levels, other: Levels, is_lossy: bool) -> bool:
     """Whether all pixels are equal within a level."""
-    return bool(distance(one, other).max() <= (EXACT_LOSSY if is_lossy else EXACT))
+    return bool(distance(one, other).max() <= tolerances(is_lossy)[0])
 
 
 def are_alike(one: Levels, other: Levels, is_lossy: bool) -> bool:
@@ -93,7 +98,7 @@ def are_alike(one: Levels, other: Levels, is_lossy: bool) -> bool:
     near = edges(other)
     if is_lossy:  # whose blocks spread an edge
         near = np.kron(blocks_with(near), np.ones((BLOCK, BLOCK), bool))[: near.shape[0], : near.shape[1]]
-    off = distance(one, other) > (CLOSE_LOSSY if is_lossy else CLOSE)
+    off = distance(one, other) > tolerances(is_lossy)[1]
     return bool((off & ~near).mean() < STRAY)
 
 

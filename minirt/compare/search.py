@@ -14,13 +14,14 @@ import numpy as np
 
 from minirt.compare import lighting
 from minirt.compare.cameras import CAMERA, FOVS, TURNED, cameras, differences, drawn_by, is_aimed
-from minirt.compare.changed_shapes import SHAPES, changed_scene
+from minirt.compare.changed_shapes import SHAPES, Mask, changed_scene
 from minirt.compare.geometry import Floats, Seen, plain_shapes, see, see_each, slopes
 from minirt.compare.lighting import Fit
-from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis
+from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis, values
 from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
+MOST_KEPT = 1_000_000  # pixels whose hits are kept
 FINER = 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.005, 1.01, 1.02, 1.05, 1.1, 1.25
 ROLLS = 1.0, 5.0, 20.0, 45.0, 90.0  # degrees
 ANGLES = range(-60, 61, 2)  # degrees, by which cameras are turned about one axis where none of the table fits
@@ -80,16 +81,17 @@ class Case:
         """Return what the pixels of a sample show under a guess; the last ones are kept."""
         key = count, guess["reflections"], *(guess[name] for name in GEOMETRIC)
         if key not in self.kept:
-            if len(self.kept) > 400:
+            if sum(many for many, *_ in self.kept) > MOST_KEPT:
                 self.kept.clear()
             x, y, _ = self.sample(count)
             self.kept[key] = see(self.scene, (self.width, self.height), x, y, guess)
         return self.kept[key]
 
-    def fit(self, guess: Guess, count: int = FINE) -> Fit:
-        """Return how a guess explains the sample."""
+    def fit(self, guess: Guess, count: int = FINE, counted: Mask | None = None, fixed: str = "") -> Fit:
+        """Return how a guess explains a sample, or the pixels of it that are counted, as `lighting.fit` does."""
         seen = self.see(guess, count)
-        return lighting.fit(self.scene, seen, self.sample(count)[2], guess, self.judged[seen.owner])
+        judged = self.judged[seen.owner] if counted is None else counted
+        return lighting.fit(self.scene, seen, self.sample(count)[2], guess, judged, fixed)
 
     def score(self, guess: Guess, count: int = FINE) -> tuple[float, int]:
         """Return the score of a guess on a sample, and the number of its odd factors; all of them are kept."""
@@ -132,7 +134,7 @@ def search(case: Case) -> Guess:
     seen_from = named[:NAMED] + free[:FREE] + turned(case, case.unevenness[tuple(seen_from[0].values())])
     names = "cylinder", "radius", "cone"
     shaped = [[OURS[name], *(row.changes[name] for row in case.table if name in row.changes)] for name in names]
-    combined = [dict(zip(names, values, strict=True)) for values in product(*shaped)]
+    combined = [dict(zip(names, each, strict=True)) for each in product(*shaped)]
     variants = case.evenest([each | changes for changes in combined for each in seen_from])
     undrawn = [row for row in case.table if row.name in ("missing", "inside")]  # black: one colour in any light
     matt = undrawn + [row for row in case.light if row.name not in ("specular", "reflections")]
@@ -235,8 +237,8 @@ def simplest(case: Case, guess: Guess) -> Guess:
     cameras = [*case.cameras.items(), *((drawn_by(case.scene.camera, case.aspect, each), each) for each in others)]
     apart = np.abs(np.array([drawn for drawn, _ in cameras]) - key).max(axis=1)
     near = [each for away, (_, each) in zip(apart, cameras, strict=True) if away < NEAR]
-    forms = ["object x light", *(row.value for row in LIGHT if "ambient" in row.changes)]
-    lights = [{"ambient": form, "fading": fading} for form in forms for fading in (0, 1, 2)] + [{"brightness": 2}]
+    lights = [{"ambient": form, "fading": fading} for form in values("ambient") for fading in (0, 1, 2)]
+    lights.append({"brightness": 2})
     frames = [{name: each[name] for name in CAMERA} for each in near]
     for changed, times, more in ((frames, ALIKE_CAMERA, NEAR_CAMERA), (lights, ALIKE, NEAR_SCORE)):
         guesses = [guess, *(guess | changes for changes in changed)]

@@ -71,8 +71,10 @@ GEOMETRY = rows(
     ("direction", "reversed", "the camera looks backwards: negate the viewing direction"),
     ("direction", "angles",
      "the camera's direction is taken as angles by which it is turned: it is a vector, the way that the camera looks"),
+    ("direction", "position added",
+     "the camera's position is added to the direction of its rays: it is only where they begin"),
     *(("up", up, f"the camera's up is {up}: the reference builds right = direction x (0,1,0)")
-      for up in ("z", "-z", "x", "-x", "-y")),
+      for up in ("-y", "z", "-z", "x", "-x")),
     *(("up", up, f"the camera is turned by the shortest rotation {up} axis onto its direction, {SHORTEST}")
       for up in ("from the z", "from the -z")),
     ("up", "x first", "the camera's up is built from a fixed right of -x: build right = direction x (0,1,0) first"),
@@ -117,6 +119,8 @@ GEOMETRY = rows(
      "surfaces are not drawn from inside: take the larger root where the smaller one is behind the eye"),
 )  # fmt: skip
 
+# Shares by which light fades at distance 1, by the name of its form.
+SOFT_FADING = {f"1/(1 + {each} distance)": each for each in (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0)}
 EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 360, 512, 1000
 LIGHT = rows(
     ("ambient", "light alone", "the ambient light is added as it is: multiply it by the colour of the object"),
@@ -141,6 +145,7 @@ LIGHT = rows(
     ("fading", 1, "light fades as 1/distance, often for a direction that is not normalised: here it does not fade"),
     ("fading", 2, "light fades as 1/distance^2: here it does not fade"),
     ("fading", "linear", "light fades in proportion to the distance from the lamp: here it does not fade"),
+    *(("fading", form, f"light fades as about {form}: here it does not fade") for form in SOFT_FADING),
     ("colours", "light ignored", "the colours of the lamps are ignored"),
     ("colours", "object ignored", "the colours of the objects are ignored"),
     ("colours", "object squared", "the colours of the objects count twice: multiply the sum of the light by them once"),
@@ -169,3 +174,8 @@ FREE = {
     "share": "{sentence}; their share is {value}",
 }
 TABLE = GEOMETRY + LIGHT
+
+
+def values(name: str) -> list[Any]:
+    """Return all values of a parameter: that of this program first, then those of the rows."""
+    return [OURS[name], *(row.changes[name] for row in TABLE if name in row.changes)]
