@@ -16,7 +16,8 @@ from minirt.scene import Camera, Scene
 from minirt.scene.dialect_tables import CONES, Meanings
 from minirt.shapes import Cone, Cylinder, Hyperboloid, Sphere
 
-Floats, Mask = NDArray[np.float64], NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 SHAPES = "radius", "cylinder", "axis", "cone"  # parameters that change the shapes of the scene
 LONG = "not normalised", "in the formula"  # of axes, whose length is not 1 then
 WIDEST = 178.0  # degrees from side to side of a cone
