@@ -79,23 +79,19 @@ def lengthened(shape: Cone | Cylinder, length: float, axis: str) -> Cone | Cylin
 
 
 def cylinder_changes(shape: Cylinder | Hyperboloid, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
-    """Return the changed fields of a cylinder."""
-    changes: dict[str, Any] = {}
+    """Return the fields of a cylinder as a guess reads them."""
     x, y, z = shape.axis
     ways = {"upright": (0.0, 1.0, 0.0), "-x": (-x, y, z), "-z": (x, y, -z), "swapped": (z, y, x)}
-    way = np.array(ways.get(axis, shape.axis))
-    if axis in ways:
-        changes["axis"] = tuple(way)
-    if radius in ("cylinders", "all"):
-        changes["diameter"] = shape.diameter * 2
-    if cylinder in ("base", "top"):
-        sign = 1 if cylinder == "base" else -1
-        changes["centre"] = tuple(np.array(shape.centre) + sign * shape.height / 2 * way)
-    if cylinder == "turned":
-        changes["centre"] = tuple(rotation(np.array((0.0, 1.0, 0.0)), way) @ shape.centre)
-    if cylinder == "doubled":
-        changes["height"] = shape.height * 2
-    return changes
+    way, centre = np.array(ways.get(axis, shape.axis)), np.array(shape.centre)
+    to_end = shape.height / 2 * way
+    turned = rotation(np.array((0.0, 1.0, 0.0)), way) @ centre
+    centres = {"base": centre + to_end, "top": centre - to_end, "turned": turned}
+    return {
+        "axis": tuple(way),
+        "centre": tuple(centres.get(cylinder, centre)),
+        "diameter": shape.diameter * (2 if radius in ("cylinders", "all") else 1),
+        "height": shape.height * (2 if cylinder == "doubled" else 1),
+    }
 
 
 def rotation(axis: Floats, onto: Floats) -> Floats:
