@@ -52,7 +52,7 @@ class Comparison(NamedTuple):
             return "\n".join(lines)
         lines += [f"- {each.name}: {each.sentence}" for each in self.causes]
         if self.rest:
-            what = "What is left" if self.sure else "What still differs, by more than a level"
+            what = "What is left" if self.sure else "What still differs"
             lines.append(f"{what}:" if self.causes else "Where they differ:")
         for each in self.rest:
             where = each.shape if each.part == "surface" else f"{each.part} of {each.shape}"
