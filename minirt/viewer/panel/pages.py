@@ -91,15 +91,15 @@ class Pages:
         self._pictures = self.rows.whole("pictures", self._pictures, MOST_PICTURES)
         if FILMS[self._format].is_lossy:
             self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
-        width, height = self.session.window_size
-        film = f"once around the scene, a film of {self._pictures / FPS:g} s, {width}x{height} pixels"
-        imgui.text_wrapped(translated(film))
         if imgui.button(translated("stop" if self._is_running else "save a film") + "###film"):
             self._is_stopped = self._is_running
             if not self._is_running:
                 self._is_running = True
                 self._thread = Thread(target=self.make_film, name="minirt-film", daemon=True)
                 self._thread.start()
+        width, height = self.session.window_size
+        film = f"once around the scene, a film of {self._pictures / FPS:g} s, {width}x{height} pixels"
+        imgui.text_wrapped(translated(film))  # below the button, which a number that is typed must not move
         if self._is_running:
             imgui.progress_bar(self._share, overlay=translated(self.film))
         else:
