@@ -46,8 +46,10 @@ def differences(guess: Guess) -> int:
     camera that looks another way three times."""
     plain = [guess[name] != value for name, value in OURS.items() if name not in TURNED].count(True)
     costly = [guess["scale"] != 1.0, guess["ambient"] == "light plus object"].count(True)
-    rolled = (1 if is_aimed(guess) else 2) if guess["roll"] else 0
-    return plain + costly + (3 if is_aimed(guess) else 0) + rolled
+    turned = 3 if is_aimed(guess) else 0
+    if guess["roll"]:
+        turned += 1 if is_aimed(guess) else 2
+    return plain + costly + turned
 
 
 def is_aimed(guess: Guess) -> bool:

@@ -30,7 +30,7 @@ class Seen(NamedTuple):
 
     owner: NDArray[np.int64]  # index in `scene.shapes`, -1 for the background
     point: Floats
-    normal: Floats  # outward
+    normal: Floats  # outward, 0 where nothing is met
     direction: Floats  # of the ray
     to_light: Floats  # (lamps, n, 3)
     distance: Floats  # (lamps, n) to the lamp
@@ -57,8 +57,8 @@ def unit(v: Floats) -> Floats:
 
 
 def dots(one: Floats, other: Floats) -> Floats:
-    """Scalar products of vectors, 0 for those that are not known."""
-    result: Floats = np.einsum("...ij,...ij->...i", np.nan_to_num(one), other)
+    """Scalar products of vectors."""
+    result: Floats = np.einsum("...ij,...ij->...i", one, other)
     return result
 
 
@@ -161,8 +161,8 @@ def see(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess)
     (seen,) = see_each(scene, size, x, y, [guess])
     if not guess["reflections"]:
         return seen
-    there, normal = (seen.owner >= 0)[:, None], np.nan_to_num(seen.normal)
-    mirrored = seen.direction - 2 * dots(seen.direction, normal)[:, None] * normal
+    there = (seen.owner >= 0)[:, None]
+    mirrored = seen.direction - 2 * dots(seen.direction, seen.normal)[:, None] * seen.normal
     origins = np.where(there, seen.point, scene.camera.position)
     return seen._replace(mirror=met(changed_scene(scene, guess), origins, mirrored, guess))
 
@@ -204,7 +204,7 @@ def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:
         occluder = hits(scene, point[there], to_light[i, there], guess)[0]
         open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)
         open_beyond[i, there] = np.isinf(occluder)
-    return Seen(owner, point, normal, ways, to_light, distance, strength, open_to, open_beyond)
+    return Seen(owner, point, np.nan_to_num(normal), ways, to_light, distance, strength, open_to, open_beyond)
 
 
 def reach(scene: Scene) -> float:

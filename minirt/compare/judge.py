@@ -47,12 +47,12 @@ class Judge:
     def is_inner(self) -> Mask:
         """Whether pixels are neither beside another face nor at the edge of a shadow."""
         inner, size = np.ones(len(self.x), bool), (self.case.width, self.case.height)
-        normal, plain = np.nan_to_num(self.seen.normal), self.guess | {"reflections": False}
+        plain = self.guess | {"reflections": False}
         for across, down in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             near = see(self.case.scene, size, self.x + across, self.y + down, plain)
             inner &= near.owner == self.seen.owner
             inner &= (near.open_to == self.seen.open_to).all(axis=0)
-            inner &= np.abs(np.nan_to_num(near.normal) - normal).max(axis=-1) < 0.5
+            inner &= np.abs(near.normal - self.seen.normal).max(axis=-1) < 0.5
         return inner
 
     def fitted(self, guess: Guess, fixed: str = "") -> Fit:

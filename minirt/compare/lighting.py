@@ -47,7 +47,7 @@ def numbers(colour: Any) -> Floats:
 
 def cosines(seen: Seen, guess: Guess) -> tuple[Floats, Floats]:
     """Return the normals that light falls onto, and the cosine for each lamp, (lamps, n), 0 on the other side."""
-    normal = np.nan_to_num(seen.normal)
+    normal = seen.normal
     if guess["normals"] != "outward":
         away = dots(normal, seen.direction) > 0
         normal = np.where(away[:, None], -normal, normal)
@@ -166,7 +166,9 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: Mask, f
         if specks.sum() < MOST_SPECKS * own.sum():
             error = np.where(specks, dark, error)
     diffuse = factors[LAMPS:] * reach(scene) ** exponent(guess)
-    slack = FADING_SLACK if exponent(guess) else SQUARED_SLACK if guess["brightness"] != 1 else SLACK
+    slack = SLACK if guess["brightness"] == 1 else SQUARED_SLACK
+    if exponent(guess):
+        slack = FADING_SLACK
     odd = differs(float(factors[AMBIENT])) + differs(middle(diffuse), slack)
     differences = [guess[name] != value for name, value in OURS.items()].count(True)
     score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST

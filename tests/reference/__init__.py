@@ -148,7 +148,7 @@ def surface_hit(scene: Scene, shape: Shape, rays: Rays, distances: Array, pixel:
 
 
 class Leaving(NamedTuple):
-    """What decides where mirrored and refracted rays go from n points."""
+    """The values at n points that mirrored and refracted rays depend on."""
 
     tilted: Array  # (n, 3) normal of the mirror
     outside: NDArray[np.bool_]  # (n,) whether rays arrive from outside of the shape

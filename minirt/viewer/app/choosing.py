@@ -62,6 +62,7 @@ class Choosing:
         self._before: State | None = None  # while the list is open
         self._place: tuple[int, int] | None = None  # pixel where it was asked for; None: its usual place
         self.target: tuple[int, int] | None = None  # pixel that an action of it is about, while it is performed
+        self.names_value = False  # whether a letter of a typed value opened it, after which Tab goes on
 
     @property
     def is_open(self) -> bool:
@@ -80,6 +81,7 @@ class Choosing:
             self.session.show(state.with_message(complaint.format(state.element.title)))
             return
         self._before, self._group, self._letters, self._title = state, group, "", title
+        self.names_value = False
         self._every = [ListRow(translated(title), each, note=structure.present(state, each)) for title, each in choices]
         kind = None if self._place or group != structure.ELEMENT else state.added_kind  # a pointer expects the first
         again = (row for row, (_, each) in zip(self._every, choices, strict=True) if type(each.element) is kind)
@@ -90,6 +92,7 @@ class Choosing:
         """Show what can be done with the selected element, or at a pixel that shows a point of the scene or none."""
         state = self.session.state
         self._before, self._group, self._letters, self._place = state, "", "", place
+        self.names_value = False
         self._title = element_name(state.scene, state.selected, translated)
         self._every = [ListRow(translated(MENU[action]), action=action) for action in menu_of(state, point)]
         self.choose(self._every[0])

@@ -26,7 +26,6 @@ class KeyDispatcher:
         self.choosing = choosing
         self.perform = perform
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
-        self._names_colour = False  # whether the list that is open is of the words of a value that was typed
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -39,10 +38,9 @@ class KeyDispatcher:
         session.screen.tool = None
         pressed = session.keymap.find(code, session.modifiers)
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
-        self._names_colour = self._names_colour and self.choosing.is_open
         if help_takes(session, code, pressed) or self.typing.takes(code):
             return
-        if self._names_colour and code == Key.TAB:
+        if self.choosing.is_open and self.choosing.names_value and code == Key.TAB:
             self.choosing.take()
             self.typing.go_on(whole=True)
             return
@@ -52,7 +50,7 @@ class KeyDispatcher:
             self.typing.end()
             self.perform(BY_ACTION["choose colour"])
             self.choosing.takes(code, None)  # the first letter of its word
-            self._names_colour = True
+            self.choosing.names_value = True
             return
         if pressed:  # any other key that does something closes them
             self.typing.end()

@@ -270,6 +270,15 @@ def test_tab_after_the_word_of_a_colour_sets_it_and_goes_on(tab: str, step: int)
     assert session.screen.list_box.title.startswith(f"{after.active.name}, now")
 
 
+def test_tab_in_the_list_of_a_right_click_selects_the_next_element_also_after_a_typed_colour() -> None:
+    opened = ["resize 640x480", "press Tab", "press Tab", "press V"]
+    typed = [*opened, "text =", *(f"press {each}" for each in "ORANGE")]
+    menu = "click 250,240 right", "press Tab"
+    after, alone = played(*typed, *menu, text=PAIR), played(*opened, *menu, text=PAIR)
+    assert after.state.selected == alone.state.selected
+    assert not after.screen.list_box
+
+
 def test_handles_that_are_not_shown_are_not_grabbed() -> None:
     opened = ["resize 640x480", "press Tab", "press Tab"]
     state = played(*opened, text=PAIR).state
