@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from minirt.kernel.rectangles import DROPPED_BITS, BinningArrays, project_chunk, rectangle_at, write_extent
+from minirt.kernel.scene_arrays import LEAST_DISTANCE
 
 # Entries sort by the upper bits of distances, digit after digit.
 DIGITS, RADIX = 3, 8  # of the upper bits but the sign, and bits of a digit
@@ -29,7 +30,7 @@ def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digi
     for number in range(seen.used.shape[0]):
         for at in range(number * room, number * room + seen.used[number]):
             shape, cell, columns, rows = rectangle_at(seen, at)
-            entries[0, count] = (seen.cone_bits[shape, 4] >> DROPPED_BITS << INDEX_BITS) | at
+            entries[0, count] = (seen.cone_bits[shape, LEAST_DISTANCE] >> DROPPED_BITS << INDEX_BITS) | at
             count += 1
             for row in range(rows):
                 start = cell + row * across
@@ -137,7 +138,7 @@ def put_in(seen: BinningArrays, shape: int, more: int, starts: Any, members: Any
 
 def is_behind(seen: BinningArrays, shape: int, other: int) -> bool:
     """Whether a shape follows another one in lists."""
-    depth, nearer = seen.cone_bits[shape, 4], seen.cone_bits[other, 4]
+    depth, nearer = seen.cone_bits[shape, LEAST_DISTANCE], seen.cone_bits[other, LEAST_DISTANCE]
     return bool(depth > nearer or (depth == nearer and shape > other))
 
 

@@ -17,7 +17,8 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
     """Find the wide nodes: the binary node of each child, -1 for none, and references to the children, (n, width).
 
     The reference to a node is its number; that to leaf i, whose binary node is written to `leaves`, is -1 - i. `areas`
-    (m, width) and `shares` (m, width + 1) are overwritten.
+    (m, width) and `shares` (m, width + 1) are memory for `share_places`. The numbers of wide nodes and of leaves are
+    written to `tree.found`.
     """
     share_places(tree, areas, shares)
     node_count, leaf_count, top, memory = 1, 0, 2, packet_memory()
@@ -42,9 +43,13 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
 
 
 def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
-    """Find for each binary node, and k + 1 places among the children of a wide node for what is in it, the least area
-    of wide nodes, and how many of the places its first child gets: 0 where the node itself is the child. In the last
-    column of `shares` the node becomes a wide node."""
+    """Find how each binary node best fills the places that it gets among the children of a wide node.
+
+    `areas[node, k]` becomes the least surface area, in all, of the wide nodes in a binary node that gets k + 1 places.
+    `shares[node, k]` becomes the number of these places that its first child gets, and the second child gets the rest;
+    0 where the node takes one place itself. `shares[node, tree.width]` is the share of the first child where the node
+    becomes a wide node, with as many places as that has.
+    """
     for node in range(tree.found[0] - 1, -1, -1):
         first = tree.links[node, 2]
         for k in range(tree.width - 1, -1, -1):
@@ -62,9 +67,10 @@ def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
 
 
 def collect_children(tree: BinaryTree, shares: Any, node: int, children: Any, places: Any) -> int:
-    """Write the binary nodes that become the children of a wide node, and return their number.
+    """Write the binary nodes that become the children of a wide node into `children`, and return their number.
 
-    The only child of a leaf is the leaf itself, or none if the leaf is empty. `places` is overwritten.
+    The only child of a leaf is the leaf itself, or none if the leaf is empty. `places` is memory: for each child the
+    places that it gets, until it is divided no further.
     """
     links = tree.links
     children[0], places[0] = node, tree.width + 1

@@ -36,7 +36,7 @@ from minirt.kernel.bvh_nodes import (
 )
 from minirt.kernel.bvh_single_rays import traverse
 from minirt.kernel.scene_arrays import Group, has_rows, intersect, occludes, read, read_block, read_one, read_row
-from minirt.kernel.trace import Hit, closer_hit, for_each_kind, triangle_extent
+from minirt.kernel.trace import ClosestHit, closer_hit, for_each_kind, triangle_extent
 from minirt.lanes import (
     Mask,
     Number,
@@ -157,7 +157,7 @@ def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None]
 
 
 @outlined
-def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
+def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> ClosestHit:
     """Find the closest hit of each ray, as `minirt.kernel.trace.closest_hit` does; rays may have any origins.
 
     Rays that are not `active` hit nothing.
@@ -176,7 +176,8 @@ def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     origin, direction, best = load_vec(memory, ORIGIN), load_vec(memory, DIRECTION), load_vec(memory, HIT)
     hit, t = intersect(shape, origin, direction)
     state = closer_hit(shape, index, extent, hit & rays, t, origin, direction, (best.x, best.y, best.z, -1))
-    save_vec(Vec(state[0], state[1], state[2]), memory, HIT)
+    distance, owner, greatest_extent, _ = state
+    save_vec(Vec(distance, owner, greatest_extent), memory, HIT)
 
 
 def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import vector
+from minirt.kernel.scene_arrays import AXIS, COSINE, LEAST_DISTANCE, vector
 from minirt.lanes import Number, Vec, copysign, dot, fabs, maximum
 
 MARGIN = 1e-12  # relative to the coordinates that a position is computed from, whose rounding is 1e-16
@@ -124,7 +124,7 @@ def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float,
     for i in range(start, end):
         total = total + (vector(spheres[i], 0) - eye)
     length = sqrt(dot(total, total))
-    cone[3], cone[4] = -2.0, 0.0
+    store_cone(cone, Vec(0.0, 0.0, 0.0), -2.0, 0.0)
     if length == 0.0:
         return
     least, cosine, widest = inf, 1.0, 0.0
@@ -137,10 +137,15 @@ def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float,
         widest = max(widest, radius * radius / squared)
         # Cosine of the sum of two angles: from the axis to the centre, and from there to the rim.
         cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
-    cone[0], cone[1], cone[2] = total.x / length, total.y / length, total.z / length
-    if cosine > 0.0:
-        cone[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
-    cone[4] = max(least, 0.0)
+    axis = Vec(total.x / length, total.y / length, total.z / length)
+    is_narrow = cosine > 0.0
+    store_cone(cone, axis, cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN if is_narrow else -2.0, max(least, 0.0))
+
+
+def store_cone(cone: Any, axis: Vec, cosine: float, least_distance: float) -> None:
+    """Store the numbers of a bounding cone, see `minirt.kernel.scene_arrays.SceneArrays`."""
+    cone[AXIS], cone[AXIS + 1], cone[AXIS + 2] = axis.x, axis.y, axis.z
+    cone[COSINE], cone[LEAST_DISTANCE] = cosine, least_distance
 
 
 # Infinite planes.

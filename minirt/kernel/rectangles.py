@@ -10,8 +10,17 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.kernel.pixels import fetch_add
-from minirt.kernel.projection import MARGIN, Grid, bounding_cone, cells_of_plane, projected_rectangle, signed_height
-from minirt.kernel.scene_arrays import has_rows, vector
+from minirt.kernel.projection import (
+    MARGIN,
+    Grid,
+    bounding_cone,
+    cells_of_plane,
+    projected_rectangle,
+    signed_height,
+    store_cone,
+)
+from minirt.kernel.scene_arrays import KIND, LEAST_DISTANCE, has_rows, vector
+from minirt.lanes import Vec
 
 CHUNK = 1024  # shapes that a thread projects at once, at most
 
@@ -85,16 +94,20 @@ def write_extent(seen: BinningArrays, index: int) -> None:
 
 
 def project_shape(seen: BinningArrays, slack: float, shape: int, at: int) -> int:
-    """Project a shape with bounding spheres to rectangles, from number `at` on; return the number behind its last.
+    """Write the rectangles of a shape with bounding spheres, beginning with row `at`, and its bounding cone; return the
+    row behind its last rectangle.
 
-    It lies in the convex hull of `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`.
+    `shape` counts in the order of lists. The shape lies in the convex hull of its spheres, which are
+    `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`; a plane has none. A shape out of `reach` has no
+    rectangle, and the cone of a shape without one is 0.
     """
     grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
     if start == end:
         return at
     if seen.reach < inf:
         bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
-    for face in range(grid.frames.shape[0] if seen.cones[shape, 4] <= seen.reach else 0):
+    is_near = seen.cones[shape, LEAST_DISTANCE] <= seen.reach
+    for face in range(grid.frames.shape[0] if is_near else 0):
         column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
         if columns > 0 and rows > 0:
             at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
@@ -109,7 +122,7 @@ def project_shape(seen: BinningArrays, slack: float, shape: int, at: int) -> int
 def write_rectangle(seen: BinningArrays, at: int, shape: int, row: int, column: int, columns: int, rows: int) -> int:
     """Write rectangle number `at`, and return the next number. The cells of each kind are followed by one more."""
     seen.rectangles[at, 0] = shape
-    seen.rectangles[at, 1] = seen.listed[shape, 0] * (seen.grid.cells + 1) + row * seen.grid.across + column
+    seen.rectangles[at, 1] = seen.listed[shape, KIND] * (seen.grid.cells + 1) + row * seen.grid.across + column
     seen.rectangles[at, 2] = columns
     seen.rectangles[at, 3] = rows
     return at + 1
@@ -127,8 +140,8 @@ def extent_from(origin: Any, boxes: Any, shape: int) -> float:
 def quantise_distance(seen: BinningArrays, shape: int) -> None:
     """Round the distance of a cone down to its upper bits, by at least one step: a hit that is so little farther may
     count as coincident."""
-    depth = (seen.cone_bits[shape, 4] >> DROPPED_BITS) - 1
-    seen.cone_bits[shape, 4] = depth << DROPPED_BITS if depth > LEAST_DEPTH else 0
+    depth = (seen.cone_bits[shape, LEAST_DISTANCE] >> DROPPED_BITS) - 1
+    seen.cone_bits[shape, LEAST_DISTANCE] = depth << DROPPED_BITS if depth > LEAST_DEPTH else 0
 
 
 def project_planes(seen: BinningArrays, slack: float, at: int) -> int:
@@ -140,7 +153,7 @@ def project_planes(seen: BinningArrays, slack: float, at: int) -> int:
         seen.found[1] += int(seen.sides[number] != side)
         seen.sides[number] = side
         cone = seen.cones[shape]
-        cone[0], cone[1], cone[2], cone[3], cone[4] = 0.0, 0.0, 0.0, -2.0, abs(height)
+        store_cone(cone, Vec(0.0, 0.0, 0.0), -2.0, abs(height))
         quantise_distance(seen, shape)
         if seen.shown[number] and abs(height) <= seen.reach:
             for row in range(seen.grid.frames.shape[0] * seen.grid.down):

@@ -19,6 +19,8 @@ from minirt.shapes import ALL_KINDS, Kind
 from minirt.shapes.shape import Position
 from minirt.shapes.smooth_triangle import PackedMeshTriangle
 
+AXIS, COSINE, LEAST_DISTANCE = 0, 3, 4  # columns of bounding cones, see `SceneArrays`
+KIND, ROW, PRIMITIVE, SHAPE = 0, 1, 2, 3  # columns of `SceneArrays.listed`
 Rows = Any  # an array of dtype `row_type(kind)`
 TRIANGLE_ROW = np.dtype([("mesh.corners", np.int32, (3,))])
 LEVELS = 32  # levels of a binary tree of boxes, at most, down to leaves

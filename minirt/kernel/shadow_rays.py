@@ -12,7 +12,21 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.beam_traversal import fold_over_mesh
 from minirt.kernel.beams import vec_of
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, may_meet, occludes, range_in_cell, read_row, vector
+from minirt.kernel.scene_arrays import (
+    AXIS,
+    COSINE,
+    LEAST_DISTANCE,
+    PRIMITIVE,
+    ROW,
+    Group,
+    SceneArrays,
+    has_rows,
+    may_meet,
+    occludes,
+    range_in_cell,
+    read_row,
+    vector,
+)
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, unit, where, width
 
@@ -106,11 +120,11 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
     start, end = range_in_cell(group, rays.light, cell)
     for i in range(start, end):
         cone, listed = scene.light_cones[rays.light, scene.light_shapes[i]], scene.listed[scene.light_shapes[i]]
-        axis, cosine, least_distance = vector(cone, 0), cone[3], cone[4]
-        row, index = listed[1], listed[2]  # of the first primitive of the shape
-        if not any(visible & in_cell & (rays.distance > least_distance)):
+        row, index = listed[ROW], listed[PRIMITIVE]
+        if not any(visible & in_cell & (rays.distance > cone[LEAST_DISTANCE])):
             break
-        towards = dot(axis, rays.towards)  # minus the cosine of the angle from the axis, as rays lead to the light
+        # Minus the cosine of the angle from the axis, as rays lead to the light.
+        towards, cosine = dot(vector(cone, AXIS), rays.towards), cone[COSINE]
         if may_count(scene, index, glass) and (cosine <= -1.0 or rarely(in_cell & (towards <= -cosine))):
             if group.trees is None:
                 visible = unoccluded_by_shape(group, row, index, in_cell, visible, arguments)

@@ -11,13 +11,28 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.beam_traversal import fold_over_mesh
-from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, may_meet, range_in_tile, read_row, surface, vector
+from minirt.kernel.scene_arrays import (
+    AXIS,
+    COSINE,
+    LEAST_DISTANCE,
+    PRIMITIVE,
+    ROW,
+    Group,
+    SceneArrays,
+    intersect,
+    may_meet,
+    range_in_tile,
+    read_row,
+    surface,
+    vector,
+)
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, max_norm, maximum, rarely, splat, unit_roundoff, where
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
 COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to their distance, may be one place
-# Distance, index and extent of the shape that each ray hits; and the index of one that some ray hits, -1 if not known.
-Hit = tuple[Number, Number, Number, int]
+# For each ray the distance, and the index and the extent of the shape that it hits; and for the packet the index of one
+# of these shapes, -1 if not known.
+ClosestHit = tuple[Number, Number, Number, int]
 
 
 def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, arguments: Any) -> Any:
@@ -56,31 +71,31 @@ def count_kind(group: Group, count: int, tile: int) -> int:
     return count + end - start
 
 
-def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> Hit:
+def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> ClosestHit:
     """Find the closest hit of each primary ray in a tile: distance, index and extent of the shape that is hit.
 
     A ray that hits nothing gets infinity, -1 and 0. Where two surfaces coincide within rounding, the shape with the
     lower index is hit on the whole overlap, and the extent is the larger of the two.
     """
     no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x), -1
-    found: Hit = for_each_kind(closest_of_kind, scene.groups, no_hit, (scene, tile, origin, direction))
+    found: ClosestHit = for_each_kind(closest_of_kind, scene.groups, no_hit, (scene, tile, origin, direction))
     return found
 
 
 Arguments = tuple[SceneArrays, int, Vec, Vec]  # and the tile, the eye and the directions of its rays
 
 
-def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
+def closest_of_kind(group: Group, state: ClosestHit, arguments: Arguments) -> ClosestHit:
     """Continue `closest_hit` over the shapes of one kind; `state` has the closest hits of the kinds before."""
     scene, tile, origin, direction = arguments
     start, end = range_in_tile(group, tile)
     for i in range(start, end):
         cone, listed = scene.cones[scene.tile_shapes[i]], scene.listed[scene.tile_shapes[i]]
-        nearer = state[0] > cone[4]
+        nearer = state[0] > cone[LEAST_DISTANCE]
         if not any(nearer):
             break
-        if cone[3] <= -1.0 or rarely(in_cone(cone, direction)):
-            row, index = listed[1], listed[2]
+        if cone[COSINE] <= -1.0 or rarely(in_cone(cone, direction)):
+            row, index = listed[ROW], listed[PRIMITIVE]
             if group.trees is None:
                 state = closest_of_shape(group, row, index, nearer, state, arguments)
             else:
@@ -89,7 +104,9 @@ def closest_of_kind(group: Group, state: Hit, arguments: Arguments) -> Hit:
     return state
 
 
-def closest_of_shape(group: Group, row: int, index: int, active: Mask, state: Hit, arguments: Arguments) -> Hit:
+def closest_of_shape(
+    group: Group, row: int, index: int, active: Mask, state: ClosestHit, arguments: Arguments
+) -> ClosestHit:
     """Continue `closest_hit` by one shape, or by a triangle of a mesh, which only `active` rays may meet."""
     scene, _, origin, direction = arguments
     shape = read_row(group, row)
@@ -107,14 +124,15 @@ def triangle_extent(shape: Any) -> float:
     return max(max_norm(shape.a), max_norm(shape.b), max_norm(shape.c))
 
 
-def search_limit(state: Hit, arguments: Arguments) -> Number:
+def search_limit(state: ClosestHit, arguments: Arguments) -> Number:
     """Return how far to search for hits nearer than the closest ones, or coincident with them."""
-    return state[0] * (1.0 + 2.0 * COINCIDENT)
+    distance, _, _, _ = state
+    return distance * (1.0 + 2.0 * COINCIDENT)
 
 
 def closer_hit(
-    shape: Any, index: int, shape_extent: float, hit: Mask, t: Number, origin: Vec, direction: Vec, state: Hit
-) -> Hit:
+    shape: Any, index: int, shape_extent: float, hit: Mask, t: Number, origin: Vec, direction: Vec, state: ClosestHit
+) -> ClosestHit:
     """Update the closest hits, `state`, by the hits of one shape at distance t.
 
     The nearer hit wins. Where both lie within rounding of each other, the shape with the lower index wins.
@@ -131,7 +149,7 @@ def closer_hit(
         gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
         rounding = ROUNDING * unit_roundoff(best) * (max_norm(point) + max_norm(origin) + new_extent)
         same = contested & (gap <= 4.0 * rounding)
-        closer = (closer & (same ^ True)) | (same & (index < owner))
+        closer = where(same, index < owner, closer)
         new_extent = where(same, maximum(new_extent, extent), new_extent)
         extent = where(same, new_extent, extent)
     if any(closer):
@@ -149,4 +167,4 @@ def clearance(point: Vec, extent: Number) -> Number:
 
 def in_cone(cone: Any, direction: Vec) -> Mask:
     """Whether a direction from the apex of a bounding cone lies in the cone."""
-    return dot(vector(cone, 0), direction) >= cone[3]
+    return dot(vector(cone, AXIS), direction) >= cone[COSINE]

@@ -53,7 +53,7 @@ class PackedCone(NamedTuple):
 
 
 def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the cone.
+    """Whether a ray meets the cone, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
     in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
@@ -96,7 +96,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     """`point` moved onto the side or the base, whichever is nearer, and the outward normal there.
 
-    A point on the axis moves to the apex, where the normal is opposite to the axis.
+    A point on the axis that is nearer to the apex than to the base moves to the apex, where the normal is opposite to
+    the axis.
     """
     p = own_point(cone, point)
     rho = sqrt(p.x * p.x + p.y * p.y)

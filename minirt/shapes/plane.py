@@ -41,7 +41,7 @@ class Plane(Flat):
     def balls(self) -> tuple[Ball, ...]:
         return ()
 
-    def flat(self) -> tuple[Triple, Triple]:
+    def infinite_plane(self) -> tuple[Triple, Triple]:
         return self.point, self.normal
 
     def bounds(self) -> None:

@@ -93,7 +93,7 @@ class Shape(Attributes):
         """Bounding balls: the shape lies in their convex hull. All shapes of a kind have as many; an infinite one has
         none."""
 
-    def flat(self) -> tuple[Triple, Triple] | None:
+    def infinite_plane(self) -> tuple[Triple, Triple] | None:
         """A point and the unit normal of an infinite plane; None for all other kinds."""
         return None
 

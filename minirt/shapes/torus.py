@@ -183,9 +183,11 @@ def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Nu
 
 
 def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from_side: Number, active: Mask) -> Number:
-    """The t between `low` and `high` at which p + t d crosses the surface; at `low` it is on the side `from_side`.
+    """The t between `low` and `high` at which the ray p + t d, in the frame of the torus, crosses the surface.
 
-    Newton's method, with bisection where a step would leave the interval (Press et al., Numerical Recipes, 9.4).
+    At `low` the ray is on the side `from_side`: 1 outside of the tube, -1 inside. At `high` it is on the other side.
+    For rays that are not `active` the result is of no use. Newton's method, with bisection where a step would leave the
+    interval (Press et al., Numerical Recipes, 9.4).
     """
     t = 0.5 * (low + high)
     rounding = 4.0 * unit_roundoff(t)

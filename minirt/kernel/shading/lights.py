@@ -169,10 +169,12 @@ def remember_sample(scene: SceneArrays, memory: Any, rays: Any) -> None:
 def sampled_position(
     soft: Any, memory: Any, light: int, position: Vec, to_light: Vec, distance: Number
 ) -> tuple[Vec, Vec, Number]:
-    """Return the sampled position of a light source for each ray, the direction towards it, and its distance.
+    """Return for each ray the position of its sample of a light source, the direction towards it, and its distance; of
+    a scene without light sources that have a size those of the centre, which are given.
 
-    Given are those of its centre. `soft` (m, 4) has for each light: its radius; the tangent of half its angular
-    diameter, for parallel light; and cosine and sine of the angle by which it turns the disc.
+    `soft` (m, 4) has for each light its radius; the tangent of half its angular diameter, for parallel light; and
+    cosine and sine of the angle by which the light turns the disc of samples. The last row of `memory` holds the place
+    of each ray's sample on the unit disc, see `remember_sample`.
     """
     position = splat(position, distance)
     if has_rows(soft):
@@ -193,10 +195,12 @@ def sampled_position(
 def aim(
     scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number, owner: Number, normal: Vec
 ) -> tuple[ShadowRays, Number]:
-    """Return the rays from some points to a light source, and the relative strength of the light at the points.
+    """Return the rays from some points to a light source, and the share of the light's intensity that arrives at the
+    points: 1 but for spot lights and for lights that fade.
 
-    The points are known up to `rounding`. Rays end a little before the light source: no surface on which it lies
-    occludes it.
+    The points lie on the shapes `owner`, whose `normal` is towards the ray that hit them, and are known up to
+    `rounding`. Rays end a little before the light source: no surface on which it lies occludes it. `memory` is that of
+    `sampled_position`.
     """
     position = vector(scene.lights[light], 0)
     to_centre, distance, strength = incident_light(scene.spots, light, position, point)

@@ -32,7 +32,7 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shadow_rays import ShadowRays, unoccluded
-from minirt.kernel.trace import Hit, clearance, of_shape
+from minirt.kernel.trace import ClosestHit, clearance, of_shape
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
 ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
@@ -40,14 +40,17 @@ LEAST_COSINE = 2.0**-26  # of a shading normal that counts as leaning less than 
 MOST_SURFACES = 256  # that a shadow ray may cross; beyond them it counts as occluded
 
 
-def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface: Surface, hit: Mask) -> tuple[Vec, Vec]:
+def direct_light(
+    scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, surface: Surface, hit: Mask
+) -> tuple[Vec, Vec]:
     """Compute the light that falls onto the surfaces at the hits of rays, and the highlights that they reflect back.
 
     The light is ambient light and, by Lambert's cosine law, that of every light source that is not occluded. It reaches
     the side from which the ray comes; cosines are those of the shading normal. Rays that do not hit get ambient light.
     """
     normal, shading_normal = surface.normal, surface.shading_normal
-    rounding = clearance(surface.point, found[2])
+    _, owner, extent, _ = found
+    rounding = clearance(surface.point, extent)
     start = surface.point + rounding * normal
     zero = splat(0.0, rounding)
     total = splat(vector(scene.ambient, 0), zero)
@@ -60,7 +63,7 @@ def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface:
         if scene.light_grid is not None and has_rows(scene.light_grid.grids):
             i = int(scene.light_grid.sources[number])
         intensity = brightness * vector(scene.lights[i], 3)
-        rays, strength = aim(scene, memory, i, start, rounding, found[1], normal)
+        rays, strength = aim(scene, memory, i, start, rounding, owner, normal)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):
             strength = strength * bump_fading(surface.base_normal, shading_normal, to_light)
@@ -70,9 +73,9 @@ def direct_light(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface:
             if has_rows(scene.smooth):
                 turned_away = lit & (dot(normal, to_light) <= 0.0)
                 if rarely(turned_away):
-                    smooth = smooth_points(scene, found[1], surface.point, normal, turned_away)
+                    smooth = smooth_points(scene, owner, surface.point, normal, turned_away)
                     start_of = where(turned_away, smooth + rounding * normal, start)
-                    rays, _ = aim(scene, memory, i, start_of, rounding, found[1], normal)
+                    rays, _ = aim(scene, memory, i, start_of, rounding, owner, normal)
             share, light = zero, intensity
             if scene.transparent is None:
                 lit = trace_shadow_rays(scene, memory, rays, lit, False)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, shading, surface, vector
 from minirt.kernel.shading.patterns import SPACING, apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
-from minirt.kernel.trace import Hit, of_shape
+from minirt.kernel.trace import ClosestHit, of_shape
 from minirt.lanes import Mask, Number, Vec, any, dot, first, lane, maximum, rarely, splat, sqrt, where
 from minirt.lanes.mathematics import LOWEST, exp2
 
@@ -108,7 +108,7 @@ class Surface(NamedTuple):
     filter: Vec  # shares of the light that the surface lets through, likewise
 
 
-def surfaces(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> Surface:
+def surfaces(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, hit: Mask) -> Surface:
     """Compute the surfaces that rays hit, from the shapes that own the hits and from the points within rounding.
 
     The rays of a packet hit few different shapes, mostly one: a shape that some ray hits is evaluated for all rays, and

@@ -29,7 +29,7 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shading.texturing import background_light, weighted_background
-from minirt.kernel.trace import Hit, clearance, closest_hit
+from minirt.kernel.trace import ClosestHit, clearance, closest_hit
 from minirt.lanes import Mask, Number, Vec, any, dot, lane, load_vec, maximum, save_vec, splat, sqrt, unit, where, width
 
 MAX_DEPTH = 32  # the largest depth that a scene may ask for
@@ -76,14 +76,15 @@ def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, d
     ray = primary_ray(scene, origin, direction)
     if scene.reflective is not None:
         return whitted(scene, memory, ray, found)
-    hit = found[0] < inf
+    distance, _, _, _ = found
+    hit = distance < inf
     radiance = splat(Vec(0.0, 0.0, 0.0), direction.x)
     if any(hit):
         radiance = where(hit, shade(scene, memory, ray, found, hit)[0], radiance)
     return background_light(scene, hit, radiance, direction)
 
 
-def shade(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> tuple[Vec, Surface]:
+def shade(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, hit: Mask) -> tuple[Vec, Surface]:
     """Shade the hits of rays without following reflections; returns their radiance and their surfaces."""
     surface = surfaces(scene, memory, ray, found, hit)
     light, highlight = direct_light(scene, memory, ray, found, surface, hit)
@@ -97,14 +98,14 @@ def shade(scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask) -> t
     return radiance, surface
 
 
-def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: Hit) -> Vec:
+def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit) -> Vec:
     """Return the radiance along rays with known hits, following reflected and refracted rays depth first."""
     stack = ray_stack()
     zero = splat(0.0, ray.weight)
     level, waiting = 0, 0  # the latter counts packets on the stack
     radiance = Vec(zero, zero, zero)
     while True:
-        t, direction = found[0], ray.direction
+        (t, _, extent, _), direction = found, ray.direction
         weight, colour = attenuated(scene, ray, t)
         active = weight > 0.0
         hit = active & (t < inf)
@@ -114,7 +115,7 @@ def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: Hit) -> Vec:
             # `own` may be NaN for rays that do not hit
             radiance = where(hit, radiance + weight * coloured(scene, own, colour), radiance)
             if level < scene.depth and has_rows(scene.reflective):
-                rounding = clearance(point, found[2])
+                rounding = clearance(point, extent)
                 leaves = surface.side < 0.0
                 mirror_normal = reflecting_normal(surface.shading_normal, facing, direction)
                 cosine = -dot(mirror_normal, direction)

@@ -218,7 +218,7 @@ def encloses(shape: Shape, point: np.ndarray) -> bool:
     at, bounds = (point[0], point[1], point[2]), shape.bounds()
     if bounds and union_of_bounds(bounds, (at, at)) != bounds:
         return False  # it is outside of the bounding box
-    if plane := shape.flat():
+    if plane := shape.infinite_plane():
         on_plane, normal = plane
         return bool(np.dot(np.subtract(point, on_plane), normal) < 0.0)
     packed, origin = shape.pack(), Vec(*point)

@@ -51,7 +51,7 @@ def column(shapes: Sequence[Shape], name: str, width: int) -> np.ndarray:
 
 def bounding_balls(shapes: Sequence[Shape]) -> np.ndarray:
     """Return balls (n, b, 4), centre and radius, in the hull of which shapes of one kind lie; planes have none."""
-    hulls = [() if shape.flat() else shape.balls() or EVERYWHERE for shape in shapes]
+    hulls = [() if shape.infinite_plane() else shape.balls() or EVERYWHERE for shape in shapes]
     return np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
 
 

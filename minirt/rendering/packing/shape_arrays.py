@@ -98,7 +98,7 @@ class ShapeArrays:
         used = [kind for kind in ALL_KINDS if kind.element in present]
         examples = [present[kind.element].some(FIRST) for kind in used]
         self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
-        self.is_plane = np.array([each.flat() is not None for each in examples], bool)
+        self.is_plane = np.array([each.infinite_plane() is not None for each in examples], bool)
         number = self.group_numbers.__getitem__
         of_runs = [
             np.repeat(number(run.kind), len(run))
@@ -210,7 +210,7 @@ class ShapeArrays:
             self.colours_and_extents[indices, :3] = column(members, "colour", 3) / 255
             self.colours_and_extents[indices, 3] = extents
         if self.is_plane[group]:
-            points_and_normals = np.array([shape.flat() for shape in members])
+            points_and_normals = np.array([shape.infinite_plane() for shape in members])
             at = np.searchsorted(self.plane_indices, indices)
             self.planes[at, :3] = points_and_normals[:, 1]
             self.planes[at, 3] = (points_and_normals[:, 0] * points_and_normals[:, 1]).sum(axis=1)

@@ -20,7 +20,7 @@ from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading import shade, whitted
 from minirt.kernel.shading.patterns import remember_spacing
 from minirt.kernel.shading.surfaces import Ray, Surface
-from minirt.kernel.trace import Hit
+from minirt.kernel.trace import ClosestHit
 from minirt.lanes import Mask, Number, Vec, dot, lane
 from minirt.lanes import width as lanes_of
 from minirt.rendering.buffers import coordinates
@@ -145,18 +145,18 @@ class Watch:
         self.ray.light = triple(light)  # of the only ray of a scene without mirrors and glass
 
     def on_shade(
-        self, result: tuple[Vec, Surface], scene: SceneArrays, memory: Any, ray: Ray, found: Hit, hit: Mask
+        self, result: tuple[Vec, Surface], scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, hit: Mask
     ) -> None:
         """Note the surface where a ray was shaded, and the light that it sends back along the ray."""
-        light, surface = result
-        primitive, point, normal = int(lane(found[1], 0)), triple(surface.point), triple(surface.normal)
+        (light, surface), (distance, owner, _, _) = result, found
+        primitive, point, normal = int(lane(owner, 0)), triple(surface.point), triple(surface.normal)
         shape, side = int(self.shapes.owner[primitive]), lane(surface.side, 0)
         uv = coordinates(self.shapes, np.array([primitive]), np.array([point]), side * np.array([normal]))
         mirror, glass, ior = triple(surface.reflective)
         self.ray.surface = SurfacePoint(
             shape=shape,
             name=shape_name(self.scene, shape),
-            distance=lane(found[0], 0),
+            distance=lane(distance, 0),
             point=point,
             leaves=side < 0.0,
             normal=normal,
@@ -174,12 +174,12 @@ class Watch:
         )
 
     def on_direct_light(
-        self, _: Any, scene: SceneArrays, memory: Any, ray: Ray, found: Hit, surface: Surface, hit: Mask
+        self, _: Any, scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, surface: Surface, hit: Mask
     ) -> None:
         """Compute the light of each lamp by the same function, in a scene that has no other light."""
         self.lights = tuple(self.light_part(row, lamp, ray, found, surface, hit) for row, lamp in enumerate(self.lamps))
 
-    def light_part(self, row: int, lamp: int, ray: Ray, found: Hit, surface: Surface, hit: Mask) -> LightPart:
+    def light_part(self, row: int, lamp: int, ray: Ray, found: ClosestHit, surface: Surface, hit: Mask) -> LightPart:
         """Return what the lamp in a row of the kernel's lights gives to a surface."""
         self.last = {}
         light = self.lighting.direct_light(self.lit_by(row), self.memory[[row, -1]], ray, found, surface, hit)

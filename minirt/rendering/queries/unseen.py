@@ -93,7 +93,7 @@ def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
     starts, ends = arrays.boxes[:, 0], arrays.boxes[:, 1]
     for index in np.flatnonzero(~bounded | ((starts <= eye) & (eye <= ends)).all(axis=1)).tolist():
         shape, name = arrays.shapes[index], shape_name(scene, index)
-        if plane := shape.flat():
+        if plane := shape.infinite_plane():
             point, normal = plane
             distance = abs(np.dot(np.subtract(eye, point), normal))
             if is_even and distance <= IN_PLANE * (1 + np.abs(eye).max()):

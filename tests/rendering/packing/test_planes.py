@@ -90,7 +90,7 @@ def test_light_buffers_follow_an_eye_that_moves_through_a_plane() -> None:
         assert (0 in arrays.light_shapes) == (height < -1)
 
 
-SEEDS = [seed for seed in range(60) if any(shape.flat() for shape in random_scene(seed).shapes)]
+SEEDS = [seed for seed in range(60) if any(shape.infinite_plane() for shape in random_scene(seed).shapes)]
 
 
 def test_pictures_are_the_same_without_culling_of_planes(monkeypatch: pytest.MonkeyPatch) -> None:

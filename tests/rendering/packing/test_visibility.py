@@ -158,7 +158,7 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(kernel: An
     directions[:, :40] = np.round(directions[:, :40])  # along axes and diagonals too
     directions[2, (directions == 0).all(axis=0)] = 1
     directions /= np.linalg.norm(directions, axis=0)
-    planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
+    planes = [index for index, shape in enumerate(make(seed).shapes) if shape.infinite_plane()]
     for light, row in enumerate(arrays.lights):
         edge = arrays.light_buffer_cells
         count = 6 * edge**2 if edge > 1 else 1
