@@ -36,7 +36,7 @@ from minirt.kernel.bvh_nodes import (
 )
 from minirt.kernel.bvh_single_rays import traverse
 from minirt.kernel.scene_arrays import Group, has_rows, intersect, occludes, read, read_block, read_one, read_row
-from minirt.kernel.trace import ClosestHit, closer_hit, for_each_kind, triangle_extent
+from minirt.kernel.trace import DISTANCE, EXTENT, OWNER, ClosestHit, closer_hit, for_each_kind, triangle_extent
 from minirt.lanes import (
     Mask,
     Number,
@@ -176,8 +176,7 @@ def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     origin, direction, best = load_vec(memory, ORIGIN), load_vec(memory, DIRECTION), load_vec(memory, HIT)
     hit, t = intersect(shape, origin, direction)
     state = closer_hit(shape, index, extent, hit & rays, t, origin, direction, (best.x, best.y, best.z, -1))
-    distance, owner, greatest_extent, _ = state
-    save_vec(Vec(distance, owner, greatest_extent), memory, HIT)
+    save_vec(Vec(state[DISTANCE], state[OWNER], state[EXTENT]), memory, HIT)
 
 
 def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:

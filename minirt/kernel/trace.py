@@ -33,6 +33,7 @@ COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to 
 # For each ray the distance, and the index and the extent of the shape that it hits; and for the packet the index of one
 # of these shapes, -1 if not known.
 ClosestHit = tuple[Number, Number, Number, int]
+DISTANCE, OWNER, EXTENT = 0, 1, 2
 
 
 def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, arguments: Any) -> Any:
@@ -91,7 +92,7 @@ def closest_of_kind(group: Group, state: ClosestHit, arguments: Arguments) -> Cl
     start, end = range_in_tile(group, tile)
     for i in range(start, end):
         cone, listed = scene.cones[scene.tile_shapes[i]], scene.listed[scene.tile_shapes[i]]
-        nearer = state[0] > cone[LEAST_DISTANCE]
+        nearer = state[DISTANCE] > cone[LEAST_DISTANCE]
         if not any(nearer):
             break
         if cone[COSINE] <= -1.0 or rarely(in_cone(cone, direction)):
@@ -126,8 +127,7 @@ def triangle_extent(shape: Any) -> float:
 
 def search_limit(state: ClosestHit, arguments: Arguments) -> Number:
     """Return how far to search for hits nearer than the closest ones, or coincident with them."""
-    distance, _, _, _ = state
-    return distance * (1.0 + 2.0 * COINCIDENT)
+    return state[DISTANCE] * (1.0 + 2.0 * COINCIDENT)
 
 
 def closer_hit(
@@ -149,7 +149,8 @@ def closer_hit(
         gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
         rounding = ROUNDING * unit_roundoff(best) * (max_norm(point) + max_norm(origin) + new_extent)
         same = contested & (gap <= 4.0 * rounding)
-        closer = where(same, index < owner, closer)
+        order = where(same, where(index < owner, -inf, inf), t)
+        closer = hit & (order < best)
         new_extent = where(same, maximum(new_extent, extent), new_extent)
         extent = where(same, new_extent, extent)
     if any(closer):

@@ -32,7 +32,7 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shadow_rays import ShadowRays, unoccluded
-from minirt.kernel.trace import ClosestHit, clearance, of_shape
+from minirt.kernel.trace import EXTENT, OWNER, ClosestHit, clearance, of_shape
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
 ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
@@ -49,8 +49,7 @@ def direct_light(
     the side from which the ray comes; cosines are those of the shading normal. Rays that do not hit get ambient light.
     """
     normal, shading_normal = surface.normal, surface.shading_normal
-    _, owner, extent, _ = found
-    rounding = clearance(surface.point, extent)
+    owner, rounding = found[OWNER], clearance(surface.point, found[EXTENT])
     start = surface.point + rounding * normal
     zero = splat(0.0, rounding)
     total = splat(vector(scene.ambient, 0), zero)

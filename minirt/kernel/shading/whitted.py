@@ -29,7 +29,7 @@ from minirt.kernel.shading.surfaces import (
     tint,
 )
 from minirt.kernel.shading.texturing import background_light, weighted_background
-from minirt.kernel.trace import ClosestHit, clearance, closest_hit
+from minirt.kernel.trace import DISTANCE, EXTENT, ClosestHit, clearance, closest_hit
 from minirt.lanes import Mask, Number, Vec, any, dot, lane, load_vec, maximum, save_vec, splat, sqrt, unit, where, width
 
 MAX_DEPTH = 32  # the largest depth that a scene may ask for
@@ -76,8 +76,7 @@ def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, d
     ray = primary_ray(scene, origin, direction)
     if scene.reflective is not None:
         return whitted(scene, memory, ray, found)
-    distance, _, _, _ = found
-    hit = distance < inf
+    hit = found[DISTANCE] < inf
     radiance = splat(Vec(0.0, 0.0, 0.0), direction.x)
     if any(hit):
         radiance = where(hit, shade(scene, memory, ray, found, hit)[0], radiance)
@@ -105,7 +104,7 @@ def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit) -> Vec
     level, waiting = 0, 0  # the latter counts packets on the stack
     radiance = Vec(zero, zero, zero)
     while True:
-        (t, _, extent, _), direction = found, ray.direction
+        t, direction = found[DISTANCE], ray.direction
         weight, colour = attenuated(scene, ray, t)
         active = weight > 0.0
         hit = active & (t < inf)
@@ -115,7 +114,7 @@ def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit) -> Vec
             # `own` may be NaN for rays that do not hit
             radiance = where(hit, radiance + weight * coloured(scene, own, colour), radiance)
             if level < scene.depth and has_rows(scene.reflective):
-                rounding = clearance(point, extent)
+                rounding = clearance(point, found[EXTENT])
                 leaves = surface.side < 0.0
                 mirror_normal = reflecting_normal(surface.shading_normal, facing, direction)
                 cosine = -dot(mirror_normal, direction)

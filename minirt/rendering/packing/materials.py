@@ -45,7 +45,7 @@ def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -
     """
     if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
         return {}
-    shapes, owner = primitives.looks()
+    shapes, look_of = primitives.looks()
     with_materials = [(i, shape) for i, shape in enumerate(shapes) if ATTRIBUTES(shape) != NO_MATERIALS]
     reader = Reader(scene)
     arrays = {name: FEATURES[name].rows(len(shapes)) for name in FEATURES if name in used & OF_SHAPES}
@@ -53,14 +53,14 @@ def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -
         for name, row in rows_of(shape, reader):
             if name in arrays:
                 arrays[name][i] = row
-    packed: dict[str, Any] = {name: array[owner] for name, array in arrays.items()}
+    packed: dict[str, Any] = {name: primitives.by_primitive(name, rows, look_of) for name, rows in arrays.items()}
     if "transparent" in packed:
         mark_mixed(packed["transparent"], primitives.owner)
     maps = {name: packed.pop(name) for name in MAPS if name in packed}
     if maps:
-        packed["surface_maps"] = pack_surface_maps(maps, reader, len(owner))
+        packed["surface_maps"] = pack_surface_maps(maps, reader, len(look_of))
     if used & PATTERN_FEATURES:
-        packed["patterns"] = pack_patterns(with_materials, len(shapes), owner, used, reader.colours)
+        packed["patterns"] = pack_patterns(with_materials, len(shapes), look_of, used, reader.colours)
     return packed
 
 

@@ -118,6 +118,7 @@ class ShapeArrays:
             np.zeros(counts[group], TRIANGLE_ROW if kind is MESH else row_type(kind)) for group, kind in enumerate(used)
         )
         self.tints: dict[int, Triple] = {}  # the colours of meshes that are written
+        self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # what `by_primitive` has returned, and for what
         self.triangles: Any = (
             None  # of meshes, and which are placed, see `minirt.rendering.packing.mesh_trees.place_meshes`
         )
@@ -190,6 +191,16 @@ class ShapeArrays:
             if isinstance(shape, Mesh):
                 numbers[start:end] += shape.look_numbers()
         return tuple(chain.from_iterable(looks)), numbers
+
+    def by_primitive(self, name: str, rows: np.ndarray, look_of: np.ndarray) -> np.ndarray:
+        """Return a row for each primitive, given one for each of the `looks` and which look each primitive has.
+
+        It is the same array as the last one of this name while the rows are the same: a million triangles that are
+        moved keep what they are made of.
+        """
+        if name not in self.of_looks or not np.array_equal(self.of_looks[name][0], rows):
+            self.of_looks[name] = rows, rows[look_of]
+        return self.of_looks[name][1]
 
     def smooth(self) -> np.ndarray:
         """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""

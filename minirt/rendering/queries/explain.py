@@ -20,7 +20,7 @@ from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading import shade, whitted
 from minirt.kernel.shading.patterns import remember_spacing
 from minirt.kernel.shading.surfaces import Ray, Surface
-from minirt.kernel.trace import ClosestHit
+from minirt.kernel.trace import DISTANCE, OWNER, ClosestHit
 from minirt.lanes import Mask, Number, Vec, dot, lane
 from minirt.lanes import width as lanes_of
 from minirt.rendering.buffers import coordinates
@@ -148,15 +148,15 @@ class Watch:
         self, result: tuple[Vec, Surface], scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, hit: Mask
     ) -> None:
         """Note the surface where a ray was shaded, and the light that it sends back along the ray."""
-        (light, surface), (distance, owner, _, _) = result, found
-        primitive, point, normal = int(lane(owner, 0)), triple(surface.point), triple(surface.normal)
+        light, surface = result
+        primitive, point, normal = int(lane(found[OWNER], 0)), triple(surface.point), triple(surface.normal)
         shape, side = int(self.shapes.owner[primitive]), lane(surface.side, 0)
         uv = coordinates(self.shapes, np.array([primitive]), np.array([point]), side * np.array([normal]))
         mirror, glass, ior = triple(surface.reflective)
         self.ray.surface = SurfacePoint(
             shape=shape,
             name=shape_name(self.scene, shape),
-            distance=lane(distance, 0),
+            distance=lane(found[DISTANCE], 0),
             point=point,
             leaves=side < 0.0,
             normal=normal,
