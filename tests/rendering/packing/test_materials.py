@@ -28,6 +28,7 @@ from minirt.materials import (
 )
 from minirt.rendering.packing.features import FEATURES, features, shape_features
 from minirt.rendering.packing.materials import pack_materials
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.settings import render
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, load
 from minirt.shapes import Plane, Shape, Sphere
@@ -49,10 +50,15 @@ def scene_of(folder: Path, *shapes: Shape) -> Scene:
     return Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shapes), folder / "scene.rt")
 
 
-def materials_of(scene: Scene, owner: np.ndarray) -> Any:
-    """The packed materials of primitives, by the names of their fields."""
-    primitives: Any = SimpleNamespace(owner=owner, looks=lambda: (scene.shapes, owner))
-    return SimpleNamespace(**pack_materials(scene, primitives, features(scene)))
+def arrays_of(*shapes: Shape) -> ShapeArrays:
+    arrays = ShapeArrays()
+    arrays.update(shapes)
+    return arrays
+
+
+def materials_of(scene: Scene) -> Any:
+    """The packed materials of the primitives of a scene, by the names of their fields."""
+    return SimpleNamespace(**pack_materials(scene, arrays_of(*scene.shapes), features(scene)))
 
 
 def test_every_material_names_a_feature() -> None:
@@ -89,7 +95,7 @@ def test_each_image_is_packed_once(folder: Path) -> None:
         BALL,
         BALL.replace(texture="a.png", normal_map="a.png", bump=Bump("b.png", 0.0)),
     )
-    maps = materials_of(scene, np.arange(3)).surface_maps
+    maps = materials_of(scene).surface_maps
     assert np.array_equal(maps.textures, [1, 0, 1])
     assert np.array_equal(maps.bumps, [[2, 0.5], [0, 0], [0, 0]])
     assert np.array_equal(maps.normals, [0, 0, 1])
@@ -98,10 +104,32 @@ def test_each_image_is_packed_once(folder: Path) -> None:
     assert np.allclose(maps.texels, [*(np.arange(18) / 255), 0, 1], atol=1e-7)
 
 
+def test_triangles_that_move_keep_their_rows_and_other_materials_replace_them(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
+    lines = "A 0.2 9,9,9", "C 0,0,-3 0,0,1 60", "sp 0,0,9 1 9,9,9", "ob a.obj 0,0,0 1 9,9,9 mirror:0.5", ""
+    (tmp_path / "a.rt").write_text("\n".join(lines))
+    scene = load(tmp_path / "a.rt").scene
+    ball, mesh = scene.shapes
+    arrays = arrays_of(ball, mesh)
+
+    def mirrors() -> np.ndarray:
+        packed: np.ndarray = pack_materials(scene, arrays, {"reflective"})["reflective"]
+        return packed
+
+    before = mirrors()
+    assert before[:, 0].tolist() == [0, 0.5, 0.5]
+    arrays.update((ball, mesh.replace(position=(0, 1, 0))))
+    assert mirrors() is before
+    arrays.update((ball, mesh.replace(mirror=Mirror(0.25))))
+    assert mirrors()[:, 0].tolist() == [0, 0.25, 0.25]
+    arrays.update((mesh, ball))
+    assert mirrors()[:, 0].tolist() == [0.5, 0.5, 0]
+
+
 def test_a_missing_image_is_named(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, BALL.replace(texture="gone.png"))
     with pytest.raises(FileError, match=r"gone\.png"):
-        materials_of(scene, np.arange(1))
+        materials_of(scene)
 
 
 # The features that a scene uses.
