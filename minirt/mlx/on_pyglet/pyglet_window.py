@@ -72,10 +72,8 @@ class CanvasTexture:
         self._size = (0, 0)
 
     def draw(self, canvas: Canvas, width: int, height: int) -> None:
-        """Upload the changes of the canvas and blit it into the frame buffer of width by height pixels.
-
-        The canvas then has no changes any more. If its size is a new one, all of it is uploaded.
-        """
+        """Upload the changes of the canvas and blit it into the frame buffer of width by height pixels. The canvas then
+        has no changes any more. If its size is a new one, all of it is uploaded."""
         gl.glActiveTexture(gl.GL_TEXTURE0)
         gl.glBindTexture(gl.GL_TEXTURE_2D, self._texture)
         gl.glBindFramebuffer(gl.GL_READ_FRAMEBUFFER, self._framebuffer)
@@ -163,10 +161,8 @@ class OverlayTriangles:
         gl.glDeleteTextures(1, ctypes.byref(gl.GLuint(texture)))
 
     def draw(self, vertices: int, vertex_count: int, indices: int, index_count: int, runs: Sequence[Run]) -> None:
-        """Blend triangles into the picture, in this order.
-
-        vertices, indices: their addresses in memory, formats and `runs` as in `Mlx.mlx_overlay_hook`.
-        """
+        """Blend triangles into the picture, in this order. `vertices` and `indices` are addresses in memory; for
+        their formats and for `runs` see `Mlx.mlx_overlay_hook`."""
         self._program.use()
         self._program["size"] = self.size
         gl.glBindVertexArray(self._array)

@@ -132,9 +132,9 @@ def follow_change(session: Session) -> None:
 
 
 def merge_file(session: Session) -> bool:
-    """Show the scene with the changes of another program in its file and those of the session. SceneError.
+    """Show the scene with the changes of another program in its file and those of the session.
 
-    False, and nothing changes, if both changed the same line or a version has more than MOST_LINES.
+    Raises SceneError. Returns False, and nothing changes, if both changed the same line or a version has more than MOST_LINES.
     """
     stamps, mine, saved = file_io.stamps(session.path), session.state.scene, session.saved
     theirs = load(session.path, session.lenient, mine.camera.left_handed).scene

@@ -91,10 +91,8 @@ def open_view(
     keys: str = "auto",
     dither: bool = False,
 ) -> Session:
-    """Open the session of `minirt.view`, whose Ctrl+S writes the file that the scene was read from, or `scene.rt`.
-
-    The parameters are those of `minirt.view`. MlxError if no window can be opened.
-    """
+    """Open the session of `minirt.view`, whose Ctrl+S writes the file that the scene was read from, or `scene.rt`. The
+    parameters are those of `minirt.view`. MlxError if no window can be opened."""
     renderer = shared_renderer(threads, precision, dither=dither)
     return open_session(scene, scene.file or Path("scene.rt"), size, renderer, mlx, keys=keys, samples=samples)
 
@@ -104,8 +102,8 @@ def open_session(
 ) -> Session:
     """Open a session with its window, connected to the window's events; `options` are those of `Session`.
 
-    size: of the window in pixels, no larger than the screen is used; None for the scene's. After an error, which is
-    MlxError if no window can be opened, the display is closed.
+    size: of the window in pixels, cut to that of the screen; None for the scene's. After an error, which is MlxError if
+    no window can be opened, the display is closed.
     """
     mlx.mlx_set_options(strict=True)
     display = mlx.mlx_init()

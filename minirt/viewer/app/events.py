@@ -205,10 +205,8 @@ class EventDispatcher:
         self.choosing.perform_at((screen.size[0], BELOW * screen.text_size), binding.action)
 
     def toggle_panel(self, has_keys: bool = True) -> None:
-        """Open the panel, or close it if it is open; a message says if the window cannot have one.
-
-        has_keys: whether keys go to the panel once it is open. slimgui is imported when the panel first opens.
-        """
+        """Open the panel, or close it if it is open; a message says if the window cannot have one. `has_keys`: whether
+        keys go to the panel once it is open. slimgui is imported when the panel first opens."""
         session = self.session
         session.screen.has_tab, session.screen.help = False, 0
         try:

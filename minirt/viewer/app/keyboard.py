@@ -62,9 +62,9 @@ class KeyDispatcher:
                 self.perform(pressed)
 
     def on_character(self, character: str) -> None:
-        """Handle a typed character: a part of a value, or one that a binding names. Others do nothing.
+        """Handle a typed character: a part of a value, or one that a binding names.
 
-        While the help is open, only the character that closes the help counts.
+        Others do nothing. While the help is open, only the character that closes the help counts.
         """
         session = self.session
         if self.typing.text:

@@ -56,10 +56,8 @@ class Layout(NamedTuple):
 
 
 def layout_of(box: ListBox, width: int, height: int, size: int) -> Layout:
-    """Arrange a list in a picture of width by height pixels, in text of `size` pixels.
-
-    At least one row is shown, even where there is no room.
-    """
+    """Arrange a list in a picture of width by height pixels, in text of `size` pixels. At least one row is shown, even
+    where there is no room."""
     line, mark = measure(" ", size)[1], measure(MARK, size)[0]
     rows_width, keys_width = (measure("\n".join(column), size)[0] for column in translations(box))
     breadth = mark + rows_width + (keys_width + 4 * PADDING if keys_width else 0)

@@ -117,9 +117,10 @@ def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
 
 
 def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: float) -> None:
-    """Draw a handle in the colour of its axis. `centre`: of the element, None where it is not in front of the eye.
+    """Draw a handle in the colour of its axis.
 
-    Arrows that move have the letter of the axis, boxes that resize the first letter of the value that they change.
+    `centre`: of the element, None where it is not in front of the eye. Arrows that move have the letter of the axis,
+    boxes that resize the first letter of the value that they change.
     """
     colour, (x, y) = list(AXIS_COLOURS.values())[handle.axis], handle.points[0]
     if handle.kind == TURN:
@@ -225,10 +226,8 @@ def arrow_tip(direction: tuple[float, float], width: int, height: int, scale: fl
 
 
 def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float, name: str = "") -> None:
-    """Draw an arrow with its tip at the border of the picture, and `name` beside it, if there is one.
-
-    direction: right and down, of length 1.
-    """
+    """Draw an arrow with its tip at the border of the picture, and `name` beside it, if there is one. `direction`: right
+    and down, of length 1."""
     height, width = pixels.shape[:2]
     tip = arrow_tip(direction, width, height, scale)
     size = LENGTH * scale

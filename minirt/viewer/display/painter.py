@@ -180,10 +180,8 @@ class BackgroundPainter(Painter):
         return False
 
     def _prepare(self, job: PaintJob) -> None:
-        """Prepare the kernel, then request the picture that was only previewed, unless another one is requested.
-
-        This is the body of the second thread. Exceptions become outcomes.
-        """
+        """Prepare the kernel, then request the picture that was only previewed, unless another one is requested. This
+        is the body of the second thread. Exceptions become outcomes."""
         error = None
         try:
             self.renderer.prepare(job.scene, job.samples)

@@ -120,10 +120,8 @@ class AdaptiveResolution:
         self._trial_interval = TRIAL_INTERVAL
 
     def record(self, outcome: Painted) -> None:
-        """Record the time of a picture that was finished, or was cancelled after more than the median time.
-
-        Pictures of several samples a pixel do not count. One of a scene that does not move chooses its divisor, too.
-        """
+        """Record the time of a picture that was finished, or was cancelled after more than the median time. Pictures of
+        several samples a pixel do not count. One of a scene that does not move chooses its divisor, too."""
         job, cost = outcome.job, 4 * outcome.seconds / prod(outcome.job.shape)  # of a pixel, which has four bytes
         if job.samples > 1:
             return
