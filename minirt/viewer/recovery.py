@@ -91,8 +91,8 @@ class Recovery:
                 self.path = None
 
     def _write(self, version: Version) -> None:
-        """Bring the file up to date with a version, or delete it if the version has no unsaved changes. After the first
-        version of another scene file it is a new file. OSError, RuntimeError."""
+        """Bring the file up to date with a version, or delete it if the version has no unsaved changes. For another
+        scene file than before, it is a new file. OSError, RuntimeError."""
         unsaved = contents_differ(version.scene, version.saved)
         if not unsaved or (self._written and self._written.file != version.file):
             self._delete()

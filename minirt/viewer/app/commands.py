@@ -134,7 +134,8 @@ def follow_change(session: Session) -> None:
 def merge_file(session: Session) -> bool:
     """Show the scene with the changes of another program in its file and those of the session.
 
-    Raises SceneError. Returns False, and nothing changes, if both changed the same line or a version has more than MOST_LINES.
+    Returns False, and nothing changes, if both changed the same line or a version has more than MOST_LINES. SceneError
+    if the file cannot be read.
     """
     stamps, mine, saved = file_io.stamps(session.path), session.state.scene, session.saved
     theirs = load(session.path, session.lenient, mine.camera.left_handed).scene

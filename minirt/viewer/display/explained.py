@@ -159,7 +159,7 @@ def clipped(start: Pixel, end: Pixel, width: int, height: int) -> tuple[Pixel, P
 def draw_soft_line(
     pixels: Pixels, start: Pixel, end: Pixel, colour: tuple[int, int, int], width: float, opacity: float
 ) -> None:
-    """Draw a line with soft edges between two points of the picture, `width` pixels wide. `colour`: red, green, blue."""
+    """Draw a line with soft edges, `width` pixels wide, between two points of the picture; `colour` is RGB."""
     is_steep = abs(end[1] - start[1]) > abs(end[0] - start[0])
     canvas = pixels.swapaxes(0, 1) if is_steep else pixels  # in which the line is not steep, and runs along axis 1
     (x, y), (to_x, to_y) = ((each[::-1] if is_steep else each) for each in (start, end))

@@ -226,8 +226,10 @@ def arrow_tip(direction: tuple[float, float], width: int, height: int, scale: fl
 
 
 def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float, name: str = "") -> None:
-    """Draw an arrow with its tip at the border of the picture, and `name` beside it, if there is one. `direction`: right
-    and down, of length 1."""
+    """Draw an arrow with its tip at the border of the picture, and `name` beside it, if there is one.
+
+    direction: right and down, of length 1.
+    """
     height, width = pixels.shape[:2]
     tip = arrow_tip(direction, width, height, scale)
     size = LENGTH * scale

@@ -61,7 +61,7 @@ class DragStart(NamedTuple):
 
 def move(state: State, start: DragStart, x: int, y: int) -> State:
     """Move the element parallel to the image plane, or along the axis of the frame, as far as the pointer went to x, y.
-    Without an element under the pointer at the press, turn the camera."""
+    If no element was under the pointer at the press, or the element is the camera, turn the camera instead."""
     if start.point is None or start.moves_camera:
         return look(state, start, x, y)
     axis = WORLD_AXES.get(state.frame)

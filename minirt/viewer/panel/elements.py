@@ -179,9 +179,9 @@ class Elements:
 
 
 def found(word: str, scene: Scene) -> Sequence[int]:
-    """Return the indices of the elements that a text, in small letters without accents, finds; all for an empty text.
+    """Return the indices of the elements that contain `word`, in small letters without accents; all if it is empty.
 
-    `word` is searched for in the kind and number of an element, its code, its own name, and the last comment above it.
+    Searched are the kind and number of an element, its code, its own name, and the last comment above it.
     """
     if not word:
         return range(len(scene.elements))

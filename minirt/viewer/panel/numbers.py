@@ -116,7 +116,7 @@ class Numbers:
 
     def type(self, value: Value, width: float) -> None:
         """Show the text of the number that is typed; Enter, and the focus of another widget, set the number. After Tab
-        the next number is typed; a double click selects all of the text. A number that is refused stays."""
+        the next number is typed; a double click selects all of the text. A text that is refused changes nothing."""
         if self._first:  # the text has not got the focus yet
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(width)
