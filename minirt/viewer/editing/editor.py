@@ -62,7 +62,7 @@ class HeldKey:
         return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
 
     def advance(self, state: State, steps: float, size: float, now: float) -> State:
-        """Return the state after `steps` steps in all since the press, each of `size`; fewer than before change nothing.
+        """Return the state after `steps` steps in all since the press, each of `size`; fewer than before do nothing.
 
         `done` and `first` are brought up to date. If `state` is still the one after a part of the first step, that step
         is taken again, from the state before it and with its own size.

@@ -84,8 +84,8 @@ class Pages:
                 self.rows.gui.show(state)
 
     def picture(self) -> None:
-        """Show the buttons that save the picture and the scene, the settings of a film of a turntable, and a button that
-        makes the film in a thread, or stops that thread."""
+        """Show the buttons that save the picture and the scene, the settings of a film of a turntable, and a button
+        that makes the film in a thread, or stops that thread."""
         self.rows.gui.buttons(BUTTONS)
         imgui.separator_text(translated("film"))
         self._format = self.rows.option("format", FILMS, self._format) or self._format
