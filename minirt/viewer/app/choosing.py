@@ -49,7 +49,7 @@ class ListRow(NamedTuple):
 
 
 class Choosing:
-    """The list that is open. A list of states is open as long as the state that was chosen is the last change."""
+    """The list that is open. A list of states is open only while the state chosen last is the last change."""
 
     def __init__(self, session: Session, perform: Callable[[Binding], None]) -> None:
         self.session = session

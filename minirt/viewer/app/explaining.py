@@ -23,7 +23,7 @@ def explain_pixel(session: Session) -> None:
     from minirt.rendering.queries.explain import explained_by
 
     renderer = session.refinement.painter.renderer
-    renderer.cancel()  # the picture that is being made: one thing is rendered at a time
+    renderer.cancel()  # the picture that is being made
     explanation = explained_by(renderer, scene, *screen.size, x, y)
     screen.explained = explained(explanation, scene)
     session.say(screen.explained.parts[0].details)  # of the ray from the eye

@@ -232,7 +232,7 @@ class Mouse:
         """Return the place for a new element: at pixel `at`, or under the pointer.
 
         While the pointer is not over the picture, the place is on top of the selected shape or, if that is not bounded
-        or would hide the element, in the middle of the picture. None, and a message, if textures cannot be read.
+        or too small in the picture, in the middle of the picture. None, and a message, if textures cannot be read.
         """
         session, element = self.session, self.session.state.element
         (x, y), (width, height) = at or session.window.pointer, session.screen.size
