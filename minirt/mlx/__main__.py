@@ -31,7 +31,11 @@ READING = 1e-6  # seconds that pass with each reading of a clock, so that a loop
 
 
 def main(argv: Sequence[str] | None = None) -> Any:
-    """Run the program; return the argument of its `sys.exit`, or 0. Its exceptions come through."""
+    """Run the program that `argv` names, `sys.argv` without it; return the argument of its `sys.exit`, or 0.
+
+    FAILED after an MlxError or ReplayError, which is printed, or if the last picture cannot be saved. Other exceptions
+    of the program are raised.
+    """
     options = _parse(argv)
     try:
         backend = _headless(options) if options.headless else None
@@ -47,11 +51,12 @@ def main(argv: Sequence[str] | None = None) -> Any:
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
-    """Parse the arguments; those after the program are its own."""
+    """Parse the arguments; those after the program's name belong to the program."""
+    _, _, commands = (recording.__doc__ or "\n\n").split("\n", 2)
     parser = argparse.ArgumentParser(
         prog="python -m minirt.mlx",
         description="Run a program for the official Python wrapper of MiniLibX (from mlx import Mlx), unchanged.",
-        epilog=f"Scripts of events:\n{(recording.__doc__ or '').split(chr(10), 2)[2]}",
+        epilog=f"Scripts of events:\n{commands}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -71,7 +76,7 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _headless(options: argparse.Namespace) -> Headless:
-    """Make the back end with its script. Raises MlxError."""
+    """Make the back end of `--headless`, with its script, and simulate time. Raises MlxError, ReplayError."""
     try:
         width, height = map(int, options.screen.split("x"))
     except ValueError as error:
@@ -82,7 +87,7 @@ def _headless(options: argparse.Namespace) -> Headless:
             lines = options.events.read_text(encoding="utf-8").splitlines()
         except (OSError, ValueError) as error:
             raise MlxError(f"{options.events} cannot be read: {error}") from error
-        recording.add_recording(lines, str(options.events), backend, types=False)
+        recording.add_recording(lines, str(options.events), backend, types=False)  # such programs read keys
     simulate_process(backend)
     return backend
 
@@ -101,7 +106,10 @@ def _run(program: Path, arguments: list[str]) -> Any:
 
 
 def install(backend: Display | None, *, strict: bool) -> None:
-    """Make `from mlx import Mlx` import our class, with this back end and option, even if the wrapper is installed."""
+    """Make `from mlx import Mlx` import our class, even if the wrapper is installed.
+
+    backend: the one that each Mlx uses, None for the screen. strict: see `minirt.mlx.arguments.Options`.
+    """
 
     class WrapperMlx(Mlx):
         def __init__(self) -> None:
@@ -112,7 +120,8 @@ def install(backend: Display | None, *, strict: bool) -> None:
         ) -> int:
             """Draw text in a colour 0xBBGGRR: in text, and only there, the wrapper's shader takes blue for red."""
             word = integer(color)
-            swapped = (word & 0xFF) << 16 | word & 0xFF00 | word >> 16 & 0xFF
+            red, green, blue = word & 0xFF, word & 0xFF00, word >> 16 & 0xFF
+            swapped = red << 16 | green | blue
             return super().mlx_string_put(mlx_ptr, win_ptr, x, y, swapped, string)
 
         def _mlx_failed(self, error: MlxError) -> MaybeNone:
@@ -128,10 +137,10 @@ def install(backend: Display | None, *, strict: bool) -> None:
 
 
 def simulate_process(user: Headless) -> None:
-    """Let the program see simulated time, and save its picture even if it ends by `os._exit`.
+    """Let the program see the simulated time of `user`, and save its picture even if it ends by `os._exit`.
 
-    Sleeping in the main thread lets time pass; other threads sleep as usual. Call it before the program is imported,
-    which may import these functions by their names.
+    Functions of `time` and `os` are replaced for the whole process. Sleeping in the main thread lets simulated time
+    pass; other threads sleep as usual. Call this before the program, which may import these functions by their names.
     """
     start, sleep, leave = time.time(), time.sleep, os._exit
 
@@ -146,7 +155,7 @@ def simulate_process(user: Headless) -> None:
             sleep(seconds)
 
     def save_and_leave(status: int) -> None:
-        leave(status if user.finish() else 1)
+        leave(status if user.finish() else FAILED)
 
     time.monotonic = time.perf_counter = read
     time.time = lambda: start + read()

@@ -56,7 +56,8 @@ class Mlx(Calls):
     def mlx_new_window(
         self, mlx_ptr: Display, width: Integer, height: Integer, title: str, *, resizable: bool = False
     ) -> Window | MaybeNone:
-        """Open a window, or return None; several may be open. A resizable one may get another size: read it back."""
+        """Open a window of so many pixels; None if that fails. Several may be open. A resizable window may get another
+        size: see `mlx_get_window_size`."""
         columns, rows = integer(width), integer(height)
         try:
             if columns < 1 or rows < 1:

@@ -112,9 +112,11 @@ class Host(NumberedObject, ABC):
         """Note that a window has had an event, where the loop does not know that by itself."""
 
     def call(self, hooks: Hooks, event: int | str, *arguments: object) -> None:
-        """Call the hook of an event. Its exception, even SystemExit, is reported, and the loop goes on.
+        """Call the hook of an event, if there is one, with `arguments` and its parameter; not while the loop ends.
 
-        With `Options.strict` it ends the loop, which raises it: raised at once, a platform would lose it.
+        An exception of the hook, even SystemExit, is printed, and the loop goes on. With `Options.strict`, and always
+        for exceptions such as KeyboardInterrupt, the loop ends and raises the exception: a window system would lose an
+        exception that is raised at once.
         """
         if event not in hooks or self.ending or self.failure is not None:
             return

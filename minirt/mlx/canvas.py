@@ -9,6 +9,7 @@ Words = NDArray[np.uint32]  # pixels 0xAARRGGBB
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are outside
 
 OPAQUE = 0xFF000000
+LEAST_ALPHA = 0x01000000  # the least word that is not wholly transparent
 RED_AND_BLUE = 0x00FF00FF
 BLOCK = 16384  # pixels at a time: they and all intermediate values stay in the cache, which is 3 times as fast
 
@@ -113,10 +114,13 @@ def blend(below: Words, source: Words) -> None:
 
 
 def _blend_block(below: Words, source: Words) -> None:
-    """Blend pixels; those that are all opaque or all transparent take a fraction of the time."""
+    """Blend `source` into `below`, (h, w) each, in place; below a wholly transparent source nothing changes.
+
+    A source that is wholly opaque or wholly transparent takes a fraction of the time.
+    """
     if source.min() >= OPAQUE:
         below[...] = source
-    elif source.max() > 0x00FFFFFF:
+    elif source.max() >= LEAST_ALPHA:
         alpha = source >> 24
         rest = 255 - alpha
         # A sum is at most 255 * 255, so that red and blue share a word. With t = sum + 128, (t + t / 256) / 256 is

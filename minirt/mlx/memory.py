@@ -150,6 +150,10 @@ class Memory(Display):
         self.raise_failure()
 
     def run(self) -> None:
+        """Play the script, and go on until the program ends; MlxError if that takes more than `patience` seconds.
+
+        After the script simulated time goes on while the program is busy. Otherwise it stands still until `wake_up`.
+        """
         deadline = time.monotonic() + self.patience
         self.turn(tick=False)
         while not self.over:

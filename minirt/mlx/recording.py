@@ -81,7 +81,11 @@ class RecordedLine:
         return word
 
     def keys(self, index: int) -> Keys | str:
-        """Parse a key: return its code, those of its modifiers before, or a character that is typed."""
+        """Parse the key that is the word `index`: return the codes of its modifiers and its own, or a typed character.
+
+        With `types` a character other than a letter is typed, not pressed; only the command "press" can type. A number
+        of several digits is a code. ReplayError for any other key.
+        """
         word = self.words[index]
         if word in MODIFIERS:
             return [self.modifier(word, index)]
@@ -89,7 +93,8 @@ class RecordedLine:
         if plus and not name and before[-1:] in ("", "+"):  # the key itself is +
             before, name = before[:-1], plus
         codes = [self.modifier(each, index) for each in before.split("+")] if before else []
-        if len(name) == 1 and self.types and not codes and not (name.isascii() and name.isalpha()):
+        is_character = len(name) == 1 and not (name.isascii() and name.isalpha())
+        if is_character and self.types and not codes:
             if self.words[0] != "press":
                 self.fail(index, f"{quoted(word)} is typed, not held; expected a key like Left, d or Shift+d")
             return name

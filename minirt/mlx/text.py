@@ -19,6 +19,7 @@ from minirt.mlx.canvas import OPAQUE, blend
 
 SIZE = 16  # pixels
 ACCENT_INK = 230  # of 255: strokes have hard edges, and look as dark as letters a little below full coverage
+STROKE_THINNESS = 12  # the text's size by the width of a stroke
 # Strokes of accents, as parts of the text's size: right of the letter's middle, and above the baseline.
 STROKES = {
     "\u0300": (((-0.13, 0.74), (0.07, 0.61)),),  # grave
@@ -42,9 +43,9 @@ def draw_text(
     background: int | None = None,
     padding: int = 0,
 ) -> tuple[int, int]:
-    """Draw `text` (0xRRGGBB, opaque) with its top left corner at x, y. Returns its width and height.
+    """Draw opaque text with its top left corner at pixel x, y; return the width and height of the text in pixels.
 
-    text: newlines start lines.
+    text: newlines start lines. color: 0xRRGGBB. size: of the font, in pixels.
     pitch: width of each character in pixels, as of a typewriter; 0 is the font's own.
     pixels: (h, w, 4) uint8, BGRA, written in place and opaque there; text outside is clipped.
     background: 0xAARRGGBB, blended by its alpha below the text and `padding` pixels around it.
@@ -76,7 +77,10 @@ def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint3
 
 @lru_cache(maxsize=1024)
 def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint32]:
-    """Coverage of each pixel by one line of text, in the bits of alpha; cached, as are its words."""
+    """Coverage of each pixel by one line of text: (h, w), 0 to 255 in the bits of alpha, read-only.
+
+    The words of a line are cached by themselves. Without a `pitch` the width is the font's own.
+    """
     from PIL import Image, ImageDraw
 
     parts = _parts(line, pitch)
@@ -88,14 +92,15 @@ def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint32]:
     if width == 0 or not line:
         return np.zeros((height, 0), np.uint32)
     image = Image.new("L", (max(width, int(np.ceil(natural))), height))
-    place = (image.width - natural) / 2 if pitch else 0  # a single character is centred in its pitch
+    start = (image.width - natural) / 2 if pitch else 0  # a single character is centred in its pitch
+    baseline, _ = _font(size).getmetrics()
     draw = ImageDraw.Draw(image)
-    draw.text((place, 0), line, fill=255, font=_font(size))
+    draw.text((start, 0), line, fill=255, font=_font(size))
     for index, accent in accents:
-        middle = place + (_font(size).getlength(line[:index]) + _font(size).getlength(line[: index + 1])) / 2
+        middle = start + (_font(size).getlength(line[:index]) + _font(size).getlength(line[: index + 1])) / 2
         for stroke in STROKES[accent]:
-            points = [(middle + x * size, _font(size).getmetrics()[0] - y * size) for x, y in stroke]
-            draw.line(points, fill=ACCENT_INK, width=max(1, round(size / 12)))
+            points = [(middle + x * size, baseline - y * size) for x, y in stroke]
+            draw.line(points, fill=ACCENT_INK, width=max(1, round(size / STROKE_THINNESS)))
     if image.width > width:  # narrow a wide character to the pitch
         image = image.resize((width, height), Image.Resampling.BILINEAR)
     coverage = np.asarray(image).astype(np.uint32) << np.uint32(24)

@@ -46,13 +46,14 @@ def view(
 ) -> Scene | Viewer:
     """Show a scene in a window until it is closed, and return the scene as it was edited there.
 
-    With `notebook=True`, and in a notebook without a display, return a `Viewer` at once: the last value of a cell is
-    shown below it, and takes the keys and the mouse of the window. `.scene` of it is the scene as edited so far.
+    With `notebook=True`, and in a notebook without a display unless `notebook` is False, return a `Viewer` at once. A
+    Viewer that is the last value of a cell is shown below the cell, and takes keys and mouse as the window does. Its
+    `scene` is the scene as edited so far.
 
-    Ctrl+S writes the file that the scene was read from, or `scene.rt`. `size` is that of the window in pixels. The
-    settings: `samples`, the most rays per pixel of a picture at rest, 16; `keys`, the layout of the keyboard: auto,
-    qwerty, azerty or qwertz; `threads`, `precision` and `dither` as of `minirt.render`. MlxError where neither can be
-    opened.
+    Ctrl+S writes the file that the scene was read from, or `scene.rt`. `size` is that of the window in pixels; `mlx`
+    opens the window, not the Viewer. The settings: `samples`, the most rays per pixel of a picture at rest, 16; `keys`,
+    the layout of the keyboard: auto, qwerty, azerty or qwertz; `threads`, `precision` and `dither` as of
+    `minirt.render`. MlxError if neither can be opened, KeyboardInterrupt if Ctrl+C ends the window.
     """
     check_scene(scene, "view")
     if not notebook:

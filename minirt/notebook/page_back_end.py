@@ -71,6 +71,10 @@ class PageDisplay(Display):
         self._due = inf  # when the frame in the page is replaced by a finer one
 
     def run(self) -> None:
+        """Take turns until the loop ends: after events, and each TICK seconds while the program is busy.
+
+        Between turns the last frame is sent again in finer quality when that is due.
+        """
         next_tick = 0.0
         self.turn(tick=False)
         while not self.over:
@@ -138,7 +142,10 @@ BUTTONS = (Button.LEFT, Button.MIDDLE, Button.RIGHT, Button.BACK, Button.FORWARD
 
 
 def deliver(window: Window, message: Message, now: float) -> None:
-    """Report an event of the page to the window; events of an unknown kind are ignored."""
+    """Report an event of the page to the window, at the time `now` in seconds.
+
+    Keys without a code, unknown buttons and events of an unknown kind are ignored.
+    """
     point = 0, 0
     if "x" in message:  # an event of the pointer: x and y are shares of width and height
         window.keyboard.modifiers = modifiers_of(message)
@@ -178,15 +185,16 @@ def code_of(event: Message) -> int | None:
     """
     key: str = event["key"]
     code: str = event["code"]
-    side = code.replace("Left", "L").replace("Right", "R")  # ShiftL, which is the name of a key of ours
-    if side != code and side in KEYS:
-        return KEYS[side]
-    if len(key) != 1:
+    sided_name = code.replace("Left", "L").replace("Right", "R")  # ShiftL for ShiftLeft, as in KEYS
+    if sided_name != code and sided_name in KEYS:
+        return KEYS[sided_name]
+    if len(key) != 1:  # a name, such as ArrowUp
         name = key.removeprefix("Arrow")
         usual = KEYS.get("Return" if name == "Enter" else name)
         return KEYS.get(f"Keypad{name}", usual) if event["location"] == KEYPAD else usual
-    if not key.isascii() and code.startswith("Key") and len(code) == 4:
-        return ord(code[3].lower())
+    american = code.removeprefix("Key")
+    if not key.isascii() and american != code and len(american) == 1:
+        return ord(american.lower())
     return ord(key.lower())
 
 

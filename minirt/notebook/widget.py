@@ -76,7 +76,8 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
         return f"<Viewer of {self.width}x{self.height} pixels: `.scene` is the scene as edited>"
 
     def _run(self) -> None:
-        """Run the session until `close`: Escape, which ends the loop, only gives the keyboard back to the notebook."""
+        """Run the session until `close`: Escape, which ends the loop, only gives the keyboard back to the notebook. An
+        error ends the session and is shown in the page; an unexpected one is raised, too."""
         session = self._session
         try:
             while not self._closing:

@@ -38,7 +38,8 @@ def title_of(path: Path, scene: Scene, is_unsaved: bool = False) -> str:
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
     """Write a new file `name-1.suffix`, or with the first number that no file has; return its path. FileError.
 
-    `first` is a name to try before. No other program's file is ever replaced, even one that is written just now.
+    `path` gives folder and name; `first` is a path to try before. No other program's file is ever replaced, even one
+    that is written just now.
     """
     numbered = (path.with_name(f"{path.stem}-{n}{suffix}") for n in count(1))
     try:
@@ -99,10 +100,10 @@ def looks(one: Item, other: Item) -> bool:
 
 
 def merged(base: list[str], *versions: list[str]) -> list[str] | None:
-    """Lines of a file with the changes that versions of it made; None where they changed the same line differently."""
-    from difflib import SequenceMatcher  # which takes a millisecond of a start
+    """Lines of a file, `base`, with the changes of its versions; None where these changed the same line differently."""
+    from difflib import SequenceMatcher  # an import that takes a millisecond of a start
 
-    changes: list[tuple[int, int, list[str]]] = []  # first line, end and what takes their place
+    changes: list[tuple[int, int, list[str]]] = []  # of lines [start, end) of the base, and what takes their place
     for version in versions:
         for tag, start, end, first, last in SequenceMatcher(None, base, version, autojunk=False).get_opcodes():
             change = start, end, version[first:last]
@@ -112,7 +113,7 @@ def merged(base: list[str], *versions: list[str]) -> list[str] | None:
     if any(start < end for (_, end, _), (start, _, _) in pairwise(changes)):
         return None
     lines = base
-    for start, end, new in reversed(changes):
+    for start, end, new in reversed(changes):  # from the end, so that numbers of earlier lines stay right
         lines = [*lines[:start], *new, *lines[end:]]
     return lines
 
@@ -174,15 +175,15 @@ class WatchedFile:
 
 
 def usable_files(scene: Scene, is_mesh: bool, after: str = "", steps: float = 1.0) -> Iterator[str | MeshFile]:
-    """Yield the usable pictures, or meshes, beside the scene and in its folders; cyclically from the one after a name.
+    """Yield the usable pictures, or meshes, beside the scene and in its folders, each once, by their names.
 
-    In reverse order if `steps` is negative. Names that a scene line cannot spell, and files of wrong content, are left
-    out.
+    The first is the one that follows the name `after`, in reverse order if `steps` is negative. Names that a scene line
+    cannot spell, and files of wrong content, are left out.
     """
     top, suffixes = scene.beside(""), MESH_SUFFIXES if is_mesh else PICTURE_SUFFIXES
     files: list[Path] = []
     with suppress(OSError):
-        files += [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # which passes over what cannot be read
+        files += [*sorted(top.glob("*")), *sorted(top.glob("[!.]*/*"))]  # folders that cannot be read are passed over
     names = [each.relative_to(top).as_posix() for each in files if each.suffix.lower() in suffixes]
     if steps < 0:
         names.reverse()

@@ -69,7 +69,11 @@ def searchable(text: str) -> str:
 
 @lru_cache(maxsize=512)
 def phrase(text: str, code: str) -> str:
-    """Translate a phrase: as a whole, by its pattern, or from its beginning: "diameter must be > 0, got -3"."""
+    """Translate a phrase into the language `code`; what has no translation stays English.
+
+    The first way that the catalogue knows is taken: as a whole, by a pattern, after the place in a file, or the longest
+    beginning and then the rest by itself, as in "diameter must be > 0, got -3".
+    """
     texts, patterns = catalogue(code)
     if text in texts or not text:
         return texts.get(text, text)

@@ -76,7 +76,7 @@ class Recovery:
                 self._told = True
 
     def close(self, *, delete: bool) -> None:
-        """Stop; `delete`: nothing in the file is needed any more."""
+        """Stop, and `delete` the file, as nothing in it is needed any more, or else write the last change to it."""
         timer = self._timer
         if timer:
             timer.cancel()
@@ -91,7 +91,8 @@ class Recovery:
                 self.path = None
 
     def _write(self, version: Version) -> None:
-        """Bring the file up to date with a version. OSError, RuntimeError."""
+        """Bring the file up to date with a version, or delete it if the version has no unsaved changes. For another
+        scene file than before, it is a new file. OSError, RuntimeError."""
         unsaved = contents_differ(version.scene, version.saved)
         if not unsaved or (self._written and self._written.file != version.file):
             self._delete()
@@ -102,7 +103,7 @@ class Recovery:
                 path = folder / f"{name_of(version.file)}-{os.urandom(6).hex()}.rt"
                 self.path, self._lock = path, open_lock(path)
             file_io.write(self.path, dump(version.scene).encode(), file_io.PRIVATE_FILE)
-            with suppress(OSError):  # clocks are set back, too: what was changed is never newer than its changes
+            with suppress(OSError):  # the scene file is never newer than its changes, even if a clock was set back
                 file, kept = version.file.stat(), self.path.stat()
                 os.utime(self.path, ns=(kept.st_atime_ns, max(file.st_mtime_ns, kept.st_mtime_ns)))
         self._written = version

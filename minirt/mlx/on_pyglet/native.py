@@ -36,16 +36,18 @@ SYMBOLS = {pyglet_key.LOPTION: Key.ALT_L, pyglet_key.ROPTION: Key.ALT_R, pyglet_
 
 
 class NativeWindow(Window):
-    """A pyglet window, with handlers of pyglet's events under its names, after which a turn of the loop follows.
+    """A pyglet window. A method with the name of an event of pyglet, such as `on_draw`, handles that event.
 
-    They return True to suppress pyglet's defaults: Escape and the close button close nothing here.
+    After each event the loop of the display takes a turn. Handlers return True to suppress pyglet's defaults: Escape
+    and the close button close nothing here.
     """
 
     def __post_init__(self) -> None:
+        """Open the window, and connect its events to the methods here. MlxError."""
         super().__post_init__()
         self._wheel = [0.0, 0.0]  # fractions of steps, which touch pads send
-        self._is_reported = False  # the key event that pyglet handles now
-        self._triangles: OverlayTriangles | None = None  # draw the overlay, since there was one
+        self._is_reported = False  # whether the key event that pyglet handles now was reported before
+        self._triangles: OverlayTriangles | None = None  # draws the overlay; made when the overlay is first drawn
         self._cursors: dict[Cursor, Any] = {}
         try:
             self.pyglet = PygletWindow(
@@ -57,7 +59,7 @@ class NativeWindow(Window):
             )  # fmt: skip
             x11.fix_drag_enter(self.pyglet)
             x11.report_key_events(self.pyglet, self._on_key_event)
-            # pyglet refers to methods weakly, which those of an integer cannot be.
+            # `partial`: pyglet makes weak references to methods. A window is an int, to which there can be none.
             names = set(dir(self)).intersection(PygletWindow.event_types)
             self.pyglet.push_handlers(
                 **{name: partial(getattr(self, name)) for name in names},
@@ -172,10 +174,10 @@ class NativeWindow(Window):
         return True
 
     def _set_fullscreen(self, on: bool) -> None:
-        """Enter or leave full screen: the window manager changes the size of the window, which stays the same one.
+        """Enter or leave full screen, if the window is still open; X11's window manager then only resizes it.
 
-        Without such a window manager, and for windows of fixed size, pyglet may replace the window. Then all keys are
-        released, because the new one gets no releases.
+        Without such a window manager, and for windows of fixed size, pyglet may replace the system's window. Then all
+        keys are released, because the new window gets no releases.
         """
         if not self.is_open:
             return
@@ -185,7 +187,7 @@ class NativeWindow(Window):
         self.set_icons()
         self._forget_keys()
         self.keyboard.release_all()
-        self.on_resize(0, 0)
+        self.on_resize(0, 0)  # which asks pyglet for the size, and uses no argument
 
     def _on_key_event(self, event: x11.KeyEvent | None) -> None:
         """Report a key event before pyglet handles it, if pyglet would report another key; None: it has handled it."""

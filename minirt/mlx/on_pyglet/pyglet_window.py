@@ -72,7 +72,8 @@ class CanvasTexture:
         self._size = (0, 0)
 
     def draw(self, canvas: Canvas, width: int, height: int) -> None:
-        """Upload the changes of the canvas and blit it into the frame buffer of width by height pixels."""
+        """Upload the changes of the canvas and blit it into the frame buffer of width by height pixels. The canvas then
+        has no changes any more. If its size is a new one, all of it is uploaded."""
         gl.glActiveTexture(gl.GL_TEXTURE0)
         gl.glBindTexture(gl.GL_TEXTURE_2D, self._texture)
         gl.glBindFramebuffer(gl.GL_READ_FRAMEBUFFER, self._framebuffer)
@@ -91,7 +92,9 @@ class CanvasTexture:
             gl.glPixelStorei(gl.GL_UNPACK_ROW_LENGTH, 0)
         gl.glDisable(gl.GL_SCISSOR_TEST)
         gl.glBlitFramebuffer(
-            0, 0, canvas.width, canvas.height, 0, height, width, 0, gl.GL_COLOR_BUFFER_BIT, gl.GL_NEAREST
+            0, 0, canvas.width, canvas.height,
+            0, height, width, 0,  # upside down
+            gl.GL_COLOR_BUFFER_BIT, gl.GL_NEAREST,
         )  # fmt: skip
 
     def _allocate(self, width: int, height: int) -> None:
@@ -158,20 +161,22 @@ class OverlayTriangles:
         gl.glDeleteTextures(1, ctypes.byref(gl.GLuint(texture)))
 
     def draw(self, vertices: int, vertex_count: int, indices: int, index_count: int, runs: Sequence[Run]) -> None:
-        """Blend triangles into the picture, in this order, from the addresses of their vertices and indices."""
+        """Blend triangles into the picture, in this order. `vertices` and `indices` are addresses in memory; for
+        their formats and for `runs` see `Mlx.mlx_overlay_hook`."""
         self._program.use()
         self._program["size"] = self.size
         gl.glBindVertexArray(self._array)
         fill(gl.GL_ARRAY_BUFFER, self._vertices, vertices, vertex_count * VERTEX)
         fill(gl.GL_ELEMENT_ARRAY_BUFFER, self._indices, indices, index_count * INDEX)
-        for place, (count, kind, normalised, offset) in enumerate(ATTRIBUTES):
-            gl.glEnableVertexAttribArray(place)
-            gl.glVertexAttribPointer(place, count, kind, normalised, VERTEX, offset)
+        for location, (count, kind, normalised, offset) in enumerate(ATTRIBUTES):
+            gl.glEnableVertexAttribArray(location)
+            gl.glVertexAttribPointer(location, count, kind, normalised, VERTEX, offset)
         gl.glViewport(0, 0, *self.pixels)
         gl.glEnable(gl.GL_BLEND)
         gl.glBlendFunc(gl.GL_SRC_ALPHA, gl.GL_ONE_MINUS_SRC_ALPHA)
         gl.glEnable(gl.GL_SCISSOR_TEST)
         gl.glActiveTexture(gl.GL_TEXTURE0)
+        # Pixels of the frame buffer in a pixel of the overlay.
         across, down = (pixels / size for pixels, size in zip(self.pixels, self.size, strict=True))
         for texture, (left, top, right, bottom), count, first_index, first_vertex in runs:
             x, y = round(left * across), self.pixels[1] - round(bottom * down)  # OpenGL counts from the bottom

@@ -53,8 +53,10 @@ def manager_has_full_screen(window: Any) -> bool:
 
 
 def request_full_screen(window: Any, on: bool) -> bool:
-    """Ask the window manager to let the window fill the screen, or to give it its former size and place; return whether
-    one is running that can."""
+    """Ask the window manager to let the window fill the screen, or give it its former size again if not `on`.
+
+    Returns False, and asks nothing, on other systems and where no window manager runs that can do this.
+    """
     if not is_x11(window) or not manager_has_full_screen(window):
         return False
     event = xlib.XEvent()
@@ -168,17 +170,17 @@ def fix_drag_enter(window: Any) -> None:
     """Make a pyglet window read the data types in the message. On other platforms this does nothing."""
     original: Any = getattr(window, "_event_drag_enter", None)
 
-    def note(event: Any) -> None:
+    def read_types(event: Any) -> None:
         source, flags, *types = event.xclient.data.l
         if flags & 1:  # there are more than three types, in a list that pyglet reads correctly
             original(event)
             return
-        window._xdnd_source, window._xdnd_version = source, flags >> 24
+        window._xdnd_source, window._xdnd_version = source, flags >> 24  # the highest byte
         files = window._xdnd_atoms[FILES]
-        window._xdnd_format = files if files in types else None
+        window._xdnd_format = files if files in types else None  # None: pyglet refuses what is dragged
 
     if original:
-        window._event_drag_enter = note
+        window._event_drag_enter = read_types
 
 
 # The X server was killed, or has closed the connection of this program. Xlib ends a process whose connection breaks,

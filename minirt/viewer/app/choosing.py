@@ -49,7 +49,7 @@ class ListRow(NamedTuple):
 
 
 class Choosing:
-    """The list that is open. One of states is so as long as the last one that was chosen is the last change."""
+    """The list that is open. A list of states is open only while the state chosen last is the last change."""
 
     def __init__(self, session: Session, perform: Callable[[Binding], None]) -> None:
         self.session = session
@@ -70,12 +70,13 @@ class Choosing:
         return self._before is not None and (not self._group or (last is not None and last[0] == self._group))
 
     def begin(self, action: str, state: State) -> None:
-        """Add the first choice of an action of LISTS, or by keys an element of the kind that was added last."""
+        """Open the list of an action of LISTS for the selected element of `state`, and choose the kind that keys added
+        last, or else the first row that is not there yet. A message tells of an empty list."""
         group = LISTS[action]
         title, complaint = TITLES[group]
         if group == COLOUR and (every := colours_of(state.element)):
             state = state.with_active(next_colour(state) if action == SECOND_COLOUR else every[0])
-            title = state.active.name.partition(":")[0]  # of all three parts
+            title, _, _ = state.active.name.partition(":")  # without the name of a part
         choices = list(colours(state) if group == COLOUR else structure.choices(state, group))
         if not choices:
             self.session.show(state.with_message(complaint.format(state.element.title)))
@@ -83,10 +84,10 @@ class Choosing:
         self._before, self._group, self._letters, self._title = state, group, "", title
         self.names_value = False
         self._every = [ListRow(translated(title), each, note=structure.present(state, each)) for title, each in choices]
-        kind = None if self._place or group != structure.ELEMENT else state.added_kind  # a pointer expects the first
-        again = (row for row, (_, each) in zip(self._every, choices, strict=True) if type(each.element) is kind)
+        last_kind = state.added_kind if group == structure.ELEMENT and not self._place else None
+        of_kind = (row for row, (_, each) in zip(self._every, choices, strict=True) if type(each.element) is last_kind)
         new = (row for row in self._every if not row.note)
-        self.choose(next(again, None) or next(new, self._every[0]))
+        self.choose(next(of_kind, None) or next(new, self._every[0]))
 
     def begin_menu(self, place: tuple[int, int], point: Triple | None) -> None:
         """Show what can be done with the selected element, or at a pixel that shows a point of the scene or none."""
@@ -106,13 +107,13 @@ class Choosing:
             self.show()
 
     def takes(self, key: int, pressed: Binding | None) -> bool:
-        """Take a key press; False if the list is closed or the key means nothing to it."""
+        """Take a key press, with its binding; False if the list is closed or the key means nothing to the list."""
         if not self.is_open:
             return False
         action = pressed.action if pressed and not self._letters else ""
-        if self._group and LISTS.get(action) == self._group:  # again: the next choice
+        if self._group and LISTS.get(action) == self._group:  # the key of the list itself
             self.step(ADDING.get(action, 1))
-        elif named := [row for row in self._every if row.action and row.action == action]:  # the key beside it
+        elif named := [row for row in self._every if row.action and row.action == action]:  # the key of a row
             self.choose(named[0])
             self.take()
         elif (self._group and action in LISTS) or self.session.modifiers & SIGNIFICANT:
@@ -132,9 +133,9 @@ class Choosing:
         return True
 
     def takes_button(self, button: int, x: int, y: int) -> bool:
-        """Take a button that goes down on a row, or the wheel; False if the list is closed or it means nothing to it.
+        """Take a button that goes down on a row, or the wheel; False if the list is closed or the button means nothing.
 
-        Beside a list of actions any button closes it.
+        Any button beside a list of actions closes that list.
         """
         if not self.is_open:
             return False
@@ -231,7 +232,7 @@ class Choosing:
         return next((index for index, row in enumerate(rows) if row is self._chosen), 0)
 
     def show(self, complaint: str = "") -> None:
-        """Show the list, with a complaint in place of the hint on its keys; nothing if it is closed."""
+        """Show the list, with a complaint in place of the hint on its keys; no list if it is closed."""
         screen = self.session.screen
         screen.list_box = None
         if self.is_open:

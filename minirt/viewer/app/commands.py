@@ -90,9 +90,10 @@ def toggle_full_screen(session: Session) -> None:
 
 
 def save_scene(session: Session) -> None:
-    """Write the scene to its file; if another program has changed the file, copy it first. SceneError, FileError.
+    """Write the scene to its file; what another program has written there is first copied to a new file.
 
-    The first time for a file in another program's dialect, ask with a banner instead.
+    For a file in another program's dialect, show a banner with a question instead, and write when asked again. Raises
+    SceneError for a name that is no scene file's, FileError.
     """
     check_name(session.path)
     question = FOREIGN.format(session.path.name, named("Ctrl+S"), named("Ctrl+Shift+S"))
@@ -104,16 +105,16 @@ def save_scene(session: Session) -> None:
     session.state.scene.save(session.path)
     session.file.accept(file_io.stamps(session.path))
     session.saved, session.lenient = session.state.scene, False
-    session.screen.banner, session.title_made_from = "", ()
+    session.screen.banner, session.title_made_from = "", ()  # (): a file that was new is there now
     session.found_changes = None
     kept = f"; what another program had written is in {copy}" if copy else ""
     session.say(f"saved: {session.path}{kept}")
 
 
 def follow_change(session: Session) -> None:
-    """Show the file after another program has written it, with the unsaved changes of the session if there are some.
+    """Show the file after another program has changed it, with the unsaved changes of the session if there are some.
 
-    If the file has errors or is gone, or both changed the same line, the last picture stays and a banner says so.
+    If the file has errors or is gone, or cannot be merged with these changes, the picture stays and a banner says so.
     """
     if session.file.missing:
         session.screen.banner = DELETED.format(session.path.name, named("Ctrl+S"))
@@ -131,19 +132,23 @@ def follow_change(session: Session) -> None:
 
 
 def merge_file(session: Session) -> bool:
-    """Take the changes of another program beside those of the session; False if both changed a line. SceneError."""
-    seen, mine, saved = file_io.stamps(session.path), session.state.scene, session.saved
-    scene = load(session.path, session.lenient, mine.camera.left_handed).scene
+    """Show the scene with the changes of another program in its file and those of the session.
+
+    Returns False, and nothing changes, if both changed the same line or a version has more than MOST_LINES. SceneError
+    if the file cannot be read.
+    """
+    stamps, mine, saved = file_io.stamps(session.path), session.state.scene, session.saved
+    theirs = load(session.path, session.lenient, mine.camera.left_handed).scene
     for camera, before in zip(mine.cameras, saved.cameras, strict=False):
         mine = mine.replace(camera, before) if looks(camera, before) else mine  # looking around changes no line
-    texts = [dump(each).split("\n") for each in (saved, mine, scene)]
+    texts = [dump(each).split("\n") for each in (saved, mine, theirs)]
     lines = files.merged(*texts) if max(map(len, texts)) <= MOST_LINES else None
     if lines is None:
         return False
     both = parse("\n".join(lines), session.path).scene
-    both = both.mirrored() if mine.camera.left_handed else both
-    session.file.accept(seen)
-    session.show_file(state_after_reading(session.state, with_edited_cameras(scene, both, "value"), saved), scene)
+    both = both.mirrored() if mine.camera.left_handed else both  # handedness is on no line
+    session.file.accept(stamps)
+    session.show_file(state_after_reading(session.state, with_edited_cameras(theirs, both, "value"), saved), theirs)
     return True
 
 

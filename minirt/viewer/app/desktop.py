@@ -91,7 +91,8 @@ def open_view(
     keys: str = "auto",
     dither: bool = False,
 ) -> Session:
-    """Open the session of `minirt.view`, whose Ctrl+S writes the file that the scene was read from, or `scene.rt`."""
+    """Open the session of `minirt.view`, whose Ctrl+S writes the file that the scene was read from, or `scene.rt`. The
+    parameters are those of `minirt.view`. MlxError if no window can be opened."""
     renderer = shared_renderer(threads, precision, dither=dither)
     return open_session(scene, scene.file or Path("scene.rt"), size, renderer, mlx, keys=keys, samples=samples)
 
@@ -99,7 +100,11 @@ def open_view(
 def open_session(
     scene: Scene, path: Path, size: tuple[int, int] | None, renderer: Renderer, mlx: Mlx, **options: Any
 ) -> Session:
-    """Open a session with its window, connected to the window's events; `options` are those of `Session`. MlxError."""
+    """Open a session with its window, connected to the window's events; `options` are those of `Session`.
+
+    size: of the window in pixels, cut to that of the screen; None for the scene's. After an error, which is MlxError if
+    no window can be opened, the display is closed.
+    """
     mlx.mlx_set_options(strict=True)
     display = mlx.mlx_init()
     try:
@@ -128,13 +133,16 @@ def application_icons() -> list[MlxImage]:
 
 
 def run_event_loop(session: Session) -> tuple[int, bool]:
-    """Run the event loop until it ends; return the exit status, and whether all threads have ended. RenderError where
-    the session had an error that miniRT did not expect."""
+    """Run the event loop until it ends, then close window and threads; return the exit status, and whether all threads
+    have ended.
+
+    The status is OK, or that of the first signal: 128 + its number. RenderError for an error that nobody expected.
+    """
     statuses = []
 
     def end(number: int) -> None:
         statuses.append(128 + number)
-        if len(statuses) > 1:  # a hook does not return
+        if len(statuses) > 1:  # the first signal did not end the loop, because a hook does not return
             raise KeyboardInterrupt
         session.quit()
         session.mlx.mlx_wake(session.display)

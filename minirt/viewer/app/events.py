@@ -36,9 +36,10 @@ NEAR = 3.0  # sizes of the tab of the panel: a pointer so close to it shows it
 
 
 class EventDispatcher:
-    """Handlers for the events of a session's window, which are its hooks from the start."""
+    """Handlers for the events of a session's window."""
 
     def __init__(self, session: Session) -> None:
+        """Make the handlers the hooks of the window."""
         self.session = session
         self.mouse = Mouse(session, self.perform)
         self.typing = Typing(session)
@@ -57,7 +58,7 @@ class EventDispatcher:
             Event.MOTION_NOTIFY: self.mouse.on_motion,
             Event.ENTER_NOTIFY: partial(setattr, self.mouse, "inside", True),
             Event.LEAVE_NOTIFY: partial(setattr, self.mouse, "inside", False),
-            Event.FOCUS_IN: lambda: None,
+            Event.FOCUS_IN: lambda: None,  # for the panel alone
             Event.FOCUS_OUT: session.release_button,
             Event.DESTROY_NOTIFY: session.quit,
         }
@@ -69,9 +70,10 @@ class EventDispatcher:
         mlx.mlx_wake_hook(session.display, self.as_hook(self.on_wake))
 
     def offer(self, event: Event | str, handler: Callable[..., object], *arguments: Any) -> None:
-        """Offer an event to the panel, and handle it if the panel does not take it."""
+        """Offer an event, with the arguments of its hook, to the panel, the tab, the list of rays, the tool row and the
+        line on top; call `handler` with the arguments if none of them takes the event."""
         if self.panel and self.panel.is_open and self.panel.takes(event, *arguments):
-            if event == Event.BUTTON_PRESS:  # a click beside a list or a typed value closes it
+            if event == Event.BUTTON_PRESS:  # a click on the panel closes a list or a typed value
                 self.typing.end()
                 self.choosing.end()
             self.session.screen.tool = None
@@ -81,7 +83,7 @@ class EventDispatcher:
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if screen.has_tab and screen.is_on_tab(x, y):
                 self.toggle_panel()
             case Event.BUTTON_PRESS, (button, x, y) if choose_row(session, button, x, y):
-                pass
+                pass  # the row is chosen by the condition
             case Event.BUTTON_PRESS, (Button.LEFT, x, y) if not self.choosing.row_at(x, y) and screen.tool_at(x, y):
                 self.use_tool(x, y)
             case Event.BUTTON_PRESS, (Button.RIGHT | Button.MIDDLE, x, y) if screen.tool_at(x, y):
@@ -109,8 +111,8 @@ class EventDispatcher:
         return is_free and not self.mouse.icon_at(x, y)
 
     def use_tool(self, x: int, y: int) -> None:
-        """Use the tool at a pixel; an open list or a typed value is closed first, and a tool that opens a list does no
-        more then."""
+        """Use the tool at a pixel, where one must be. An open list or a typed value is closed first; after an open list
+        a tool that opens a list does no more."""
         session, is_open = self.session, self.choosing.is_open
         session.pointer, tool = (x, y), session.screen.tool_at(x, y)
         assert tool
@@ -142,7 +144,7 @@ class EventDispatcher:
             self.panel.frame()
 
     def on_wake(self) -> None:
-        """Another thread woke the event loop: the painter has a result, or the file has changed."""
+        """Show what another thread has woken the event loop for: results of the painter, or a change of the file."""
         session = self.session
         if session.file.news.is_set():
             session.file.news.clear()
@@ -199,10 +201,12 @@ class EventDispatcher:
 
     def perform_for_panel(self, binding: Binding) -> None:
         """Perform the action of a button of the panel; a list that it opens is beside the panel."""
-        self.choosing.perform_at((self.session.screen.size[0], BELOW * self.session.screen.text_size), binding.action)
+        screen = self.session.screen
+        self.choosing.perform_at((screen.size[0], BELOW * screen.text_size), binding.action)
 
     def toggle_panel(self, has_keys: bool = True) -> None:
-        """Open the panel, which then `has_keys`, or close it; slimgui is imported when it opens first."""
+        """Open the panel, or close it if it is open; a message says if the window cannot have one. `has_keys`: whether
+        keys go to the panel once it is open. slimgui is imported when the panel first opens."""
         session = self.session
         session.screen.has_tab, session.screen.help = False, 0
         try:
@@ -214,7 +218,7 @@ class EventDispatcher:
             session.refresh()
         else:
             self.panel = self.panel or Panel(session, self.perform_for_panel)
-            self.panel.open(not self.panel.is_open, has_keys)
+            self.panel.open(is_open=not self.panel.is_open, has_keys=has_keys)
         if session.recovery:
             remember_panel(is_open=bool(self.panel and self.panel.is_open))
 

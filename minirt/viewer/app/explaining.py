@@ -12,11 +12,12 @@ LOOKS = {"": "colours", "normals": "normals", "depth": "depth", "ids": "a colour
 
 
 def explain_pixel(session: Session) -> None:
-    """Show the rays of the pixel under the pointer; again at the same pixel: hide them. RenderError."""
+    """Show the rays of the pixel under the pointer, or hide them if they are shown already. RenderError."""
     screen, scene = session.screen, session.shown_scene
     x, y = session.pointer
     before = screen.explained
-    if before and before.scene is scene and (before.explanation.x, before.explanation.y) == (x, y):
+    is_same_pixel = before is not None and (before.explanation.x, before.explanation.y) == (x, y)
+    if before and before.scene is scene and is_same_pixel:
         screen.explained = None
         return
     from minirt.rendering.queries.explain import explained_by
@@ -25,14 +26,17 @@ def explain_pixel(session: Session) -> None:
     renderer.cancel()  # the picture that is being made
     explanation = explained_by(renderer, scene, *screen.size, x, y)
     screen.explained = explained(explanation, scene)
-    session.say(screen.explained.parts[0].details)
+    session.say(screen.explained.parts[0].details)  # of the ray from the eye
 
 
 def choose_row(session: Session, button: int, x: int, y: int) -> bool:
-    """Choose the row at a pixel of the list of rays, or the next by the wheel; its numbers are shown. False beside the
-    list."""
+    """Choose the row at a pixel of the list of rays, or by the wheel there the next one, and show its numbers.
+
+    Returns False for other buttons, beside the list, and where the list is not shown.
+    """
     screen, shown = session.screen, session.screen.explained
-    if not shown or screen.list_box or screen.help or not screen.level or button not in (Button.LEFT, *WHEEL):
+    is_covered = screen.list_box or screen.help or not screen.level
+    if not shown or is_covered or button not in (Button.LEFT, *WHEEL):
         return False
     row = layout_of(shown.box(screen.scale), *screen.size, screen.text_size).row_at(x, y)
     if row is None:

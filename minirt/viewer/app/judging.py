@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import islice
-
 from minirt.scene import Scene
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import platform_spelling as named
@@ -22,13 +20,19 @@ class PictureJudge:
         self._told = set[str]()  # what was noticed about it
 
     def judge(self) -> None:
-        """Say the first thing that is noticed about the latest picture and was not about the one before."""
+        """Show the first notice about the latest picture that was none about the picture judged before.
+
+        Previews and pictures of the scene that was judged last are passed over. So is a picture after an edit, while
+        something else goes on or if the scene has more than MOST_SHAPES.
+        """
         session = self.session
         latest = session.refinement.latest
-        if latest is None or latest.preview or latest.pixels is None or latest.job.scene is self._scene:
+        if latest is None or latest.preview or latest.pixels is None:
+            return
+        if latest.job.scene is self._scene:
             return
         scene, is_first = latest.job.scene, self._saved is not session.saved
-        if is_first and scene is not session.saved and scene is not session.opened:
+        if is_first and scene is not session.saved and scene is not session.opened:  # still the file before
             return
         is_busy = session.pressed or session.screen.list_box or not session.refinement.complete
         if not is_first and (is_busy or sum(map(len, scene.runs)) > MOST_SHAPES):
@@ -38,10 +42,13 @@ class PictureJudge:
 
         height, width = latest.pixels.shape[:2]
         notices = notices_about(scene, latest.pixels[..., :3], (width, height)) if scene.runs else iter([NO_SHAPES])
-        reasons = [notice.partition(SHOWN_BY)[:2] for notice in notices]
+        parts = [notice.partition(SHOWN_BY) for notice in notices]
+        reasons = [(reason, bool(separator)) for reason, separator, _ in parts]  # with whether F helps
         told = set[str]() if is_first else self._told
-        self._scene, self._saved, self._told = scene, session.saved, {why for why, _ in reasons}
+        self._scene, self._saved, self._told = scene, session.saved, {reason for reason, _ in reasons}
         before = f"{session.state.message}\n" if session.state.message else ""
-        for why, can_be_shown in islice((each for each in reasons if each[0] not in told), 1):
-            session.say(before + why + (f"; {named('F')} brings the scene into view" if can_be_shown else ""))
-            session.refresh()
+        for reason, can_be_shown in reasons:
+            if reason not in told:
+                session.say(before + reason + (f"; {named('F')} brings the scene into view" if can_be_shown else ""))
+                session.refresh()
+                return

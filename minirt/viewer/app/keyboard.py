@@ -28,9 +28,9 @@ class KeyDispatcher:
         self._unbound: int | None = None  # the key without a binding that is down: it types the next character
 
     def on_press(self, code: int | str) -> None:
-        """A key goes down, or a character was typed."""
+        """Handle a key that goes down, by its code, or one or more characters that were typed."""
         session = self.session
-        if isinstance(code, str):  # one or more characters; Shift may be part of typing them
+        if isinstance(code, str):  # Shift may be a part of typing them
             for character in code:
                 self.on_character(character)
             return
@@ -40,19 +40,20 @@ class KeyDispatcher:
         self._unbound = None if pressed or code in MODIFIER_KEYS else code
         if help_takes(session, code, pressed) or self.typing.takes(code):
             return
-        if self.choosing.is_open and self.choosing.names_value and code == Key.TAB:
+        if self.choosing.is_open and self.choosing.names_value and code == Key.TAB:  # the next value after a colour
             self.choosing.take()
             self.typing.go_on(whole=True)
             return
         if self.choosing.takes(code, pressed):
             return
-        if self.typing.is_colour and Key.A <= code <= Key.Z and not session.modifiers & SIGNIFICANT:
+        is_letter = Key.A <= code <= Key.Z and not session.modifiers & SIGNIFICANT
+        if self.typing.is_colour and is_letter:  # the first letter of the word for a colour
             self.typing.end()
             self.perform(BY_ACTION["choose colour"])
-            self.choosing.takes(code, None)  # the first letter of its word
+            self.choosing.takes(code, None)
             self.choosing.names_value = True
             return
-        if pressed:  # any other key that does something closes them
+        if pressed:  # any other key that does something closes a list or a typed value
             self.typing.end()
             self.choosing.end()
             if pressed.held:
@@ -61,7 +62,10 @@ class KeyDispatcher:
                 self.perform(pressed)
 
     def on_character(self, character: str) -> None:
-        """A character was typed: of a value, or one that a binding names."""
+        """Handle a typed character: a part of a value, or one that a binding names.
+
+        Others do nothing. While the help is open, only the character that closes the help counts.
+        """
         session = self.session
         if self.typing.text:
             self.typing.on_text(character)

@@ -30,19 +30,22 @@ MENU = {  # its rows: actions, and what they are called there
 
 
 def menu_of(state: State, point: Triple | None) -> Iterator[str]:
-    """Yield the actions of a list about the selected element, at a point of the scene or where there is none."""
+    """Yield the actions of MENU that make sense for the selected element, in this order.
+
+    `point`: of the scene, under the pointer; None where the picture shows the background.
+    """
     element = state.element
-    without = {
+    makes_no_sense = {  # actions that are not here always make sense
         "choose colour": colour_value(element) is None,
         SECOND_COLOUR: len(colours_of(element)) < 2,
         "delete": element.required,
         "drop": not isinstance(element, Shape) or element.infinite,
         "look through": not isinstance(element, Camera) or element is state.scene.camera,
         "focus": point is None,
-        "toggle panel": not isinstance(element, Camera),
+        "toggle panel": not isinstance(element, Camera),  # which is selected where nothing else is
         "undo": not state.undo_stack,
         "redo": not state.redo_stack,
     }
     for action in MENU:
-        if not without.get(action):
+        if not makes_no_sense.get(action):
             yield action

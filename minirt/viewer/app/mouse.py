@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import dist, inf
+from typing import Any
 
+from minirt.element import Element
 from minirt.errors import MiniRTError
 from minirt.fields import Triple
 from minirt.mlx import Button, Cursor, Modifier
@@ -52,7 +54,7 @@ class Mouse:
         self._pressed_before: tuple[float, int | None] = -inf, None  # time, and the element, of the last press
 
     def on_press(self, button: int, x: int, y: int, shows_handles: bool) -> None:
-        """A button goes down, or the wheel turns; handles can be grabbed if the window shows them."""
+        """Handle a button that goes down at pixel x, y, or the wheel; `shows_handles`: handles can be grabbed."""
         session = self.session
         session.pointer = x, y
         session.release_button()
@@ -77,8 +79,12 @@ class Mouse:
             session.show(state if owner is None else state.make_primary(owner))
         state = session.state
         element = state.element if owner is None or button != Button.LEFT else state.scene.elements[owner]
-        start = DragStart(session.view, x, y, element, state.scene.camera, point, button, drag.action)
-        session.pressed = start._replace(owner=owner)
+        self.note_press(x, y, element, point, button=button, action=drag.action, owner=owner)
+
+    def note_press(self, x: int, y: int, element: Element, point: Triple | None, **others: Any) -> None:
+        """Note that a button is down on the picture; see the fields of `DragStart`."""
+        session = self.session
+        session.pressed = DragStart(session.view, x, y, element, session.state.scene.camera, point, **others)
 
     def looks_through(self, owner: int | None) -> bool:
         """Look through a further camera where its icon is pressed twice; return whether it is."""
@@ -93,26 +99,25 @@ class Mouse:
         return True
 
     def grab(self, x: int, y: int, shows_handles: bool) -> bool:
-        """Grab a handle of the selected element, or frame the element of an arrow at the edge, if one is there."""
+        """Grab the arrow at the edge, or the selected element's handle, at pixel x, y; return whether there is one."""
         session, state, screen = self.session, self.session.state, self.session.screen
         if screen.level == HudLevel.NOTHING:
             return False
         for owner, way in arrows(state.scene, state.chosen, session.view, screen.icons).items():
             tip = arrow_tip(way, *screen.size, screen.scale)
-            if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:
-                start = DragStart(session.view, x, y, state.element, state.scene.camera, None, Button.LEFT, ARROW)
-                session.pressed = start._replace(owner=owner)
+            if dist(tip, (x, y)) < ARROW_LENGTH * screen.scale:  # it acts at the release: see `selection_after`
+                self.note_press(x, y, state.element, None, button=Button.LEFT, action=ARROW, owner=owner)
                 return True
-        shown = bool(state.others), screen.handle_kind
-        handles = handles_of(state.element, session.view, screen.scale, *shown) if shows_handles else []
+        if not shows_handles:
+            return False
+        handles = handles_of(state.element, session.view, screen.scale, bool(state.others), screen.handle_kind)
         handle = handle_at(handles, x + PIXEL_CENTRE, y + PIXEL_CENTRE, screen.scale)
         if handle:
-            start = DragStart(session.view, x, y, state.element, state.scene.camera, handle.centre, Button.LEFT)
-            session.pressed = start._replace(handle=handle)
+            self.note_press(x, y, state.element, handle.centre, button=Button.LEFT, handle=handle)
         return handle is not None
 
     def on_motion(self, x: int, y: int) -> None:
-        """The pointer moves: drag, if a button is down and the pointer has left the slack of a click."""
+        """Handle a pointer that moves to pixel x, y: drag, if a button is down and the pointer has left CLICK_SLACK."""
         session = self.session
         (from_x, from_y), session.pointer = session.pointer, (x, y)
         pressed = session.pressed
@@ -122,7 +127,7 @@ class Mouse:
             session.pressed = pressed = pressed._replace(reach=reach)
         is_drag = pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK)
         if pressed and is_drag and pressed.action == ARROW:
-            session.pressed = pressed._replace(dragging=True)
+            session.pressed = pressed._replace(dragging=True)  # nothing is dragged, but it is no click any more
         elif pressed and is_drag:
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
@@ -224,10 +229,10 @@ class Mouse:
         return index_of(state.scene, shape) if shape else None, point
 
     def aim(self, at: tuple[int, int] | None = None) -> Aim | None:
-        """Return the place for a new element: at a pixel, or under the pointer.
+        """Return the place for a new element: at pixel `at`, or under the pointer.
 
-        While the pointer is elsewhere it is on top of the selected shape, or in the middle of the picture where no
-        bounded shape is selected. None if textures cannot be read.
+        While the pointer is not over the picture, the place is on top of the selected shape or, if that is not bounded
+        or too small in the picture, in the middle of the picture. None, and a message, if textures cannot be read.
         """
         session, element = self.session, self.session.state.element
         (x, y), (width, height) = at or session.window.pointer, session.screen.size

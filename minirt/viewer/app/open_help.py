@@ -16,12 +16,13 @@ TURNS: dict[int, int] = {  # keys and buttons that turn its pages
 def help_takes(session: Session, key: int, pressed: Binding | None) -> bool:
     """Take a key press or button while the help is open; False if it is closed or the key means nothing to it.
 
-    Letters search the help, arrows and the wheel turn its pages; H, Escape and a click close it.
+    key: a code of a key, with the binding that is `pressed`, or a button. Letters search the help, arrows and the wheel
+    turn its pages. Escape, a click, and the key of the help while nothing is searched, close it.
     """
     screen = session.screen
-    closes = pressed is not None and pressed.action == HELP and not screen.search
     if not screen.help:
         return False
+    closes = pressed is not None and pressed.action == HELP and not screen.search
     if closes or key in (Key.ESCAPE, Button.LEFT, Button.MIDDLE, Button.RIGHT):
         screen.turn_help(0)
     elif key in TURNS:

@@ -52,10 +52,12 @@ class Session:
         watch: bool = False,
         saved: Scene | None = None,
     ) -> None:
-        """Open the window.
+        """Open the window, of `size` in pixels. MlxError.
 
-        `samples`: rays per pixel of a picture that does not move. `watch`: read the file when it changes.
-        `saved`: the scene as the file holds it, if not `scene`.
+        `path`: the scene's file. `painter`: is called with the renderer and with what to call when there is a picture.
+        `keys`: layout of the keyboard. `lenient`: read other programs' dialects. `samples`: rays per pixel of a picture
+        that does not move. `watch`: read the file when it changes. `saved`: the scene as the file holds it, if not
+        `scene`.
         """
         self.mlx = mlx
         self.display = display

@@ -67,7 +67,10 @@ class Typing:
         self.show(text[:MAX_LENGTH])
 
     def takes(self, key: int) -> bool:
-        """Take a key press; False if the key is not one of those that end, correct or type it."""
+        """Take a press of a key that ends or corrects what is typed; return whether the press is taken.
+
+        While a name is typed, all other keys without Ctrl are taken, too: their characters follow as typed text.
+        """
         session, text, is_name = self.session, self.text, self.text.startswith(NAME)
         if not text or key not in (*ENTER, Key.TAB, Key.ESCAPE, Key.BACKSPACE):
             return is_name and Modifier.ACCEL not in session.modifiers
@@ -98,10 +101,21 @@ class Typing:
             session.show(set_typed(session.state, value_for(session.state, text), text, session.now))
 
     def show(self, text: str) -> None:
-        """Show what is typed; nothing if it is empty."""
+        """Make `text` what is typed, and show it with hints on its keys; nothing if it is empty."""
         session = self.session
         self.text = text
-        active, element = value_for(session.state, text), session.state.element
+        hint = self.hint_on_value(text)
+        if session.state.others:
+            hint = f"{len(session.state.chosen)} elements selected    {hint}"
+        if text.startswith(NAME):
+            name = element_name(session.state.scene, session.state.selected)
+            hint = f"name of {name}: {text.removeprefix(NAME)}_    Enter: set it    Esc: leave it"
+        session.screen.list_box = ListBox(hint) if text else None
+        session.refresh()
+
+    def hint_on_value(self, text: str) -> str:
+        """Return the name of the value that is typed, its present numbers, the text, and what else can be typed."""
+        active, element = value_for(self.session.state, text), self.session.state.element
         names = " ".join(part_names(active.leaf)[: Three.width])
         also = f"or all three: {names}" if isinstance(active.get(element), tuple) else "+= -= *= /=: relative"
         if self.is_colour:
@@ -110,11 +124,4 @@ class Typing:
         parts = present if isinstance(present, tuple) else (present,)
         are_numbers = all(isinstance(part, int | float) and not isinstance(part, bool) for part in parts)
         now = ", now " + " ".join(f"{part:.6g}" for part in parts) if are_numbers else ""
-        hint = f"{active.name}{now}: {'' if text == EMPTY else text}_    {SETTING}    {also}"
-        if session.state.others:
-            hint = f"{len(session.state.chosen)} elements selected    {hint}"
-        if text.startswith(NAME):
-            name = element_name(session.state.scene, session.state.selected)
-            hint = f"name of {name}: {text.removeprefix(NAME)}_    Enter: set it    Esc: leave it"
-        session.screen.list_box = ListBox(hint) if text else None
-        session.refresh()
+        return f"{active.name}{now}: {'' if text == EMPTY else text}_    {SETTING}    {also}"

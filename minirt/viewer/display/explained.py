@@ -110,7 +110,7 @@ def details_of(ray: RayNode) -> str:
 
 
 def draw_explained(pixels: Pixels, shown: Explained, scene: Scene, scale: float) -> None:
-    """Draw the rays over a picture of `scene`, the chosen one last, unless the scene has changed."""
+    """Draw the rays over `pixels`, a picture of `scene`, unless it has changed; the chosen ray is on top."""
     if not shown.fits(scene):
         return
     view = projection_of(scene.camera, pixels.shape[1], pixels.shape[0])
@@ -121,7 +121,7 @@ def draw_explained(pixels: Pixels, shown: Explained, scene: Scene, scale: float)
             width, opacity = (CHOSEN_WIDTH, 1.0) if part is chosen else (WIDTH, OPACITY)
             draw_soft_line(pixels, *ends, HALO, (width + 2 * HALO_WIDTH) * scale, HALO_OPACITY)
             draw_soft_line(pixels, *ends, part.colour, width * scale, opacity)
-        if place := view.pixel(part.end):
+        if place := view.pixel(part.end):  # a dot: a line that is as short as a pixel
             draw_soft_line(pixels, place, (place[0] + 1, place[1]), part.colour, DOT * scale, 1.0)
 
 
@@ -141,10 +141,10 @@ def ends_in_picture(view: Projection, start: Triple, end: Triple) -> tuple[Pixel
 
 
 def clipped(start: Pixel, end: Pixel, width: int, height: int) -> tuple[Pixel, Pixel] | None:
-    """Clip a line to a picture (Liang and Barsky 1984)."""
-    low, high = 0.0, 1.0
+    """Clip a line to a picture (Liang and Barsky 1984); None if no point of it is in the picture."""
+    low, high = 0.0, 1.0  # the part of the line that is inside, 0 at the start and 1 at the end
     for at, way, size in ((start[0], end[0] - start[0], width), (start[1], end[1] - start[1], height)):
-        if way == 0.0:
+        if way == 0.0:  # along a border
             if not 0.0 <= at <= size:
                 return None
             continue
@@ -159,21 +159,23 @@ def clipped(start: Pixel, end: Pixel, width: int, height: int) -> tuple[Pixel, P
 def draw_soft_line(
     pixels: Pixels, start: Pixel, end: Pixel, colour: tuple[int, int, int], width: float, opacity: float
 ) -> None:
-    """Draw a line with soft edges between two points of the picture, `width` pixels wide."""
+    """Draw a line with soft edges, `width` pixels wide, between two points of the picture; `colour` is RGB."""
     is_steep = abs(end[1] - start[1]) > abs(end[0] - start[0])
-    across = pixels.swapaxes(0, 1) if is_steep else pixels  # steps go along its second axis
+    canvas = pixels.swapaxes(0, 1) if is_steep else pixels  # in which the line is not steep, and runs along axis 1
     (x, y), (to_x, to_y) = ((each[::-1] if is_steep else each) for each in (start, end))
     if x > to_x:
         (x, y), (to_x, to_y) = (to_x, to_y), (x, y)
-    columns = np.arange(max(0, floor(x)), min(across.shape[1], floor(to_x) + 1))
+    columns = np.arange(max(0, floor(x)), min(canvas.shape[1], floor(to_x) + 1))
     if not len(columns):
         return
     slope = (to_y - y) / (to_x - x) if to_x > x else 0.0
-    middles = y + slope * (columns + 0.5 - x)
-    reach = floor(width / 2 * hypot(1.0, slope)) + 2
-    rows = np.floor(middles).astype(np.int64)[:, None] + np.arange(-reach, reach + 1)
+    middles = y + slope * (columns + 0.5 - x)  # of the line, in each column
+    reach = floor(width / 2 * hypot(1.0, slope)) + 2  # rows on either side of the middle that the line may touch
+    rows = np.floor(middles).astype(np.int64)[:, None] + np.arange(-reach, reach + 1)  # (columns, touched rows)
     distance = np.abs(rows + 0.5 - middles[:, None]) / hypot(1.0, slope)
-    cover = opacity * np.clip(width / 2 + 0.5 - distance, 0.0, 1.0) * ((rows >= 0) & (rows < len(across)))
-    rows = rows.clip(0, len(across) - 1)
-    below = across[rows, columns[:, None], :3]
-    across[rows, columns[:, None], :3] = np.rint(below + cover[..., None] * (np.array(colour[::-1]) - below))
+    is_inside = (rows >= 0) & (rows < len(canvas))
+    cover = np.where(is_inside, opacity * np.clip(width / 2 + 0.5 - distance, 0.0, 1.0), 0.0)
+    rows = rows.clip(0, len(canvas) - 1)
+    below = canvas[rows, columns[:, None], :3]
+    bgr = np.array(colour[::-1])
+    canvas[rows, columns[:, None], :3] = np.rint(below + cover[..., None] * (bgr - below))

@@ -19,9 +19,12 @@ Column = tuple[str, str]  # lines of keys, titles among them, and of their help
 
 
 def draw_help(pixels: Pixels, layout: str, search: str, max_size: int, number: int) -> None:
-    """Draw a page of the help, counted from 1, over the darkened picture: the rows that contain what is searched."""
-    pixels >>= 2  # 20 times as fast as the three colours alone
-    pixels[..., 3] = 255
+    """Draw page `number` of the help, counted from 1, over the darkened picture: the rows that contain `search`.
+
+    Without so many pages it is the last one. layout: of the keyboard. max_size: of the text, in pixels.
+    """
+    pixels >>= 2  # all four bytes, 20 times as fast as the three colours alone
+    pixels[..., 3] = 255  # opaque again
     height, width = pixels.shape[:2]
     size, pages = help_pages(layout, search, width, height, max_size)
     number = min(number, len(pages))
@@ -61,7 +64,10 @@ def arrange(layout: str, search: str, width: int, height: int, size: int) -> lis
 
 
 def filled_columns(layout: str, search: str, width: int, size: int, capacity: int) -> Iterator[Column]:
-    """Yield columns of at most `capacity` lines, but at least 3; no title is the last line of one."""
+    """Yield columns of at most `capacity` lines, or of 3 if that is less, in text of `size` pixels.
+
+    No column ends with a title. `layout` of the keyboard, and `search`, are those of `draw_help`.
+    """
     lines: list[tuple[str, str]] = []
     for title, rows in key_groups(layout, search, translated):
         for index, row in enumerate(rows):
@@ -72,7 +78,7 @@ def filled_columns(layout: str, search: str, width: int, size: int, capacity: in
                 block = [*gap, *heading, *block]
             if lines and len(lines) + len(block) > max(3, capacity):
                 yield joined(lines)
-                lines, block = [], [line for line in block if any(line)]
+                lines, block = [], [line for line in block if any(line)]  # a column begins without a gap
             lines += block
     yield joined(lines)
 

@@ -56,22 +56,22 @@ class Layout(NamedTuple):
 
 
 def layout_of(box: ListBox, width: int, height: int, size: int) -> Layout:
-    """Arrange a list in a picture of this size, in text of a size."""
+    """Arrange a list in a picture of width by height pixels, in text of `size` pixels. At least one row is shown, even
+    where there is no room."""
     line, mark = measure(" ", size)[1], measure(MARK, size)[0]
     rows_width, keys_width = (measure("\n".join(column), size)[0] for column in translations(box))
     breadth = mark + rows_width + (keys_width + 4 * PADDING if keys_width else 0)
     head = line + 2 * PADDING  # height of the title
     widest = max(breadth, measure(translated(box.title), size)[0])
     if box.place is None:
-        left, top = max(MARGIN, width - MARGIN - widest) if box.is_right else box.left, MARGIN + TOP * line
+        left = max(MARGIN, width - MARGIN - widest) if box.is_right else box.left
+        top = MARGIN + TOP * line
         most = (height - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM
     else:
         most = (height - 2 * MARGIN - head) // line
         tall = head + min(len(box.rows), max(1, most)) * line
-        left, top = (
-            max(MARGIN, min(at, side - MARGIN - length))
-            for at, side, length in zip(box.place, (width, height), (widest, tall), strict=True)
-        )
+        left = max(MARGIN, min(box.place[0], width - MARGIN - widest))
+        top = max(MARGIN, min(box.place[1], height - MARGIN - tall))
     count = min(len(box.rows), max(1, most))
     first = min(max(box.chosen - count // 2, 0), len(box.rows) - count)
     text_left = left + mark
@@ -92,16 +92,16 @@ def translations(box: ListBox) -> tuple[list[str], list[str]]:
 
 
 def draw_list(pixels: Pixels, box: ListBox, size: int) -> None:
-    """Draw a list in text of a size."""
+    """Draw a list, in text of `size` pixels."""
     at = layout_of(box, pixels.shape[1], pixels.shape[0], size)
     draw_on_dark(pixels, at.left, at.top, translated(box.title), TITLE_COLOUR, size=size)
-    part = slice(at.first, at.first + at.shown)
-    rows, keys = (column[part] for column in translations(box))
+    in_sight = slice(at.first, at.first + at.shown)
+    rows, keys = (column[in_sight] for column in translations(box))
     if rows:
         bottom = at.rows_top + at.shown * at.line
         darken(pixels, at.left - PADDING, at.rows_top - PADDING, at.right + PADDING, bottom + PADDING)
         draw_text(pixels, at.text_left, at.rows_top, "\n".join(rows), ROW_COLOUR, size=size)
         draw_text(pixels, at.keys_left, at.rows_top, "\n".join(keys), ROW_COLOUR, size=size)
-        chosen = at.rows_top + (box.chosen - at.first) * at.line
-        draw_text(pixels, at.left, chosen, MARK, TITLE_COLOUR, size=size)
-        draw_text(pixels, at.text_left, chosen, rows[box.chosen - at.first], TITLE_COLOUR, size=size)
+        chosen_top = at.rows_top + (box.chosen - at.first) * at.line
+        draw_text(pixels, at.left, chosen_top, MARK, TITLE_COLOUR, size=size)
+        draw_text(pixels, at.text_left, chosen_top, rows[box.chosen - at.first], TITLE_COLOUR, size=size)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from minirt.element import Element
 from minirt.fields import Triple
 from minirt.mlx.text import draw_text, measure
 from minirt.scene import Lamp, Scene
@@ -60,32 +61,37 @@ def draw_marks(
     """
     height, width = pixels.shape[:2]
     view = projection_of(scene.camera, width, height)
-    selected = next(iter(state.indices_in(scene, frozenset([state.selected]))), None)
     others = state.indices_in(scene, state.others)
-    colours = dict.fromkeys(others, ORANGE)
+    colours = dict.fromkeys(others, ORANGE)  # of the marks, by the index of the element in `scene`
     if pointed is not None and pointed < len(state.scene.elements):
         colours |= dict.fromkeys(state.indices_in(scene, frozenset([pointed])), WHITE)
-    if selected is not None:
-        colours[selected] = GOLD
+    selected = state.indices_in(scene, frozenset([state.selected]))  # one index, or none
+    colours |= dict.fromkeys(selected, GOLD)
     rays = MOVING_RAYS if moving else STILL_RAYS
     for index, colour in colours.items():
         element = scene.elements[index]
         if isinstance(element, Shape):
             draw_outline(pixels, *outline_pixels(element, scene.camera, width, height, rays), colour)
-    if selected is not None:
-        element = scene.elements[selected]
-        around, axis = extent(element), WORLD_AXES.get(state.frame)
-        if around and axis:
-            reach = AXIS_LENGTH * view.depth(around[0])
-            start, end = (view.pixel(linear_combination(1.0, around[0], way, axis)) for way in (-reach, reach))
-            if start and end:
-                draw_line(pixels, start, end, AXIS_COLOURS[state.frame])
+    for index in selected:
+        element = scene.elements[index]
+        draw_axis(pixels, view, element, state.frame)
         for handle in handles_of(element, view, scale, bool(others), kind) if handles else []:
             draw_handle(pixels, handle, view.pixel(handle.centre), scale)
     for owner, direction in arrows(scene, colours, view, icons).items():
         draw_arrow(pixels, direction, scale, element_name(scene, owner, translated) if owner in colours else "")
     for icon in visible_icons(scene, colours, view, scale, icons):
         draw_icon(pixels, icon, scale, colours.get(icon.owner, BLACK))
+
+
+def draw_axis(pixels: Pixels, view: Projection, element: Element, frame: MoveAxes) -> None:
+    """Draw the axis of the world along which an element moves, through its centre; nothing for those of the view."""
+    around, axis = extent(element), WORLD_AXES.get(frame)
+    if around and axis:
+        centre, _ = around
+        reach = AXIS_LENGTH * view.depth(centre)
+        start, end = (view.pixel(linear_combination(1.0, centre, way, axis)) for way in (-reach, reach))
+        if start and end:
+            draw_line(pixels, start, end, AXIS_COLOURS[frame])
 
 
 def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices, colour: int) -> None:
@@ -113,14 +119,15 @@ def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
 def draw_handle(pixels: Pixels, handle: Handle, centre: Pixel | None, scale: float) -> None:
     """Draw a handle in the colour of its axis.
 
-    Arrows that move have the letter of the axis, boxes that resize the first letter of the value that they change.
+    `centre`: of the element, None where it is not in front of the eye. Arrows that move have the letter of the axis,
+    boxes that resize the first letter of the value that they change.
     """
     colour, (x, y) = list(AXIS_COLOURS.values())[handle.axis], handle.points[0]
     if handle.kind == TURN:
-        at, ring = np.arange(len(handle.points)), np.array(handle.points)  # all at once: a tenth of the time
-        places = np.linspace(0, len(at) - 1, round(STEPS * scale) * len(at))
-        down, right = (np.interp(places, at, ring[:, part]).astype(np.int64) for part in (1, 0))
-        for rows, columns in ((down, right), (down + 1, right), (down, right + 1)):
+        numbers, ring = np.arange(len(handle.points)), np.array(handle.points)  # all at once: a tenth of the time
+        places = np.linspace(0, len(numbers) - 1, round(STEPS * scale) * len(numbers))  # also between two points
+        right, down = (np.interp(places, numbers, ring[:, part]).astype(np.int64) for part in (0, 1))
+        for rows, columns in ((down, right), (down + 1, right), (down, right + 1)):  # two pixels wide
             pixels[rows.clip(0, pixels.shape[0] - 1), columns.clip(0, pixels.shape[1] - 1)] = bgra(colour)
         return
     if handle.kind == MOVE and centre:
@@ -158,20 +165,24 @@ class Icon(NamedTuple):
 
 
 def visible_icons(scene: Scene, marked: Iterable[int], view: Projection, scale: float, every: bool) -> list[Icon]:
-    """Return the icons within the picture: of all lights and cameras, or else of the marked elements alone."""
+    """Return the icons within the picture, at most MAX_ICONS: with `every` those of all elements that can have one,
+    otherwise those of the elements whose indices are `marked`, except shapes and the camera in view.
+
+    Icons of elements without a position, and of the camera in view, stand in a row at the upper right corner.
+    """
     if every:
         owners = sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
     else:
         elements = {index: scene.elements[index] for index in sorted(marked)}
         owners = [at for at, each in elements.items() if not isinstance(each, Shape) and each is not scene.camera]
     size = round(SIZE * scale)
-    corner = view.width - size
+    next_x = view.width - size  # of the icon that has no position
     placed: list[Icon] = []
     for index in owners:
         owner = scene.elements[index]
         place = None if owner is scene.camera else position_of(owner)
-        at: Pixel | None = view.pixel(place) if place else (corner, size)
-        corner -= 0 if place else round(1.5 * size)
+        at: Pixel | None = view.pixel(place) if place else (next_x, size)
+        next_x -= 0 if place else round(1.5 * size)
         if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:
             red, green, blue = map(int, own_colour(owner) or PLAIN)
             colour = 0xFF << 24 | red << 16 | green << 8 | blue
@@ -180,19 +191,22 @@ def visible_icons(scene: Scene, marked: Iterable[int], view: Projection, scale: 
 
 
 def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tuple[float, float] | None:
-    """Unit direction in the picture, right and down, towards a ball outside of it; None if it is inside."""
+    """Return the direction from the middle of the picture towards a ball outside: right and down, of length 1.
+
+    None if a part of the ball, whose centre is `point`, may be in the picture, or if the eye is in the ball.
+    """
     depth = view.depth(point)
     offset = subtract(point, view.eye)
     across, up = dot(offset, view.right) / hypot(*view.right), dot(offset, view.up) / hypot(*view.up)
     at = view.pixel(point)
     if at and depth > 0:
-        reach = view.width / 2 / hypot(*view.right) * radius / depth
+        reach = view.width / 2 / hypot(*view.right) * radius / depth  # in pixels: `right` is half the width, 1 deep
         if -reach <= at[0] < view.width + reach and -reach <= at[1] < view.height + reach:
             return None
     elif hypot(*offset) <= radius:
         return None
     length = hypot(across, up)
-    return (across / length, -up / length) if length else (0.0, 1.0)
+    return (across / length, -up / length) if length else (0.0, 1.0)  # down to what is straight behind the eye
 
 
 def arrows(scene: Scene, marked: Iterable[int], view: Projection, every: bool) -> dict[int, tuple[float, float]]:
@@ -212,7 +226,10 @@ def arrow_tip(direction: tuple[float, float], width: int, height: int, scale: fl
 
 
 def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float, name: str = "") -> None:
-    """Draw an arrow in this direction, with its tip at the border of the picture, and the name of what is there."""
+    """Draw an arrow with its tip at the border of the picture, and `name` beside it, if there is one.
+
+    direction: right and down, of length 1.
+    """
     height, width = pixels.shape[:2]
     tip = arrow_tip(direction, width, height, scale)
     size = LENGTH * scale
@@ -224,8 +241,9 @@ def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float, nam
         draw_on_dark(pixels, *place, name, GOLD, size=font)
     left, top = (max(0, int(at - 2 * size)) for at in tip)
     pixels = pixels[top : int(tip[1] + 2 * size), left : int(tip[0] + 2 * size)]  # all of them would take 24 ms
+    # Each pixel's distance back from the tip, and from the line through the arrow. Black is two or three pixels wider.
     y, x = np.ogrid[top : top + pixels.shape[0], left : left + pixels.shape[1]]
-    along = (tip[0] - x - 0.5) * direction[0] + (tip[1] - y - 0.5) * direction[1]  # back from the tip
+    along = (tip[0] - x - 0.5) * direction[0] + (tip[1] - y - 0.5) * direction[1]
     beside = np.abs((x + 0.5 - tip[0]) * direction[1] - (y + 0.5 - tip[1]) * direction[0])
     pixels[(along >= -2 * scale) & (along <= size + 2 * scale) & (beside <= along / 2 + 3 * scale)] = bgra(BLACK)
     pixels[(along >= 0) & (along <= size) & (beside <= along / 2)] = bgra(GOLD)

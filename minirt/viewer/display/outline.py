@@ -24,13 +24,13 @@ def outline_pixels(
 ) -> tuple[PixelIndices, PixelIndices]:
     """Return the pixels just outside and just inside the silhouette that the shape would have alone in the scene.
 
-    Coverage is evaluated on a coarse grid of about `rays` points, of which few may miss parts of thin shapes, and then
-    on all pixels of the cells in which it changes.
+    What the shape covers is found on a coarse grid of about `rays` points, and then for all pixels of the cells whose
+    corners differ. With few points, parts of thin shapes may be missed.
     """
     left, top, right, bottom = enclosing_rectangle(shape, camera, width, height, MARGIN)
     if isinstance(shape, Mesh):  # all pixels of a mesh cost as much as a few
         y, x = np.ix_(np.arange(top - 1, bottom + 1), np.arange(left - 1, right + 1))
-        y, x = y[None], x[None]
+        y, x = y[None], x[None]  # one block
     else:
         step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
         x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
@@ -40,6 +40,7 @@ def outline_pixels(
         rows, columns = (step * each[:, None, None] for each in np.nonzero(mixed))
         reach = np.arange(-1, step + 2)  # an edge on the border of two cells belongs to both
         y, x = top + rows + reach[:, None], left + columns + reach
+    # From here on arrays are (blocks, rows, columns): a block is a cell with a pixel around it.
     y, x = np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)
     mask = covers(shape, camera, width, height, x, y)
     around = mask[:, :-2, 1:-1], mask[:, 2:, 1:-1], mask[:, 1:-1, :-2], mask[:, 1:-1, 2:]

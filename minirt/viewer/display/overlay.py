@@ -44,8 +44,9 @@ def text_size(width: int, height: int, scale: float) -> int:
 def draw_hud(pixels: Pixels, state: State, shown: Painted | None, level: HudLevel, rate: float, size: int) -> int:
     """Draw the selected element in words, the active keys, and how the picture was rendered.
 
-    With all information there is the element's line in the file, too. `rate`: primary rays per second, 0 if unknown.
-    Returns the height in pixels of the text at the bottom.
+    With all information there is the element's line in the file, too. `shown`: the picture, None before the first;
+    `rate`: primary rays per second, 0 if unknown; `size`: of the text, in pixels. Returns the height in pixels of the
+    text at the bottom, 0 without one.
     """
     width = pixels.shape[1]
     keys = hints(state, every=level == HudLevel.ALL)
@@ -84,19 +85,20 @@ def fitting_words(state: State, width: int, size: int) -> str:
 
 
 def value_at(state: State, x: int, y: int, width: int, size: int) -> Value | None:
-    """Return the value, or the part of one such as its y, that the line on top shows at pixel (x, y); None elsewhere.
+    """Return the value that the line on top shows at pixel x, y, or its part there, such as a y; None beside values.
 
-    width: of the window, in pixels. size: of the text, in pixels.
+    width: of the window, in pixels. size: of the text, in pixels. For a colour it is the value as a whole.
     """
     line = fitting_words(state, width, size)
     for words, field in values_in_words(state).items():
         before, found, _ = line.partition(f", {words}")
         parts = words.split(",")
-        ends = [MARGIN + measure(f"{before}, {','.join(parts[:count])}", size)[0] for count in range(len(parts) + 1)]
-        ends[-1] = MARGIN + measure(f"{before}{found}, ", size)[0]  # the comma and the blank after it, too
-        if found and ends[0] <= x < ends[-1] and is_on_line(x, y, state, width, size):
+        # Pixels where the words begin, and where each part ends; the last part with the comma and the blank after it.
+        start, *ends = (MARGIN + measure(f"{before}, {','.join(parts[:n])}", size)[0] for n in range(len(parts) + 1))
+        ends[-1] = MARGIN + measure(f"{before}{found}, ", size)[0]
+        if found and start <= x < ends[-1] and is_on_line(x, y, state, width, size):
             own = [each for each in values(state.element) if each.field == field]
-            part = next(at for at, end in enumerate(ends[1:]) if x < end)
+            part = next(index for index, end in enumerate(ends) if x < end)
             first = own[0] if own else None  # also of a colour, of which one seldom changes a part alone
             return first if isinstance(field, Colour) else next((each for each in own if each.part == part), first)
     return None
@@ -142,9 +144,10 @@ def status(shown: Painted, rate: float = 0.0) -> str:
 
 
 def wrap(text: str, width: int, size: int) -> str:
-    """Wrap text so that it leaves a margin in a picture of that width: between groups of words, or else between words.
+    """Wrap text, of `size` pixels, so that it leaves a margin in a picture of that width.
 
-    Lines keep at least about ten letters.
+    Lines break between groups of words, and within a group where that is too long. They keep at least about ten
+    letters, even if these do not fit.
     """
     lines, room = list[str](), width - 2 * MARGIN
     for line in text.split("\n"):

@@ -54,10 +54,15 @@ class Painter:
 def paint(
     renderer: Renderer, job: PaintJob, base: Pixels | None = None, is_wanted: Callable[[], bool] = lambda: True
 ) -> Painted:
-    """Render a job: all pixels, or only the edges in a copy of `base`."""
+    """Render a job: all pixels, or only the edges in a copy of `base`, the same picture with fewer samples.
+
+    While rendering, `is_wanted` is asked; after a False the result has no pixels. Nothing is raised: an exception is in
+    the result.
+    """
     try:
         if job.view:
-            return Painted(job, view_pixels(job.scene, job.view, *job.shape[1::-1], is_wanted))
+            height, width, _ = job.shape
+            return Painted(job, view_pixels(job.scene, job.view, width, height, is_wanted))
         pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
         done = renderer.render(job.scene, pixels, job.samples, is_wanted=is_wanted, edges_only=base is not None)
     except Exception as error:  # of any kind: the session raises it in the main thread
@@ -130,18 +135,23 @@ class BackgroundPainter(Painter):
             outcome = self._render(job)
             with self._changed:
                 self._running = None
-                if outcome and outcome.pixels is not None:  # it replaces older ones that nobody took
+                has_picture = outcome is not None and outcome.pixels is not None
+                if has_picture:  # it replaces older ones that nobody took
                     self.outcomes = [each for each in self.outcomes if each.pixels is None]
                 if outcome:
                     self.outcomes.append(outcome)
-                is_idle = outcome and outcome.pixels is not None and not self._waiting
+                is_idle = has_picture and not self._waiting
             self.notify()
             if is_idle and job.samples == 1:
-                self._precision.judge(job.scene, *job.shape[1::-1])
+                height, width, _ = job.shape
+                self._precision.judge(job.scene, width, height)
 
     def _render(self, job: PaintJob) -> Painted | None:
-        """Render a job, or its preview while its kernel is missing, unless there is a picture with fewer samples; None
-        if it has neither."""
+        """Render a job, or while its kernel is missing its preview; return the outcome.
+
+        Returns None if the kernel is missing and there is no preview, or no need of one: for a job that refines a
+        picture. The time and precision of pictures of something that moves are recorded.
+        """
         try:
             if not self.renderer.is_ready(job.scene, job.samples) and not self._is_soon_prepared(job):
                 pixels = None if job.base is not None else self.renderer.preview(job.scene, job.width, job.height)
@@ -170,7 +180,8 @@ class BackgroundPainter(Painter):
         return False
 
     def _prepare(self, job: PaintJob) -> None:
-        """Prepare the kernel, then request the picture that was only previewed: the body of the second thread."""
+        """Prepare the kernel, then request the picture that was only previewed, unless another one is requested. This
+        is the body of the second thread. Exceptions become outcomes."""
         error = None
         try:
             self.renderer.prepare(job.scene, job.samples)

@@ -71,18 +71,19 @@ class Refinement:
             self._request(answer.next())
 
     def collect(self) -> list[Exception]:
-        """Take the outcomes of the painter, of which the last picture becomes `latest`; return the errors among them.
+        """Take the outcomes of the painter, and make the last picture among them `latest`; return the errors.
 
-        A job that was cancelled and is still wanted is requested again.
+        Their times are recorded. A job that was cancelled and is still wanted is requested again.
         """
         errors = []
         for outcome in self.painter.take():
             if outcome.error:
                 errors.append(outcome.error)
                 continue
-            # The next movement begins with the resolution of a still picture: one that comes later must not count.
-            late = outcome.pixels is not None and not outcome.job.urgent and outcome.job is not self._requested
-            if not outcome.preview and not late:
+            # A recorded still picture sets the resolution of the next movement: one that is late must not.
+            is_still = outcome.pixels is not None and not outcome.job.urgent
+            is_late = is_still and outcome.job is not self._requested
+            if not outcome.preview and not is_late:
                 self.resolution.record(outcome)
             if outcome.pixels is not None:
                 self.latest = outcome
@@ -119,7 +120,8 @@ class AdaptiveResolution:
         self._trial_interval = TRIAL_INTERVAL
 
     def record(self, outcome: Painted) -> None:
-        """Record the time of a picture that was finished, or was cancelled after more than the median time."""
+        """Record the time of a picture that was finished, or was cancelled after more than the median time. Pictures of
+        several samples a pixel do not count. One of a scene that does not move chooses its divisor, too."""
         job, cost = outcome.job, 4 * outcome.seconds / prod(outcome.job.shape)  # of a pixel, which has four bytes
         if job.samples > 1:
             return
@@ -128,7 +130,7 @@ class AdaptiveResolution:
                 self._costs.append(cost)
             return
         if job.divisor != self._measured:
-            if self._measured == 1:
+            if self._measured == 1:  # the first coarse picture after a still one
                 self._excesses.append(max(1.0, cost / median_low(self._costs)))
             self._costs.clear()
             self._measured = job.divisor
@@ -151,11 +153,13 @@ class AdaptiveResolution:
     def _next_divisor(self, seconds: float) -> int:
         """Return the divisor that should follow the chosen one, given the estimated time of a picture at full size.
 
-        The chosen one stays until it is too slow or a finer one fits into FINER_SHARE of the time.
+        The chosen one stays until it is too slow or a finer one fits into FINER_SHARE of the time. After
+        `_trial_interval` calls in a row in which a finer one might be fast enough that one is tried; then twice as many
+        calls have to pass.
         """
         if self._chosen == 1 and seconds > self._time:
             return least_divisor(seconds * (median_low(self._excesses) if self._excesses else 1.0), self._time)
-        fitting, easy = (least_divisor(seconds, self._time * share) for share in (1.0, FINER_SHARE))
+        fitting, easy = least_divisor(seconds, self._time), least_divisor(seconds, self._time * FINER_SHARE)
         better = min(max(self._chosen, fitting), easy)
         possible = least_divisor(seconds, self._time * TRIAL_EXCESS)
         self._candidates = self._candidates + 1 if possible < better == self._chosen else 0

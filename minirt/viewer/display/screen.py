@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import sys
 from contextlib import suppress
-from functools import partial
 
 import numpy as np
 
@@ -133,23 +132,24 @@ class Screen:
         return "\n".join(tips[: max(0, room)])
 
     def draw(self, state: State, picture: Painted | None, rate: float = 0.0, *, keys_held: bool = False) -> bool:
-        """Draw a frame unless the window already shows it; return whether it was drawn.
+        """Draw a frame, and bring it to the window, unless the window already shows it; return whether it was drawn.
 
         The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
-        primary rays per second; `keys_held`: handles would be in the way.
+        primary rays per second, a new one alone draws no frame; `keys_held`: handles would be in the way.
         """
         scale, size = self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
         handles = not keys_held and self.shows_handles(state)
-        shown = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
-        row = self.explained, handles, self.handles, self.handle_kind, self.tool
-        contents = described, picture, message, *shown, *row, self.size, self.window.width, scale, self.keymap.layout
+        settings = self.list_box, self.has_tab, self.level, self.help, self.search, self.icons, self.tips, self.pointed
+        tools = self.explained, handles, self.handles, self.handle_kind, self.tool
+        look = self.size, self.window.width, scale, self.keymap.layout
+        contents = described, picture, message, *settings, *tools, *look  # all that a frame depends on
         if contents == self._drawn:
             return False
         self._drawn = contents
         self.image = MlxImage(self.beside_panel(self.picture_alone(picture)))
-        bottom, clear = 0, self.frame[:, : self.size[0]]
+        bottom, clear = 0, self.frame[:, : self.size[0]]  # pixels of text at the bottom; what the panel leaves clear
         background = state.scene.background
         if not picture and background and not isinstance(background.paint, str):  # while kernels are compiled
             clear[..., :3] = background.paint[::-1]
@@ -171,22 +171,28 @@ class Screen:
             draw_list(clear, self.explained.box(scale), size)
         elif self.tips and self.level and not self.covered:
             message = "\n".join(filter(None, (message, self.tips_that_fit(message))))
-        if message and not self.help:  # above the text at the bottom
-            words = wrap(translated(message), clear.shape[1], size)
-            left = tool_row.reach(*self.size, scale, measure(words, size)[1] + bottom) if self.handles else 0
-            words = wrap(translated(message), clear.shape[1] - left, size)
-            overlay.draw_lines(clear, -MARGIN - bottom, words, MESSAGE_COLOUR, size, left)
+        if message and not self.help:
+            self.draw_message(clear, message, bottom)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
+
+    def draw_message(self, pixels: Pixels, message: str, bottom: int) -> None:
+        """Draw a message above the text at the bottom, which is `bottom` pixels high, and beside the tool row."""
+        width, size = pixels.shape[1], self.text_size
+        words = wrap(translated(message), width, size)
+        left = tool_row.reach(*self.size, self.scale, measure(words, size)[1] + bottom) if self.handles else 0
+        words = wrap(translated(message), width - left, size)
+        overlay.draw_lines(pixels, -MARGIN - bottom, words, MESSAGE_COLOUR, size, left)
 
     def draw_over(self, pixels: Pixels, state: State, picture: Painted, handles: bool) -> None:
         """Draw what fits a picture: the ground of a scene without shapes, marks, and the rays of a pixel."""
         scene, scale, moving = picture.job.scene, self.scale, picture.job.urgent
         if not scene.runs:
             pixels[ground_lines(scene.camera, *self.size)] = GRID_COLOUR
-        kind, pointed = self.handle_kind, self.pointed
-        shown = partial(draw_marks, moving=moving, icons=self.icons, handles=handles, kind=kind, pointed=pointed)
-        shown(pixels, state, scene, scale)
+        draw_marks(
+            pixels, state, scene, scale,
+            moving=moving, icons=self.icons, handles=handles, kind=self.handle_kind, pointed=self.pointed,
+        )  # fmt: skip
         if self.explained:
             draw_explained(pixels, self.explained, scene, scale)
 

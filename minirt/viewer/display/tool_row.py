@@ -94,10 +94,10 @@ def tool_at(x: int, y: int, width: int, height: int, scale: float) -> Tool | Non
 
 
 def draw_tools(pixels: Pixels, scale: float, size: int, hovered: Tool | None, handles: str, keyboard: str) -> None:
-    """Draw the tool row.
+    """Draw the tool row; nothing where the window has no room for it.
 
-    `hovered`: the tool under the pointer, whose name is shown in text of a size, with its key on a keyboard. `handles`:
-    the kind that is shown alone.
+    `hovered`: the tool under the pointer, whose name is shown in text of `size` pixels, with its key on a `keyboard`
+    layout. `handles`: the kind of handles that is shown alone, "" for all.
     """
     height, width = pixels.shape[:2]
     side, top = layout(width, height, scale)

@@ -20,8 +20,7 @@ def next_view(view: str) -> str:
 def view_pixels(
     scene: Scene, view: str, width: int, height: int, is_wanted: Callable[[], bool] = lambda: True
 ) -> NDArray[np.uint8] | None:
-    """Return the picture of a view, (h, w, 4) in the order blue, green, red, alpha; None where it is not wanted any
-    more, which is asked for each strip of it."""
+    """Return the picture of a view, (h, w, 4) BGRA; None as soon as `is_wanted`, asked before each strip, is False."""
     from minirt.rendering.buffers import Buffers, geometry
 
     strips, rows = [], max(1, STRIP // width)

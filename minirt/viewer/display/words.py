@@ -38,19 +38,19 @@ def values_in_words(state: State) -> dict[str, Field]:
 
 
 def next_in_line(state: State, step: int, whole: bool = False) -> Value:
-    """Return the value that follows the active one in the line on top, after a step of 1, or comes before it, after one
-    of -1.
+    """Return the value after the active one in the line on top (step 1), or the one before (step -1), cyclically.
 
-    After a part of a triple that is its next part, unless the `whole` triple was meant.
+    A part of a triple is followed by the next part, unless all parts were set at once (`whole`) or it is the last one.
     """
     active, every = state.active, values(state.element)
-    parts = {field: words.count(",") + 1 for words, field in values_in_words(state).items()}  # that the line shows
-    shown = [each for each in every if (each.part or 0) < parts.get(each.field, 0)]
-    alike = [each for each in shown if (each.field, each.channel is None) == (active.field, active.channel is None)]
-    index = alike.index(active) + step if active in alike and not whole else -1
-    if 0 <= index < len(alike):
-        return alike[index]
-    fields = [field for field in parts if any(each.field == field for each in shown)]
+    counts = {field: words.count(",") + 1 for words, field in values_in_words(state).items()}  # of parts on the line
+    shown = [each for each in every if (each.part or 0) < counts.get(each.field, 0)]
+    is_part = active.channel is not None
+    same_field = [each for each in shown if each.field == active.field and (each.channel is not None) == is_part]
+    index = same_field.index(active) + step if active in same_field and not whole else -1
+    if 0 <= index < len(same_field):
+        return same_field[index]
+    fields = [field for field in counts if any(each.field == field for each in shown)]
     following = fields[(fields.index(active.field) + step) % len(fields)]
     return next(each for each in shown if each.field == following)
 

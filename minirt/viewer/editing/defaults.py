@@ -26,11 +26,11 @@ LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 
 def default_element(kind: type[Element], state: State) -> Element:
-    """Make an element of default values where the state aims; a shape stands on the surface there.
+    """Make an element of default values where `state` aims, or else ahead; a shape stands on the surface there.
 
-    LookupError if it needs a picture or mesh file and there is none beside the scene.
+    LookupError if a field needs a picture or mesh file and there is none beside the scene.
     """
-    if issubclass(kind, Camera):  # which sees what is seen now
+    if issubclass(kind, Camera):  # the new camera sees what is seen now
         return state.scene.camera.as_kind(kind)
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     if type(aim.beneath) is kind:  # a ball on a ball is of its colour, and not much smaller
@@ -59,9 +59,10 @@ def one_digit(length: float) -> float:
 
 
 def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
-    """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
+    """The point aimed at, or `count` points on a circle around it, parallel to the image plane, the first on top.
 
-    What has no surface hangs half of the size of a new shape in front of a surface there, so that a lamp lights it.
+    For an element without a surface, such as a lamp, they are in front of a surface that is aimed at, by half of the
+    usual size of an element there, so that the lamp lights the surface.
     """
     aim = state.aim or aim_ahead(state.scene.camera, state.size)
     right, up, _ = camera_frame(state.scene.camera)
@@ -84,7 +85,8 @@ def first_lamp(state: State) -> Light:
 
 
 def default_value(field: Field, state: State, length: float) -> Any:
-    """Default value of a field that is not a point; LookupError as in `default_element`."""
+    """Default value of a field that is not a point. LookupError if it has none, and as in `default_element`.
+    `length`: the usual one of a new element, in scene units."""
     if isinstance(field, Compound):
         return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state, length)
     if isinstance(field, (Picture, MeshField)):

@@ -60,7 +60,8 @@ class DragStart(NamedTuple):
 
 
 def move(state: State, start: DragStart, x: int, y: int) -> State:
-    """Move the element parallel to the image plane, or along an axis, with its point under the pointer at x, y."""
+    """Move the element parallel to the image plane, or along the axis of the frame, as far as the pointer went to x, y.
+    If no element was under the pointer at the press, or the element is the camera, turn the camera instead."""
     if start.point is None or start.moves_camera:
         return look(state, start, x, y)
     axis = WORLD_AXES.get(state.frame)
@@ -76,9 +77,10 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
 
 
 def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -> State:
-    """Move a shape to the surface behind the pointer at x, y, with its middle on the grid, and drop it there.
+    """Move a bounded shape to the surface behind the pointer at x, y, with its middle on the grid, and drop it there.
 
-    `turns`: it stands there as a new one would, also on walls, with its axis along the normal.
+    `turns`: the shape stands there as a new one would, also on walls, with its axis along the normal. Other elements
+    are moved as by `move`, and so is a shape that turns where there is no surface.
     """
     shape, view = start.element, start.projection
     if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
@@ -103,26 +105,31 @@ def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
 
 
 def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
-    """Move, turn or resize the element by its handle; with Ctrl on a grid, or by steps of SNAP_ANGLE."""
+    """Move, turn or resize the element by its handle; with Ctrl on a grid, or by steps of SNAP_ANGLE.
+
+    How far the handle is pulled is in `start`, not in the position of the pointer, so that Shift can make it slower.
+    """
     handle, view, element = start.handle, start.projection, start.element
     assert handle
     centre, axis = handle.centre, AXES[handle.axis]
     step = state.stride if start.snaps else resolution(start, centre)
     from_x, from_y = start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE
-    ends = [(from_x, from_y), (from_x + start.reach[0], from_y + start.reach[1])]
+    right, down = start.reach
+    ends = [(from_x, from_y), (from_x + right, from_y + down)]  # of the pull, in pixels
     if handle.kind == TURN:
-        column, row = view.pixel(centre) or (0.0, 0.0)
-        first, last = (degrees(atan2(down - row, at - column)) for at, down in ends)
+        middle_x, middle_y = view.pixel(centre) or (0.0, 0.0)
+        first, last = (degrees(atan2(y - middle_y, x - middle_x)) for x, y in ends)
         facing = copysign(motion.handedness(start.camera), dot(axis, subtract(view.eye, centre)))
         smallest = FINE if start.fine else 1.0
         angle = snapped((first - last) * facing, SNAP_ANGLE if start.snaps else smallest)
         turned = motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
         said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
         return turned.with_message(GAP.join(said))
-    if handle.kind == SLIDE:  # in the level plane
-        depths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in (view.ray(*at) for at in ends)]
-        ways = [linear_combination(depth, view.ray(*at), 0.0, centre) for depth, at in zip(depths, ends, strict=True)]
-        offset = subtract(ways[1], ways[0]) if min(depths) > 0 else (0.0, 0.0, 0.0)
+    if handle.kind == SLIDE:  # from where one ray meets the level plane through the centre to where the other does
+        rays = [view.ray(*end) for end in ends]
+        lengths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in rays]
+        ways = [linear_combination(t, ray, 0.0, centre) for t, ray in zip(lengths, rays, strict=True)]
+        offset = subtract(ways[1], ways[0]) if min(lengths) > 0 else (0.0, 0.0, 0.0)
     else:
         before, after = (view.distance_along(*at, centre, axis) for at in ends)
         if before is None or after is None:

@@ -62,7 +62,11 @@ class HeldKey:
         return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
 
     def advance(self, state: State, steps: float, size: float, now: float) -> State:
-        """Return the state after so many steps since the press; those that were taken stay. `size`: of a step."""
+        """Return the state after `steps` steps in all since the press, each of `size`; fewer than before do nothing.
+
+        `done` and `first` are brought up to date. If `state` is still the one after a part of the first step, that step
+        is taken again, from the state before it and with its own size.
+        """
         done, self.done = self.done, max(self.done, steps)
         if self.done == done:
             return state
@@ -106,7 +110,7 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 def change_value(sign: float, state: State, amount: float, now: float) -> State:
     """Change the active value of the primary element by `sign * amount` steps; a message says where it cannot go on.
 
-    What stands on something stands there with its new size, too.
+    An element that stands on something stands there with its new size, too.
     """
     active = state.active
     # Of several selected elements only the primary one changes, as in Blender: others may lack the value.

@@ -34,19 +34,20 @@ class Handle(NamedTuple):
 
 
 def handles_of(element: Element, view: Projection, scale: float, several: bool = False, kind: str = "") -> list[Handle]:
-    """The handles of an element in the picture; none of a camera, or where the picture does not show its middle.
+    """The handles of an element in the picture.
 
-    `several`: other elements turn about it, even if it looks the same from all sides. `kind`: those of a kind alone,
-    MOVE with SLIDE.
+    There are none for a camera, for an element whose centre is not in front of the eye, and in a picture smaller than
+    LEAST. `several`: other elements turn with this one, which then has rings even if it looks the same from all sides.
+    `kind`: only handles of this kind are returned, with MOVE also SLIDE; "" for all.
     """
     around = None if isinstance(element, Camera) else extent(element)
     if not around or not view.pixel(around[0]) or min(view.width, view.height) < LEAST:
         return []
-    centre = around[0]
-    reach = REACH * scale * view.depth(centre) * 2 * hypot(*view.right) / view.width
+    centre, _ = around
+    reach = REACH * scale * view.depth(centre) * 2 * hypot(*view.right) / view.width  # scene units
     found: list[Handle] = []
 
-    def add(kind: str, axis: int, *offsets: Triple, value: Value | None = None) -> None:
+    def add(kind: str, axis: int, *offsets: Triple, value: Value | None = None) -> None:  # offsets: times `reach`
         pixels = tuple(filter(None, (view.pixel(linear_combination(1.0, centre, reach, each)) for each in offsets)))
         found.extend([Handle(kind, axis, centre, pixels, value)] if pixels else [])
 
@@ -54,12 +55,12 @@ def handles_of(element: Element, view: Projection, scale: float, several: bool =
     for axis, way in enumerate(AXES):
         add(MOVE, axis, way)
         if several or can_turn(element):
-            u, v = AXES[axis - 2], AXES[axis - 1]
+            u, v = AXES[axis - 2], AXES[axis - 1]  # the other two axes
             add(TURN, axis, *(linear_combination(RING * cos(angle), u, RING * sin(angle), v) for angle in angles))
     add(SLIDE, 1, (SQUARE, 0.0, SQUARE))
     own = [each for each in values(element) if each.inner is None]
-    single = Lengths if any(isinstance(each.leaf, Lengths) for each in own) else Length
-    lengths = (each for each in own if isinstance(each.leaf, single) and not isinstance(each.current(element), tuple))
+    resized = Lengths if any(isinstance(each.leaf, Lengths) for each in own) else Length  # parts of three, or single
+    lengths = (each for each in own if isinstance(each.leaf, resized) and not isinstance(each.current(element), tuple))
     for (axis, (x, y, z)), value in zip(enumerate(AXES), lengths, strict=False):
         add(SIZE, axis, (BOX * x, BOX * y, BOX * z), value=value)
     return [each for each in found if kind in ("", each.kind) or (kind == MOVE and each.kind == SLIDE)]

@@ -64,7 +64,7 @@ def move(state: State, element: Element, axis: Triple, distance: float, kind: st
 def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kind: str, now: float) -> State:
     """Turn the selected elements; several turn about the place of the primary one.
 
-    `element` is the primary one as it was before, at the start of a drag, and all turn from where they were then.
+    `element` is the primary one as it was at the start of a drag, or as it is now; all turn from where they were then.
     `turns` are about axes of the view: the number of an axis in `camera_frame`, and the angle in degrees by which the
     side that faces the camera goes right about UPWARD, up about RIGHT, or clockwise about FORWARD. Where `state.frame`
     names an axis of the world, all turns are about that one, right-handed. Turns of the same `kind` that follow each
@@ -75,7 +75,7 @@ def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kin
     camera, world = state.scene.camera, WORLD_AXES.get(state.frame)
     rotations: list[tuple[Triple, float]] = []
     for axis, angle in turns:
-        # Right-handed rotations turn that side right about UPWARD and clockwise about FORWARD, but down about RIGHT.
+        # A right-handed rotation turns the side that faces the camera right about UPWARD, but down about RIGHT.
         right_handed = handedness(camera) * (-angle if axis == RIGHT else angle)
         rotations.append((world, angle) if world else (turn_axis(camera, axis), right_handed))
     return rotate_all(state, element, rotations, kind, now)
@@ -84,11 +84,11 @@ def turn(state: State, element: Element, turns: Sequence[tuple[int, float]], kin
 def rotate_all(
     state: State, element: Element, rotations: Sequence[tuple[Triple, float]], kind: str, now: float
 ) -> State:
-    """Rotate the selected elements, one rotation after the other. Several rotate about the place of the primary one; a
-    single one that stands on something stays on it.
+    """Rotate the selected elements, one rotation after the other.
 
-    `element` is the primary one as it was before, at the start of a drag, and all turn from where they were then.
-    `rotations` are axes, of unit length, and angles in degrees, right-handed.
+    Several elements rotate about the mean point of the primary one; a single one that stands on something stays on it.
+    `element`, `kind` and `now` are those of `turn`. `rotations` are axes, of unit length, and angles in degrees,
+    right-handed.
     """
     pivot = mean_point(element) if state.others else None
 
@@ -154,16 +154,19 @@ def turn_axis(camera: Camera, axis: int) -> Triple:
 
 
 def look_at(state: State, _amount: float, now: float) -> State:
-    """Move the camera, without turning it, so that the selected element is centred and fills the picture. Where that
-    changes nothing, and if the camera is selected itself, move and turn it so that it shows the scene."""
+    """Move the camera, without turning it, so that the selected element is centred and fills the picture.
+
+    Where that changes nothing, and if a camera is selected, move and turn the camera so that it shows the scene. For an
+    element without a position there is only a message.
+    """
     from minirt.rendering.queries.unseen import showing_camera
 
     element = state.element
-    bounds = None if isinstance(element, Camera) else extent(element)
-    after = state if bounds is None else state.edit_camera(framing_camera(state, *bounds), "", now)
+    around = None if isinstance(element, Camera) else extent(element)
+    after = state if around is None else state.edit_camera(framing_camera(state, *around), "", now)
     if after is not state:
         return after.with_message("again: the whole scene")
-    if bounds or isinstance(element, Camera):
+    if around or isinstance(element, Camera):
         showing = showing_camera(state.scene, USUAL_SIZE, straight=True)
         return state.edit_camera(showing, "", now) if showing else state
     return state.with_message(f"select an element with a position to look at: {element.title} has none")

@@ -34,11 +34,10 @@ TOP_SHARE, SIDE_SHARE = 1 / 2, 1 / 4  # of the breadth of a shape: the size of a
 
 
 def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, point: Triple | None) -> Aim:
-    """Aim through x, y in the picture, in pixels, at the `point` of a shape that is seen there, or, without one, at the
-    ground y = 0, and beside that at `size` from the eye.
+    """Aim through pixel x, y at the `point` of a `shape` that is seen there, or without a shape at the ground y = 0.
 
-    size: of the scene; what is BACKGROUND times as far away is not aimed at. On surfaces the aim is at the nearest
-    point whose coordinates along them are on a grid.
+    Where the shape or the ground is farther away than BACKGROUND times `size`, the size of the scene, the aim is in the
+    air, at `size` from the eye. On surfaces it is at the nearest point whose coordinates along them are on a grid.
     """
     ray, height = view.ray(x, y), view.eye[1]
     to_ground = -height / ray[1] if height * ray[1] < 0 else inf
@@ -86,7 +85,8 @@ def on_grid(shape: Shape | None, point: Triple, normal: Triple, grid: float) -> 
     """Return the point of a surface that is next to `point` and has two coordinates on a grid, and the normal there.
 
     The third coordinate is the one along which the `normal` at the point is longest. Without a shape the surface is the
-    ground y = 0. Where the shape has no such point close by, the result is `point` and `normal` themselves.
+    ground y = 0. Where the shape has no such point close by, the result is `point` and `normal` themselves. grid: scene
+    units between its points.
     """
     along = max(range(3), key=lambda axis: abs(normal[axis]))
     x, y, z = (part if axis == along else grid * round(part / grid) for axis, part in enumerate(point))
@@ -94,7 +94,7 @@ def on_grid(shape: Shape | None, point: Triple, normal: Triple, grid: float) -> 
         return (x, y, z), normal
     way, reach = [0.0, 0.0, 0.0], GRID_REACH * grid
     way[along] = -copysign(1.0, normal[along])
-    inward = way[0], way[1], way[2]
+    inward = way[0], way[1], way[2]  # along the third coordinate
     start = linear_combination(1.0, (x, y, z), -reach, inward)
     found = first_hit(shape, start, inward)
     return found if found and dist(found[0], start) <= 2 * reach else (point, normal)
@@ -165,10 +165,11 @@ def lift_of(shape: Shape, normal: Triple) -> float:
 
 
 def keep_standing(state: State, old: Element, changed: Element) -> Element:
-    """The changed selected element, which was `old`: unless it is moved, it stands where it stood.
+    """Return the changed selected element, which was `old`, put so that it stands where it stood.
 
-    One that still is where it was added, and is not turned, stands there again. Any other one that stands on something
-    keeps its lower end: it grows upwards, and neither sinks nor floats when it turns.
+    An element that is moved, or is no bounded shape, is returned as it is. A shape that still is where it was added,
+    and is not turned, is settled there again. Any other shape that stands on something keeps its lower end: it grows
+    upwards, and neither sinks nor floats when it turns.
     """
     if not isinstance(old, Shape) or not isinstance(changed, Shape) or old.bounds() is None:
         return changed
@@ -188,7 +189,7 @@ def keep_standing(state: State, old: Element, changed: Element) -> Element:
         changed = round_changes(old, changed, stride)  # so that the end does not drift by what is rounded later
     rise = lowest_along(old, UP) - lowest_along(changed, UP)
     gap = gap_below(old, state.scene.edit(state.selected).shapes) if rise else inf
-    if abs(gap) > SAME * stride:
+    if abs(gap) > SAME * stride:  # it stands on nothing, or its lower end has not moved
         return changed
     grid = POINT_ROUNDING * stride
     return shifted(changed, UP, grid * round((rise - gap) / grid) if turned else rise)
@@ -213,9 +214,10 @@ def lowest_along(shape: Shape, direction: Triple) -> float:
 
 
 def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
-    """Lower or raise a bounded shape onto what lies beneath it, or onto the ground y = 0; None if nothing does.
+    """Lower or raise a bounded shape onto what lies beneath it, or onto the ground y = 0; None if nothing is beneath.
 
-    Its middle goes onto the middle of the shape beneath, if that is within its radius, or else onto lines of a grid.
+    The middle of the shape goes above the middle of a bounded shape beneath, if that is within its radius, or else onto
+    lines of a grid: `grid` scene units apart, None for no grid.
     """
     (x, _, z), radius = middle_of(shape)
     others = [each for each in scene.shapes if each is not shape]
@@ -226,7 +228,7 @@ def dropped(shape: Shape, scene: Scene, grid: float | None) -> Shape | None:
     rise = 0.0
     if below and centre and hypot(centre[0] - x, centre[2] - z) <= radius:
         (_, bottom, _), (_, top, _) = box[0], below[1]
-        x_to, z_to, rise = centre[0], centre[2], max(0.0, top - bottom)  # all of it is above the other
+        x_to, z_to, rise = centre[0], centre[2], max(0.0, top - bottom)  # wholly above the shape beneath
     else:
         x_to, z_to = (each if grid is None else grid * round(each / grid) for each in (x, z))
     there = shifted(shape, (x_to - x, rise, z_to - z))

@@ -41,7 +41,7 @@ def shifted(element: Moved, axis: Triple, distance: float = 1.0) -> Moved:
 def rotate(element: Element, axis: Triple, angle: float) -> Element:
     """Rotate the directions of an element about a unit vector, right-handed, and its points about their mean.
 
-    angle: degrees. The roll of the element keeps its frame whole.
+    angle: degrees. The roll of an element that shows one is set so that its whole frame is rotated.
     """
     changes: dict[str, Any] = {}
     for name in field_names(type(element), Direction):
@@ -51,8 +51,9 @@ def rotate(element: Element, axis: Triple, angle: float) -> Element:
     if isinstance(element, Oriented) and shows_roll(element):
         # Compared with the frame without a roll about the new axis, however far that is from the one before.
         u, v, _ = frame_of(element.replace(**changes, roll=0.0))
-        rotated = rodrigues(frame_of(element)[0], axis, angle)
-        changes["roll"] = degrees(atan2(dot(rotated, v), dot(rotated, u)))
+        old_u, _, _ = frame_of(element)
+        new_u = rodrigues(old_u, axis, angle)
+        changes["roll"] = degrees(atan2(dot(new_u, v), dot(new_u, u)))
     points = {name: getattr(element, name) for name in field_names(type(element), Point)}
     centre = mean_point(element)
     if centre and len(points) > 1:

@@ -134,8 +134,8 @@ class State:
 
         `selected` is the index of the primary element in the new scene; None leaves it. `now` is a time in seconds.
         kind: changes of the same kind within MERGE_SECONDS are undone together; an empty kind is never merged.
-        What was typed for a camera, or changed beside its place and direction, is noted in it as `edited`: that counts
-        as unsaved, looking around does not.
+        Values of a camera that were typed, or that no looking around changes, are noted in its `edited`: they count as
+        unsaved, looking around does not.
         """
         last_kind, then = self.last_change or ("", now)
         merged = bool(kind) and kind == last_kind and now - then <= MERGE_SECONDS
@@ -225,16 +225,17 @@ def stack_after_reading(state: State) -> tuple[Snapshot, ...]:
 
 
 def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
-    """Return the state for the new scene of the file, with selection and undo history of the old state.
+    """Return the state for the new scene of the file, with the undo history and the axes of the old state.
 
-    The current camera stays if the file has the same cameras as `saved`, the scene that the file held before.
+    The selection stays if the element at its index has the same kind. The current camera stays if the file has the same
+    cameras as `saved`, the scene that the file held before; None never keeps it.
     """
     new = initial_state(scene)
     if saved and scene.cameras == saved.cameras:
         scene = scene.seen_by(old.scene.shown + 1)
         kept = old.scene.camera.replace(source=scene.camera.source, edited=scene.camera.edited)
         new = replace(new, scene=scene.replace(scene.camera, kept))
-    same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
-    selected, value_index = (old.selected, old.value_index) if same else (new.selected, 0)
+    stays = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
+    selected, value_index = (old.selected, old.value_index) if stays else (new.selected, 0)
     stack = stack_after_reading(old)
     return replace(new, selected=selected, value_index=value_index, frame=old.frame, undo_stack=stack)

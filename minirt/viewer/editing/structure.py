@@ -36,7 +36,8 @@ APART = 1.2  # breadths of selected shapes from their middle to that of their co
 def duplicate(state: State, _amount: float, now: float) -> State:
     """Insert a copy after each selected element, and select the copies, which are beside the originals.
 
-    The first value is active, or the position where that one has three numbers: three that are typed are the position.
+    The first value is active or, if that has three numbers, the position, so that three typed numbers are the position.
+    A message says if a scene cannot have another element of a kind.
     """
     scene, copies, way = state.scene, dict[int, Element](), way_beside(state)
     for index in sorted(state.chosen, reverse=True):
@@ -64,7 +65,7 @@ def duplicate(state: State, _amount: float, now: float) -> State:
 def way_beside(state: State) -> Triple:
     """Return the way that takes the selected shapes beside themselves: to the right in the picture, along x or z.
 
-    There is no way beside what has no bounds, such as a plane or a light.
+    It is APART times as long as their common box is wide, a tenth of a stride at least; 0 if no shape has bounds.
     """
     chosen = [state.scene.elements[index] for index in state.chosen]
     boxes = [box for each in chosen if isinstance(each, Shape) and (box := each.bounds())]
@@ -105,13 +106,13 @@ def names_of_chosen(state: State | Snapshot) -> str:
 
 
 def choices(state: State, group: str) -> Iterator[tuple[str, State]]:
-    """Yield the states after each kind of element, or each attribute of the selected element, was added.
+    """Yield a title, and the state after adding, for each kind of element, or each attribute of the selected element.
 
-    Each comes with its title. Those that need a missing file, or cannot be so small or far away, are left out. An
+    `group`: ELEMENT or ATTRIBUTE. What needs a missing file, or cannot be so small or far away, is left out. An
     attribute that is there stays as it is, and its value becomes active.
     """
     if group == ELEMENT:
-        kinds = addable_kinds(state.scene)  # of a light and a further one, only one can be added
+        kinds = addable_kinds(state.scene)  # never a first and a further light at once: titles are unique
         ways = [(kind.title.removeprefix(FURTHER), partial(with_element, state, kind)) for kind in kinds]
     else:
         fields = [each for each in fields_of(type(state.element)) if each.keyed and each.default is None]

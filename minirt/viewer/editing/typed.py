@@ -44,8 +44,10 @@ def set_typed(state: State, value: Value, text: str, now: float) -> State:
 
 
 def with_value(state: State, value: Value, new: Callable[[Element, Value], Any], now: float) -> State:
-    """The state whose selected elements have another value, as far as they have one of that name; ValueError out of
-    range. `new` gives the value of an element, of a part also a whole triple.
+    """The state whose selected elements have another value, as far as they have one of that name.
+
+    `new(element, value)` gives the new value of an element; in place of a part it may give the whole triple. Raises
+    what `new` raises, and ValueError for a value out of range. The change is undone by itself.
     """
     changed = dict[int, Element]()
     for index in state.chosen:
@@ -73,9 +75,11 @@ def is_like(one: Value, other: Value) -> bool:
 
 
 def typed(value: Value, element: Element, text: str) -> Any:
-    """The number or triple that `text` asks for as a value of an element, in range or not. FieldError if it is none.
+    """The number or triple that `text` asks for as a value of an element, in range or not.
 
-    A direction may have any length.
+    One number counts for all parts of a triple; three numbers give a triple even if `value` is a part of one. A
+    direction may have any length. FieldError for a text that gives no number, a wrong count of numbers, and a value
+    that is no number.
     """
     old, current = value.get(element), value.current(element)
     presents = current if isinstance(current, tuple) else (current,)
@@ -88,7 +92,7 @@ def typed(value: Value, element: Element, text: str) -> Any:
     if len(texts) == Three.width and isinstance(old, tuple):
         presents = old
     elif len(presents) == 1 and (len(texts) == 2 or any(each in body[1:] for each in SIGNS)):
-        texts = [".".join(texts)]
+        texts = [".".join(texts)]  # commas are decimal commas
     elif len(texts) != 1:
         numbers = "one number" if len(presents) == 1 else f"one number or {len(presents)}"
         raise FieldError(f"takes {numbers}, got {len(texts)}")
@@ -97,7 +101,7 @@ def typed(value: Value, element: Element, text: str) -> Any:
     if isinstance(value.leaf, Colour | Whole):
         given = [round(part) for part in given]
     if isinstance(value.leaf, Direction) and len(given) > 1:
-        longest = max(1.0, *map(abs, given))
+        longest = max(1.0, *map(abs, given))  # so that all components are in range
         given = [part / longest for part in given]
     return tuple(given) if len(given) > 1 else given[0]
 
@@ -110,8 +114,10 @@ def three_words(text: str) -> list[str]:
 
 
 def sum_of(text: str, change: Callable[[float, float], float] | None, present: float) -> float:
-    """The result of a sum, product or quotient of numbers, or of a `change` of the present value by it; FieldError if
-    the text is none."""
+    """The result of a sum, product or quotient of numbers, or of `change(present, result)` if there is a change.
+
+    FieldError for a text that is no arithmetic, a division by 0, and a result that is not finite.
+    """
     if not change and not any(sign in text[1:] for sign in "*/+-()"):
         return number(text)
     try:

@@ -28,7 +28,8 @@ POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of 
 LENGTH_DIGITS = 5  # significant digits of a length that are kept
 REAL_DECIMALS = 3  # decimals of any other number that are kept, counted likewise from its own step
 ANGLE_DECIMALS = 6  # decimals of degrees that are kept of a turn
-ANGLE_NOISE = 5e-6  # degrees: a turn this close to thousandths of a degree is rounded to them
+SHORT_ANGLE_DECIMALS = 3  # decimals of degrees that are kept of a turn that is as close to them as ANGLE_NOISE
+ANGLE_NOISE = 5e-6  # degrees
 NOISE = 1e-7  # component of a direction that is what rounding has left of 0: no picture shows it
 SLACK = 1 + 1e-9  # allows for the rounding of a power of ten
 RecordType = TypeVar("RecordType", bound=Record)
@@ -61,7 +62,10 @@ class Value(NamedTuple):
         return self.start + (self.channel or 0)
 
     def stepped(self, element: Element, steps: float, scene: Scene, stride: float) -> Any:
-        """The field's value after a number of steps; `stride`: a step of a movement in scene units."""
+        """The value of the whole field after a number of steps, which may be negative or fractions.
+
+        stride: a step of a movement in scene units. For a picture or mesh file, see `next_file`.
+        """
         field, old = self.leaf, self.get(element)
         if isinstance(field, MeshField) or any(field.pictures(old)):
             return self.replaced(element, next_file(scene, old, steps))
@@ -197,7 +201,8 @@ def round_point(point: Triple, stride: float) -> Triple:
 def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
     """Round the edited value of a field, which was `before`, by an invisible fraction of what an edit changes.
 
-    stride: a step of a movement in scene units. Components that are as they were, and words, stay as they are.
+    stride: a step of a movement in scene units. Components that are as they were, and values that are no real
+    numbers, stay as they are.
     """
     if isinstance(before, Record) and isinstance(after, Record):
         return round_changes(before, after, stride)
@@ -210,7 +215,7 @@ def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
     if isinstance(field, Direction):
         return neat_direction(after, keep_heading=True)
     if isinstance(field, Angle):
-        short = round(after, 3)
+        short = round(after, SHORT_ANGLE_DECIMALS)
         return short if abs(short - after) <= ANGLE_NOISE else round(after, ANGLE_DECIMALS)
     return round(after, leading_decimal(field.step) + REAL_DECIMALS) if isinstance(field, Real) else after
 

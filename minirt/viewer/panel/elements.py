@@ -24,6 +24,7 @@ from minirt.viewer.panel.rows import Rows
 AROUND = 3  # rows above and below those that are seen: the arrow keys go on to them
 LISTED = 0.35  # of the height: the list of elements
 TOOLS = {"add": "+ Add", "duplicate": "copy", "delete": "delete"}  # actions of the buttons above the list
+SQUARE = 0.7  # of the height of a row: the side of the square with an element's colour
 PLAIN = (128, 128, 128)  # the square of an element without a colour
 
 
@@ -59,7 +60,8 @@ class Elements:
         imgui.end_child()
 
     def list(self, height: float) -> None:
-        """Show the rows of the elements that are found, as far as they are in sight."""
+        """Show the rows of the elements that are found, as far as they are in sight, in a list `height` pixels high.
+        The list is scrolled to an element that was selected since the last frame."""
         state = self.session.state
         if self._searched != (state.scene, self._wanted):
             self._searched = state.scene, self._wanted
@@ -68,11 +70,12 @@ class Elements:
         self._pointed = None
         if imgui.begin_child("list", (0.0, height), imgui.ChildFlags.BORDERS | imgui.ChildFlags.NAV_FLATTENED):
             if state.selected != self._followed and state.selected in indices:
-                self._followed = -1 if imgui.is_window_appearing() else state.selected  # its height is known then
-                row = imgui.get_frame_height_with_spacing()
-                last = len(indices) * row - imgui.get_content_region_avail()[1]  # Dear ImGui stops there a frame later
-                imgui.set_scroll_y(max(0.0, min(indices.index(state.selected) * row - height / 2, last)))
-                self.rows.gui.unsettled = max(self.rows.gui.unsettled, 1)  # and scrolls in the next frame
+                # The height of a list that appears is known in its second frame alone: then it is scrolled again.
+                self._followed = -1 if imgui.is_window_appearing() else state.selected
+                row_height = imgui.get_frame_height_with_spacing()
+                end = len(indices) * row_height - imgui.get_content_region_avail()[1]
+                imgui.set_scroll_y(max(0.0, min(indices.index(state.selected) * row_height - height / 2, end)))
+                self.rows.gui.unsettled = max(self.rows.gui.unsettled, 1)  # Dear ImGui scrolls in the next frame
             for place in seen(len(indices)):
                 self.row(indices[place])
         imgui.end_child()
@@ -81,7 +84,8 @@ class Elements:
             self.rows.gui.show(self.session.state)
 
     def row(self, index: int) -> None:
-        """Show an element: a box that hides it, its colour and its name. The picture marks it under the pointer."""
+        """Show the row of an element: a box that hides it, its colour and its name. The box acts on all selected
+        elements if this is one of them. `_pointed` notes the row under the pointer."""
         state = self.session.state
         element = state.scene.elements[index]
         imgui.push_id(index)
@@ -92,12 +96,12 @@ class Elements:
         imgui.end_disabled()
         self.rows.gui.hint("shown while you edit; the file keeps it")
         if changed:
-            several = state.chosen if index in state.chosen else {index}
-            several = {each for each in several if not isinstance(state.scene.elements[each], Camera)}
-            hidden = state.hidden - several if index in state.hidden else state.hidden | several
+            switched = state.chosen if index in state.chosen else {index}
+            switched = {each for each in switched if not isinstance(state.scene.elements[each], Camera)}
+            hidden = state.hidden - switched if index in state.hidden else state.hidden | switched
             self.rows.gui.show(replace(state, hidden=hidden))
         imgui.same_line()
-        side = imgui.get_frame_height() * 0.7
+        side = SQUARE * imgui.get_frame_height()
         imgui.push_item_flag(imgui.ItemFlags.NO_NAV, True)
         red, green, blue = (level / 255 for level in own_colour(element) or PLAIN)
         if imgui.color_button("###colour", (red, green, blue, 1.0), imgui.ColorEditFlags.NO_TOOLTIP, (side, side)):
@@ -115,15 +119,15 @@ class Elements:
         imgui.pop_id()
 
     def show_name(self, index: int) -> None:
-        """Show the name of an element, and its kind at the right.
+        """Show the name of an element, and its kind, if that is not its name, at the right.
 
-        A click selects it; with Shift or Ctrl it is added or removed. A click on the only selected element begins to
-        rename it. A double click brings it into view, or looks through a camera.
+        A click selects the element, or with Shift or Ctrl adds it to the selection or removes it. A click on the only
+        selected element begins to rename it. A double click brings it into view, or looks through a camera.
         """
         session, state = self.session, self.session.state
         name, kind = element_name(state.scene, index, translated), numbered_kind(state.scene, index, translated)
-        flags, right = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK, imgui.get_cursor_pos_x()
-        right += imgui.get_content_region_avail()[0]
+        flags = imgui.SelectableFlags.ALLOW_DOUBLE_CLICK
+        right = imgui.get_cursor_pos_x() + imgui.get_content_region_avail()[0]  # border of the list, in pixels
         picked = imgui.selectable(f"{name}###element", index in state.chosen, flags)[0]
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
             self.visit(index)
@@ -151,8 +155,11 @@ class Elements:
         self.rows.gui.show(after)
 
     def type_name(self, index: int) -> None:
-        """Show the name that is typed; Enter, and the focus of another widget, take it. If the click that began it was
-        the first of a double click, typing ends, and the element is brought into view."""
+        """Show the name that is typed; Enter, and the focus of another widget, give it to the element.
+
+        If the click that began the typing was the first of a double click, typing ends without a change, and the
+        element is brought into view.
+        """
         if self._takes_focus:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1.0)
@@ -172,9 +179,9 @@ class Elements:
 
 
 def found(word: str, scene: Scene) -> Sequence[int]:
-    """Return the indices of the elements that contain a word, in small letters without accents; all for an empty one.
+    """Return the indices of the elements that contain `word`, in small letters without accents; all if it is empty.
 
-    It is searched for in their kind and number, their code, their own name, and the last comment above them.
+    Searched are the kind and number of an element, its code, its own name, and the last comment above it.
     """
     if not word:
         return range(len(scene.elements))
@@ -187,7 +194,7 @@ def found(word: str, scene: Scene) -> Sequence[int]:
         numbers[kind] += 1
         title = f"{translated(kind)} {numbers[kind]}"
         if word in searchable(f"{title} {item.code} {own_name(item)} {comment}"):
-            indices.append(sum(numbers.values()) - 1)
+            indices.append(numbers.total() - 1)
     return indices
 
 

@@ -35,7 +35,7 @@ class Groups:
         self._reasons: dict[str, str] = {}  # why attributes cannot be had, by their names
 
     def show(self, index: int) -> None:
-        """Show the values of an element; those of one group alone have no name above them."""
+        """Show the values of the element `index`, by their groups; the name of an only group is not shown."""
         self.rows.index = index
         kind = type(self.rows.element)
         groups: dict[str, list[Field]] = {}
@@ -56,7 +56,7 @@ class Groups:
         title = translated(name) + (f": {', '.join(map(translated, there))}" if there else "")
         flags = imgui.TreeNodeFlags.NONE if name in FOLDED else imgui.TreeNodeFlags.DEFAULT_OPEN
         colours = {imgui.Col.HEADER: LIST, imgui.Col.HEADER_HOVERED: BOX_UNDER_POINTER, imgui.Col.HEADER_ACTIVE: BOX}
-        for part, colour in colours.items():  # not those of a row that is chosen
+        for part, colour in colours.items():  # unlike a chosen row, which Dear ImGui gives the same colours
             imgui.push_style_color(part, rgba(colour))
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, True)  # Tab goes from value to value
         unfolded = imgui.collapsing_header(f"{title}###{name} group", flags=flags)[0]
@@ -65,7 +65,8 @@ class Groups:
         return bool(unfolded)
 
     def attribute(self, field: Field) -> None:
-        """Show the box of an attribute, with its rows, or the reason why it cannot be had or has no effect."""
+        """Show the box of an attribute; below it the reason why the element cannot have it or why it has no effect, and
+        its rows if the element has it. A click on the box adds or removes the attribute."""
         there = getattr(self.rows.element, field.name) is not None
         lacked = lacked_by(self.rows.element, field)
         if lacked:

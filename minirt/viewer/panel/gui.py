@@ -90,7 +90,8 @@ class Gui:
         taken = False
         match event, arguments:
             case Event.MOTION_NOTIFY, (x, y):
-                if not self.session.pressed and (x >= self.left or self.has_popup or self.io.want_capture_mouse):
+                is_needed = x >= self.left or self.has_popup or self.io.want_capture_mouse
+                if is_needed and not self.session.pressed:
                     self.point(x, y)
                     taken = bool(self.io.want_capture_mouse)
             case ((Event.BUTTON_PRESS | Event.BUTTON_RELEASE), (button, x, y)):
@@ -128,8 +129,9 @@ class Gui:
         return taken
 
     def on_key(self, code: int, down: bool) -> bool:
-        """A key goes down or up; function keys, letters and shortcuts are the window's, unless a text is edited.
+        """Handle a key that goes down or up; return whether the panel takes it.
 
+        The window has the function keys and, unless a text is edited, shortcuts, letters and all keys of an open list.
         After a letter, as after Escape, all keys are those of the picture.
         """
         if down:
@@ -137,12 +139,12 @@ class Gui:
             if is_shortcut and self.types and code == Key.S:  # what is typed is set, and then saved
                 self.on_key(Key.RETURN, down=True)
                 self.on_key(Key.RETURN, down=False)
-            passes = not self.types and (is_shortcut or code in OF_THE_PICTURE)
-            is_for_list = self.session.screen.list_box is not None and not self.types
-            taken = self.has_keys and code not in FUNCTION_KEYS and not passes and not is_for_list
+            is_for_picture = is_shortcut or code in OF_THE_PICTURE or self.session.screen.list_box is not None
+            is_for_window = code in FUNCTION_KEYS or (is_for_picture and not self.types)
+            taken = self.has_keys and not is_for_window
             ends = code in (*OF_THE_PICTURE, Key.ESCAPE) and not is_shortcut
             self.is_left |= ends and not self.types and not self.has_popup
-        else:
+        else:  # a key that went down in the panel goes up there
             taken = code in self._held
         if taken:
             (self._held.add if down else self._held.discard)(code)
@@ -165,7 +167,7 @@ class Gui:
         self.session.state, self._is_changed = state, True
 
     def frame(self) -> None:
-        """Make a frame, and let the window show what it has changed."""
+        """Make a frame, let the window show what it has changed, and perform the action of a clicked button."""
         imgui.set_current_context(self._context)
         now, window = self.session.now, self.session.window
         longest = LONGEST if self._held else inf

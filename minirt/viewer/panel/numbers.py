@@ -1,4 +1,4 @@
-"""Numbers of an element that are dragged, typed or stepped, and how they change the scene.
+"""Numbers of an element that are dragged or typed, and how they change the scene.
 
 A number is dragged to slide it (Shift: finer), or clicked to type it; a digit or a sign types it, too, while it has the
 focus. One drag is one step of undo.
@@ -25,10 +25,8 @@ PIXELS = 6  # of a drag to the right or upwards, for one step
 SLIDE = ("value slide", 0.0)  # kind and time of the changes of a drag: the constant time merges them for undo
 TO_TYPE = 3  # frames until a text has the focus, and what began it
 AGAIN = " again"
-HINTS = (  # of one number, and of one of three
-    "drag it, or click to type it: -3, 2*3, +=1; Shift: finer",
-    "drag it, or click to type it: -3, 2*3, +=1, or all three: 1 2 3; Shift: finer",
-)
+HINT = "drag it, or click to type it: -3, 2*3, +=1; Shift: finer"
+HINT_OF_THREE = "drag it, or click to type it: -3, 2*3, +=1, or all three: 1 2 3; Shift: finer"
 TYPING = imgui.InputTextFlags.ENTER_RETURNS_TRUE | imgui.InputTextFlags.AUTO_SELECT_ALL
 NO_ERROR = -1, "", ""
 
@@ -70,25 +68,30 @@ class Numbers:
         self.session.slides = bool(self.pressed) and imgui.is_mouse_down(imgui.MouseButton.LEFT)
 
     def number(self, value: Value, width: float, prefix: str = "") -> None:
-        """Show a number, which is dragged, typed or stepped."""
+        """Show a number as a button `width` pixels wide, or as a text while it is typed; drag it, or begin to type it.
+
+        prefix: the name shown before the number where there is room. A click, Tab from a number that was typed, and a
+        digit or sign while the number has the focus begin to type it.
+        """
         if self._typing == (self.index, value):
             self.type(value, width)
             return
         texts, room = [*spellings(value.current(self.element), prefix)], width - self.gui.size / 2
         text = next((each for each in texts if imgui.calc_text_size(each)[0] < room), texts[-1])
         imgui.push_item_flag(imgui.ItemFlags.NO_TAB_STOP, self.is_typed_with_others(value))
-        entered = imgui.button(f"{text}###{value.name}", (width, 0.0))
+        clicked = imgui.button(f"{text}###{value.name}", (width, 0.0))
         imgui.pop_item_flag()
-        self.gui.hint(HINTS[isinstance(value.leaf, Three)])
+        self.gui.hint(HINT_OF_THREE if isinstance(value.leaf, Three) else HINT)
         if imgui.is_item_activated():
             self.pressed, self._start, self._slid = value.name, self.element, 0.0
             self.session.state = self.session.state.end_merging()
         if self.pressed == value.name:
             self.drag(value)
-        if (entered and not self._slid) or (self._goes_on and imgui.is_item_focused()):
+        characters = self.gui.typed if imgui.is_item_focused() and not self.gui.types else ""
+        if (clicked and not self._slid) or (self._goes_on and imgui.is_item_focused()):
             self.begin_typing(value, "")
-        elif imgui.is_item_focused() and self.gui.typed and self.gui.typed in CHARACTERS and not self.gui.types:
-            self.begin_typing(value, self.gui.typed)
+        elif characters and characters in CHARACTERS:
+            self.begin_typing(value, characters)
         if self.pressed == value.name and not imgui.is_item_active():
             self.pressed = ""
             self.gui.show(self.session.state.end_merging())
@@ -112,8 +115,9 @@ class Numbers:
         self.gui.unsettled = TO_TYPE
 
     def type(self, value: Value, width: float) -> None:
-        """Show the text of the number that is typed; Enter, and the focus of another widget, set it."""
-        if self._first:
+        """Show the text of the number that is typed; Enter, and the focus of another widget, set the number. After Tab
+        the next number is typed; a double click selects all of the text. A text that is refused changes nothing."""
+        if self._first:  # the text has not got the focus yet
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(width)
         entered, self._text = imgui.input_text(f"###{value.name}{self._again}", self._text, TYPING)
@@ -154,7 +158,10 @@ class Numbers:
         self.apply(lambda state: with_value(state, value, lambda *_: new, self.session.now), value.name)
 
     def apply(self, edit: Callable[[State], State], name: str = "") -> None:
-        """Select the element and edit it; a change that is refused is told below the row of the value `name`."""
+        """Select the element and make the state that `edit` returns the current one; it may raise an error.
+
+        A change that is refused, by an error or a message and the same scene, is told at the row of the value `name`.
+        """
         state = self.session.state.with_message("")
         if state.selected != self.index:
             state = state.select(self.index)

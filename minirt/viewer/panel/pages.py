@@ -84,7 +84,8 @@ class Pages:
                 self.rows.gui.show(state)
 
     def picture(self) -> None:
-        """Show the buttons that save the picture and the scene, and the settings of a film of a turntable."""
+        """Show the buttons that save the picture and the scene, the settings of a film of a turntable, and a button
+        that makes the film in a thread, or stops that thread."""
         self.rows.gui.buttons(BUTTONS)
         imgui.separator_text(translated("film"))
         self._format = self.rows.option("format", FILMS, self._format) or self._format
@@ -92,7 +93,7 @@ class Pages:
         if FILMS[self._format].is_lossy:
             self._quality = self.rows.whole("quality", self._quality, BEST_QUALITY)
         if imgui.button(translated("stop" if self._is_running else "save a film") + "###film"):
-            self._is_stopped = self._is_running
+            self._is_stopped = self._is_running  # which the thread looks at
             if not self._is_running:
                 self._is_running = True
                 self._thread = Thread(target=self.make_film, name="minirt-film", daemon=True)
@@ -106,7 +107,8 @@ class Pages:
             imgui.text_wrapped(translated(self.film))
 
     def make_film(self) -> None:
-        """Render and write the film, in a thread of its own; the window goes on meanwhile."""
+        """Render and write the film to a new file, in a thread of its own; an error of miniRT or the system ends it.
+        `_share`, `film` and `_end` tell the window of its progress and its end."""
         path = self.session.path
         names = (path.with_name(f"{path.stem}-{number}{self._format}") for number in count(1))
         file = next(each for each in names if not found(each) and not found(numbered(each, 1)))

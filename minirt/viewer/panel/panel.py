@@ -76,7 +76,7 @@ class Panel(Gui):
         return session.state, window.width, window.height, session.screen.scale, self._pages.film
 
     def build(self) -> None:
-        """Declare the widgets of a frame."""
+        """Set the size of text and the border of the panel, and declare the widgets of a frame."""
         window = self.session.window
         self._shown = self.inputs
         self.resize_text(max(READABLE, min(self.session.screen.text_size, window.width // LETTERS)))

@@ -13,7 +13,7 @@ from minirt.errors import FieldError, quoted
 from minirt.fields import Choice, Colour, Field, Flag, MeshField, MeshFile, Paint, Picture, Three
 from minirt.viewer.editing.colours import COLOURS
 from minirt.viewer.editing.typed import with_value
-from minirt.viewer.editing.values import CHANNELS, Value, part_names, values_of_field
+from minirt.viewer.editing.values import ANGLES, CHANNELS, Value, part_names, values_of_field
 from minirt.viewer.files import usable_files
 from minirt.viewer.language import translated
 from minirt.viewer.panel.numbers import TYPING, Numbers
@@ -37,7 +37,7 @@ class Rows(Numbers):
             self.show_value(value)
 
     def show_value(self, value: Value) -> None:
-        """Show the name of a value and its widgets."""
+        """Show the name of a value and its widgets: a box, or a list of files or words, numbers or a colour."""
         leaf, old = value.leaf, value.get(self.element)
         if isinstance(leaf, Flag):
             if self.box(value.name, old, leaf.doc):
@@ -45,6 +45,27 @@ class Rows(Numbers):
             return
         left, width = imgui.get_cursor_pos_x(), imgui.get_content_region_avail()[0]
         imgui.push_id(f"{self.index} {value.name}")  # what is typed is that of no other element
+        self.show_label(value, width)
+        room = (1 - LABEL) * width
+        imgui.set_cursor_pos_x(left + LABEL * width)
+        if isinstance(leaf, Picture | MeshField | Paint):
+            self.choose_file(value, room)
+            old = value.get(self.element)  # the choice may have changed it
+        if isinstance(leaf, Paint) and not isinstance(old, str):  # a colour in place of a picture
+            imgui.set_cursor_pos_x(left + LABEL * width)
+        if isinstance(leaf, Choice):
+            if word := self.option(value.name, leaf.words, old, room):
+                self.set(value, word)
+        elif isinstance(leaf, Three) and not isinstance(old, str):
+            self.show_triple(value, room)
+        elif isinstance(old, int | float):
+            self.number(value, room)
+        imgui.pop_id()
+
+    def show_label(self, value: Value, width: float) -> None:
+        """Show the name of a value in a row of a width; its widgets follow beside it, or below a name that is too long.
+        A value that was refused is marked, and the reason is shown under the pointer."""
+        leaf = value.leaf
         imgui.align_text_to_frame_padding()
         title = translated(leaf.title)
         longer = f"{title}: {ALL_THREE}"
@@ -61,32 +82,18 @@ class Rows(Numbers):
             self.gui.hint(leaf.doc, leaf.range)
         if imgui.get_item_rect_size()[0] < LABEL * width:
             imgui.same_line()
-        room = (1 - LABEL) * width
-        imgui.set_cursor_pos_x(left + LABEL * width)
-        if isinstance(leaf, Picture | MeshField | Paint):
-            self.choose_file(value, room)
-            old = value.get(self.element)
-        if isinstance(leaf, Paint) and not isinstance(old, str):
-            imgui.set_cursor_pos_x(left + LABEL * width)
-        if isinstance(leaf, Choice):
-            if word := self.option(value.name, leaf.words, old, room):
-                self.set(value, word)
-        elif isinstance(leaf, Three) and not isinstance(old, str):
-            self.show_triple(value, room)
-        elif isinstance(old, int | float):
-            self.number(value, room)
-        imgui.pop_id()
 
     def show_triple(self, value: Value, room: float) -> None:
-        """Show the parts of a colour, a position or sizes beside each other, the angles of a direction below."""
+        """Show the parts of a colour, a position or sizes beside each other, in `room` pixels. The two angles of a
+        direction are on a line of their own below its components."""
         left, gap = imgui.get_cursor_pos_x(), imgui.get_style().item_inner_spacing[0]
         if isinstance(value.leaf, Colour):
             self.pick_colour(value)
             imgui.same_line(0.0, gap)
         room -= imgui.get_cursor_pos_x() - left
         for part, name in enumerate(part_names(value.leaf)):
-            columns = Three.width if part < Three.width else 2
-            if part == Three.width:
+            columns = Three.width if part < Three.width else len(ANGLES)
+            if part == Three.width:  # the first angle
                 imgui.set_cursor_pos_x(left)
             elif part:
                 imgui.same_line(0.0, gap)
@@ -94,7 +101,8 @@ class Rows(Numbers):
             self.number(value._replace(channel=part), (room - (columns - 1) * gap) / columns, prefix)
 
     def pick_colour(self, value: Value) -> None:
-        """Show a colour as a square, which opens a picker with its hexadecimal spelling."""
+        """Show a colour as a square; a click opens a picker, colours with names, and the hexadecimal spelling. Changes
+        by the picker that follow each other are undone together."""
         colour = value.get(self.element)
         red, green, blue = (part / 255 for part in colour)
         side = imgui.get_frame_height()
@@ -115,7 +123,7 @@ class Rows(Numbers):
         imgui.end_popup()
 
     def swatches(self, value: Value, width: float) -> None:
-        """Show the colours that have a name, in lines of a width; a click gives one and closes the picker."""
+        """Show the colours that have a name, in lines `width` pixels wide; a click sets one and closes the picker."""
         side = width / SWATCHES
         imgui.push_style_var(imgui.StyleVar.ITEM_SPACING, (0.0, 0.0))
         for number, (word, levels) in enumerate(COLOURS.items()):
