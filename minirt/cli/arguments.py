@@ -188,8 +188,7 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
     return message.removeprefix("unrecognized arguments: ")
 
 
-# What was asked for goes to standard output, and is an error if it cannot be written. Notices and measurements go to
-# standard error, and are dropped if they cannot.
+# What was asked for goes to standard output; RenderError when that fails. Notices go to standard error, or are dropped.
 
 
 def prepare_streams() -> None:
