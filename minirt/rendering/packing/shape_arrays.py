@@ -20,8 +20,7 @@ from minirt.kernel.projection import MARGIN
 from minirt.kernel.scene_arrays import TRIANGLE_ROW, row_type
 from minirt.rendering.packing.features import examined
 from minirt.rendering.packing.packed_shapes import bounding_balls, column, morton_order, pack_shapes, spans
-from minirt.rendering.packing.runs import common, differing_shapes, joined
-from minirt.scene.pages import Crowd
+from minirt.rendering.packing.runs import common, differing_shapes, groups_of, joined
 from minirt.shapes import ALL_KINDS, MESH, Shape
 from minirt.shapes.mesh import Mesh
 
@@ -56,9 +55,9 @@ class ShapeArrays:
             return False
         before = copy(self)
         self.runs = runs
-        fits = [*map(len, runs)] == [*map(len, before.runs)]
-        changed = [*differing_shapes(before.runs, runs)] if fits else []
-        fits = fits and all(
+        has_same_lengths = [*map(len, runs)] == [*map(len, before.runs)]
+        changed = [*differing_shapes(before.runs, runs)] if has_same_lengths else []
+        fits = has_same_lengths and all(
             type(a) is type(b) and getattr(a, "triangles", a) is getattr(b, "triangles", a) for _, a, b in changed
         )
         for name in ("shapes", "rows"):
@@ -99,18 +98,11 @@ class ShapeArrays:
         examples = [present[kind.element].some(FIRST) for kind in used]
         self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.infinite_plane() is not None for each in examples], bool)
-        number = self.group_numbers.__getitem__
-        of_runs = [
-            np.repeat(number(run.kind), len(run))
-            if isinstance(run, Crowd)
-            else np.fromiter(map(number, map(type, run)), np.int64, len(run))
-            for run in runs
-        ]
-        groups = np.concatenate([FIRST[:0], *of_runs])
-        sizes = np.ones(len(groups), np.int64)
+        groups = groups_of(runs, self.group_numbers)
+        sizes = np.ones(len(groups), np.int64)  # primitives of each shape
         if Mesh in present:
             sizes[:] = [shape.parts for shape in self.shapes]
-        groups = np.repeat(groups, sizes)
+        groups = np.repeat(groups, sizes)  # from here on of each primitive
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
         self.first_primitive = np.concatenate([[0], np.cumsum(sizes)])
@@ -119,10 +111,8 @@ class ShapeArrays:
         )
         self.tints: dict[int, Triple] = {}  # the colours of meshes that are written
         self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # what `by_primitive` has returned, and for what
-        self.triangles: Any = (
-            None  # of meshes, and which are placed, see `minirt.rendering.packing.mesh_trees.place_meshes`
-        )
-        self.placed: dict[int, Shape] = {}
+        self.triangles: Any = None  # of meshes, see `minirt.rendering.packing.mesh_trees.place_meshes`
+        self.placed: dict[int, Shape] = {}  # the meshes of these triangles, by their numbers
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
         for group in range(len(used)):
             self.slots[groups == group, 1] = np.arange(counts[group])
@@ -135,7 +125,7 @@ class ShapeArrays:
         self.places = np.arange(len(sizes))
 
     def arrange(self, order: np.ndarray) -> None:
-        """Number the shapes in lists, their balls and the rows of their tables in some order, but not triangles."""
+        """Number the shapes in lists, their balls and the rows of their tables, but not triangles, in an order (s,)."""
         at, first = self.balls_of(order), self.first_primitive[order]
         self.first_ball, self.balls = np.append(0, np.cumsum(np.diff(self.first_ball)[order])), self.balls[at]
         for kind, group in self.group_numbers.items():
@@ -168,6 +158,7 @@ class ShapeArrays:
         ends = [sum(map(len, self.runs[:number])) for number in (first, last)]
         primitives = self.first_primitive[ends]
         balls = before.balls[before.balls_of(np.arange(len(before.boxes)))]
+        # Arrays to write, the same ones as they were, and the rows between which nothing is copied.
         pairs: list[Any] = [(self.boxes, before.boxes, ends), (self.balls, balls, self.first_ball[ends])]
         pairs.append((self.colours_and_extents, before.colours_and_extents, primitives))
         pairs.append((self.planes, before.planes, np.searchsorted(self.plane_indices, primitives)))
@@ -207,7 +198,7 @@ class ShapeArrays:
         return np.array([shape.smooth for shape in self.shapes], np.int64)[self.owner]
 
     def write(self, group: int, shapes: np.ndarray, members: Sequence[Shape]) -> None:
-        """Write some shapes of one kind, given by their indices, too, into the arrays."""
+        """Write `members`, shapes of one group with the indices `shapes`, into the arrays."""
         indices, places = self.first_primitive[shapes], self.places[shapes]
         self.written[places] = self.updates
         rows, boxes, balls = pack_shapes(members)
