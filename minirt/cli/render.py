@@ -220,7 +220,7 @@ def is_streamed(options: argparse.Namespace, region: Region) -> bool:
     is_light_extra = (options.dither or options.verbose) and not needs_light(options, options.output)
     may_stream = name == "TIFF" and not options.time and not options.turntable
     try:
-        bytes_per_pixel = memory_of(name, options.bits) + LIGHT * is_light_extra
+        bytes_per_pixel = memory_of(name, options.bits) + (LIGHT if is_light_extra else 0)
         system.check_picture(region.height, region.width, bytes_per_pixel)
     except system.TooLargeError:
         if not may_stream:

@@ -108,7 +108,8 @@ class Measurement:
             self.stage.stop()
 
     def measure(self, other: Findings | None) -> None:
-        """Measure all settings, while the kernels of later ones are compiled, and then hits and parts."""
+        """Measure all settings, while the kernels of later ones are compiled, and then hits and parts: `found` and
+        `pictures` are filled. `other` is the report to compare with."""
         scene, plan, stage = self.scene, self.plan, self.stage
         first, *_ = [stage.prepare(setting.knob) for setting in self.wanted]
         stage.prepare_queries()

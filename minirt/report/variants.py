@@ -106,7 +106,7 @@ class InvisibleElements:
         initial value of the field, or the middle of its range.
         """
         match field:
-            case Compound():  # `bare`: what its name alone stands for
+            case Compound():  # `bare`: the text for which the name of the field alone stands
                 value = field.check(field.parse(field.bare)) if field.bare else self.record(field.record)
             case MeshField():
                 value = field.check(field.parse(self.mesh))
@@ -115,7 +115,7 @@ class InvisibleElements:
             case Lengths() if field.unit:  # in scene units; without a unit, it is a share
                 value = (self.size,) * 3
             case Length() if field.unit:
-                value = self.size * (field.initial or 1.0)
+                value = self.size * (field.initial or 1.0)  # initial values are as for a shape of size 1
             case Point():
                 value = next(self.corners)
             case Direction():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from copy import copy
 from struct import pack_into
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,14 @@ from minirt.rendering.packing.visibility import CROSSED, STILL, BinnedShapes, Bi
 from minirt.scene import Camera, Scene
 
 SPARE = 0.25  # of the lists of a camera that moves
+
+
+class PackedScene(NamedTuple):
+    """A scene, and its arrays for a picture or a rectangle of one."""
+
+    scene: Scene
+    place: Place
+    arrays: SceneArrays
 
 
 class View:

@@ -142,7 +142,7 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     # The kernel writes them all, also where nothing is hit: for coherent rays filling them took a tenth of the time.
     distance, primitive = np.empty(count), np.empty(count, np.int64)
     point, normal = np.empty((count, 3)), np.empty((count, 3))
-    owner, first_primitive = primitive, np.zeros(1, np.int64)
+    owner, first_primitive = primitive, np.zeros(1, np.int64)  # without meshes each shape is one primitive
     if count and scene.runs:
         with chosen.busy:
             # The caller's thread only waits, so that Ctrl+C reaches it.
