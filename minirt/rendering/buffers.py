@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.errors import RenderError
 from minirt.fields import unit
-from minirt.kernel.scene_arrays import kind_of
+from minirt.kernel.scene_arrays import KIND, ROW, kind_of
 from minirt.lanes import Vec
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import GOLDEN_RATIO
@@ -171,8 +171,8 @@ def coordinates(
     for i, (_, _, _, _, _, _, *axes) in placements.items():
         normal[owner == i] = normal[owner == i] @ np.reshape(axes, (3, 3)).T
     for group, rows in enumerate(arrays.rows):
-        here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
-        packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
+        here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, KIND] == group))
+        packed = packed_columns(rows[arrays.slots[primitive[here], ROW]])
         with np.errstate(all="ignore"):
             u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*point[here].T), Vec(*normal[here].T))
         uv[here, 0], uv[here, 1] = u, v

@@ -14,6 +14,7 @@ import numpy as np
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, MeshField, Picture, Point
+from minirt.kernel.scene_arrays import SHAPE
 from minirt.materials import Attributes, Clouds, Compound
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
@@ -137,7 +138,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     packing = Packing()
     arrays = packing.pack(scene, width, height)
     in_tiles = arrays.tile_shapes[: arrays.groups[-1].tile_starts[-1]]  # behind those is room to spare
-    listed = arrays.listed[:, 3]  # the index of each shape in the lists
+    listed = arrays.listed[:, SHAPE]  # the index of each shape in the lists
     seen, lit = (
         [scene.shapes[index] for index in listed[np.unique(each)].tolist()] for each in (in_tiles, arrays.light_shapes)
     )

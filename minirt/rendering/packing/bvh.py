@@ -10,7 +10,7 @@ from minirt.kernel.bvh_build import GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh_nodes import GROUPS, MARGIN, NODE, WIDTH, LeafGroup, Tree
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.mesh_nodes import MeshTrees
-from minirt.kernel.scene_arrays import MeshTriangles, kind_of, row_type
+from minirt.kernel.scene_arrays import KIND, ROW, MeshTriangles, kind_of, row_type
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes import Kind, Mesh
@@ -39,11 +39,11 @@ def build_bvh(
     first = shape_arrays.first_primitive[:-1]  # the primitive of each shape, the first one of a mesh
     slots, bounds, extents = shape_arrays.slots[first], shape_arrays.boxes, shape_arrays.colours_and_extents[:, 3]
     kinds_are_infinite = [element.infinite for element in shape_arrays.group_numbers]
-    is_infinite = np.array(kinds_are_infinite, bool)[slots[:, 0]]
+    is_infinite = np.array(kinds_are_infinite, bool)[slots[:, KIND]]
     infinite, bounded = first[is_infinite], np.flatnonzero(~is_infinite)
     boxes = np.empty((len(bounded), 8))
     boxes[:, :3], boxes[:, 3:6] = -bounds[bounded, 0], bounds[bounded, 1]
-    boxes[:, INDEX], boxes[:, GROUP] = first[bounded], slots[bounded, 0]
+    boxes[:, INDEX], boxes[:, GROUP] = first[bounded], slots[bounded, KIND]
     nodes, leaves = wide_nodes(boxes, kernel, margin=margin, run=run)
     # The blocks of each kind are in the order of the leaves.
     kinds, (places, spare) = boxes[leaves[:, 0], GROUP], lanes_of(leaves, WIDTH)
@@ -53,12 +53,12 @@ def build_bvh(
         of_group = np.flatnonzero(kinds == group)
         blocks[of_group] = np.arange(len(of_group))
         members = boxes[places[of_group], INDEX].astype(np.int64)
-        group_blocks = shape_arrays.slots[members, 1]
+        group_blocks = shape_arrays.slots[members, ROW]
         if kind is not Mesh:
             group_blocks = as_blocks(rows, group_blocks)
         labels = np.stack([members, extents[members]], axis=-1)
         leaf_boxes = aligned_copy(boxes_of(boxes[:, :6], places[of_group], spare[of_group], margin))
-        unbounded = infinite[shape_arrays.slots[infinite, 0] == group] if kinds_are_infinite[group] else None
+        unbounded = infinite[shape_arrays.slots[infinite, KIND] == group] if kinds_are_infinite[group] else None
         of_meshes = meshes if kind is Mesh else NO_MESHES
         groups.append(LeafGroup(rows, group_blocks, labels, leaf_boxes, unbounded, group, *of_meshes))
     refer_to_leaves(nodes[:, 6], blocks, kinds)

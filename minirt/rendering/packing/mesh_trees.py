@@ -10,7 +10,7 @@ import numpy as np
 from minirt.kernel import mesh_nodes
 from minirt.kernel.bvh_build import INDEX
 from minirt.kernel.machine_code.library import bound
-from minirt.kernel.scene_arrays import MeshTriangles
+from minirt.kernel.scene_arrays import ROW, MeshTriangles
 from minirt.meshes import Triangles
 from minirt.meshes.triangles import BLOCK
 from minirt.rendering.packing.bvh import Meshes, aligned_copy, lanes_of, wide_nodes
@@ -37,7 +37,7 @@ def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
     roots = np.cumsum([0, *map(len, nodes[:-1])]) // mesh_nodes.NODE
     first = shapes.first_primitive[owners]
-    rows = shapes.slots[first, 1]  # of the first triangle of each mesh, in the table of all triangles
+    rows = shapes.slots[first, ROW]  # of the first triangle of each mesh, in the table of all triangles
     numbers = np.zeros(rows[-1] + 1, np.int64)
     numbers[rows] = np.arange(len(rows))
     joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]

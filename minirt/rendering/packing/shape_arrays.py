@@ -17,7 +17,7 @@ import numpy as np
 
 from minirt.fields import Triple
 from minirt.kernel.projection import MARGIN
-from minirt.kernel.scene_arrays import TRIANGLE_ROW, row_type
+from minirt.kernel.scene_arrays import KIND, PRIMITIVE, ROW, SHAPE, TRIANGLE_ROW, row_type
 from minirt.rendering.packing.features import examined
 from minirt.rendering.packing.packed_shapes import bounding_balls, column, morton_order, pack_shapes, spans
 from minirt.rendering.packing.runs import common, differing_shapes, groups_of, joined
@@ -71,7 +71,7 @@ class ShapeArrays:
             parts = joined(runs[first:last], sum(map(len, runs[:first])))
         self.updates += 1
         for indices, members in parts:
-            groups = self.slots[self.first_primitive[indices], 0]
+            groups = self.slots[self.first_primitive[indices], KIND]
             for group in set(groups.tolist()):
                 at = np.flatnonzero(groups == group)
                 self.write(group, indices[at], members if len(at) == len(members) else [members[i] for i in at])
@@ -115,7 +115,7 @@ class ShapeArrays:
         self.placed: dict[int, Shape] = {}  # the meshes of these triangles, by their numbers
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
         for group in range(len(used)):
-            self.slots[groups == group, 1] = np.arange(counts[group])
+            self.slots[groups == group, ROW] = np.arange(counts[group])
         self.plane_indices = np.flatnonzero(self.is_plane[groups])
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
         self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.first_primitive[:-1]]])])
@@ -130,12 +130,13 @@ class ShapeArrays:
         self.first_ball, self.balls = np.append(0, np.cumsum(np.diff(self.first_ball)[order])), self.balls[at]
         for kind, group in self.group_numbers.items():
             if kind is not Mesh:
-                members = first[self.slots[first, 0] == group]
+                members = first[self.slots[first, KIND] == group]
                 rows = self.tables[group].view(np.float64).reshape(len(members), -1)  # copied in half of the time
-                rows[:] = rows[self.slots[members, 1]]
-                self.slots[members, 1] = np.arange(len(members))
+                rows[:] = rows[self.slots[members, ROW]]
+                self.slots[members, ROW] = np.arange(len(members))
         self.listed, self.places = np.empty((len(order), 4), np.int32), np.empty(len(order), np.int32)
-        self.listed[:, :2], self.listed[:, 2], self.listed[:, 3] = self.slots[first], first, order
+        self.listed[:, KIND : ROW + 1], self.listed[:, PRIMITIVE] = self.slots[first], first
+        self.listed[:, SHAPE] = order
         self.places[order] = np.arange(len(order))
         self.plane_places = self.places[self.owner[self.plane_indices]]
 
@@ -147,8 +148,8 @@ class ShapeArrays:
 
     def primitives_of(self, group: int) -> np.ndarray:
         """Return the indices of the primitives of a group in the order of its rows."""
-        members = np.flatnonzero(self.slots[:, 0] == group)
-        return members[np.argsort(self.slots[members, 1])]
+        members = np.flatnonzero(self.slots[:, KIND] == group)
+        return members[np.argsort(self.slots[members, ROW])]
 
     def take_ends(self, before: ShapeArrays) -> tuple[int, int]:
         """Copy the rows of the first and the last runs that other arrays have, too; return the number of the first run
@@ -164,9 +165,9 @@ class ShapeArrays:
         pairs.append((self.planes, before.planes, np.searchsorted(self.plane_indices, primitives)))
         for kind, group in self.group_numbers.items():
             if kind in before.group_numbers:
-                counts = np.cumsum(np.append(0, self.slots[:, 0] == group))[primitives]
+                counts = np.cumsum(np.append(0, self.slots[:, KIND] == group))[primitives]
                 number = before.group_numbers[kind]
-                rows = before.tables[number][before.slots[before.slots[:, 0] == number, 1]]
+                rows = before.tables[number][before.slots[before.slots[:, KIND] == number, ROW]]
                 pairs.append((self.tables[group], rows, counts))
         for into, rows, (start, stop) in pairs:
             into[:start], into[stop:] = rows[:start], rows[len(rows) - len(into) + stop :]
@@ -208,7 +209,7 @@ class ShapeArrays:
             for index, mesh in zip(shapes.tolist(), members, strict=True):
                 self.tint(index, mesh)
         else:
-            self.tables[group].view(np.float64).reshape(len(self.tables[group]), -1)[self.slots[indices, 1]] = rows
+            self.tables[group].view(np.float64).reshape(len(self.tables[group]), -1)[self.slots[indices, ROW]] = rows
             self.colours_and_extents[indices, :3] = column(members, "colour", 3) / 255
             self.colours_and_extents[indices, 3] = extents
         if self.is_plane[group]:
@@ -242,7 +243,7 @@ class ShapeArrays:
         boxes, extents = self.boxes[self.owner], self.colours_and_extents[:, 3].copy()
         if Mesh in self.group_numbers:
             group = self.group_numbers[Mesh]
-            at, numbers = self.slots[:, 0] == group, self.rows[group].view(np.float64).reshape(-1, 27)
+            at, numbers = self.slots[:, KIND] == group, self.rows[group].view(np.float64).reshape(-1, 27)
             low, high, extents[at] = spans(numbers[:, :9].reshape(-1, 3, 3))
             boxes[at, 0], boxes[at, 1] = low.T, high.T
         return boxes, extents

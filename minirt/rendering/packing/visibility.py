@@ -19,7 +19,7 @@ from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import Grid
 from minirt.kernel.rectangles import CHUNK, BinningArrays
-from minirt.kernel.scene_arrays import LEAST_DISTANCE
+from minirt.kernel.scene_arrays import KIND, LEAST_DISTANCE
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
@@ -100,6 +100,7 @@ class Bins:
         chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
         self.kernel, self.shapes = kernel, shape_arrays
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
+        # Rectangles: of each shape one for each frame, of each plane one for each row of cells.
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
         self.pose = np.append(np.zeros(3), grid.frames)
         self.arrays = BinningArrays(
@@ -148,7 +149,7 @@ class Bins:
         view: Any = *pose, self.skipped
         moved: Any = np.flatnonzero(self.shapes.written > self.updates) if self.shapes.updates > self.updates else []
         first_moved = moved[:2]  # of more than one all are binned anew
-        same = view == self.last and not self.shapes.is_plane[self.shapes.listed[first_moved, 0]].any()
+        same = view == self.last and not self.shapes.is_plane[self.shapes.listed[first_moved, KIND]].any()
         self.updates, self.last = self.shapes.updates, ()  # after an error the lists are those of no view
         self.counter[0], self.arrays.found[CROSSED] = 0, 0
         pack_into(f"{len(pose)}d", self.pose.data, 0, *pose)
@@ -187,7 +188,7 @@ def in_all_cells(
     if cones is None:
         cones = np.tile([0.0, 0.0, 0.0, -2.0, 0.0], (count, 1))  # any cosine is more than -2
     shapes = np.setdiff1d(np.arange(count), [] if skipped is None else shape_arrays.plane_places[skipped])
-    kinds = shape_arrays.listed[shapes, 0]
+    kinds = shape_arrays.listed[shapes, KIND]
     order = np.lexsort((cones[shapes, LEAST_DISTANCE], kinds))
     members = shapes[order].astype(np.int32)
     ends = np.searchsorted(kinds[order], np.arange(len(shape_arrays.tables))[:, None] + [0, 1])
