@@ -25,7 +25,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the program with the arguments `argv` and return its exit status. Errors of miniRT and of memory are printed;
     others are raised.
 
-    None stands for the arguments of this process. It is the program's own then, and a signal ends it here.
+    With None they are the arguments of this process, which is the program's own then: a signal ends it here.
     """
     prepare_streams()
     if argv is None:  # a program of its own
@@ -121,8 +121,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
-    """Read the scene of this name and run the command for it; return its exit status. MiniRTError where
-    either fails."""
+    """Read the scene of this name and run the command for it; return its exit status. MiniRTError if either fails."""
     from minirt.helpers.signals import ended_by_signals
     from minirt.helpers.system import gc_paused
 
@@ -139,7 +138,7 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         if options.json and command is check:
             return check_as_json(options)
         with gc_paused():
-            read, notices = read_scene(options, command in (show, replay), for_window=command is show)
+            read, notices = read_scene(options, new=command in (show, replay), for_window=command is show)
         for notice in notices:
             # Standard output may get a picture, but not from a window; standard error stays empty without errors then.
             tell(f"notice: {notice}", sys.stdout if command is show else sys.stderr)
@@ -159,7 +158,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     last = options.frames.stop - 1 if options.frames else 0  # the last picture of the turntable to render; 0: all are
     is_beyond_turntable = bool(options.turntable) and last > options.turntable
     makes_film_here = options.turntable and not options.cluster
-    makes_one_picture = output and not (options.buffers or replay or makes_film_here)
+    makes_one = output and not (options.buffers or replay or makes_film_here)
     cannot_resume = replay or auto or nameless
     side, made = max(options.size or (0,)), counted(options.turntable, "picture")  # the longer side; 0: the scene's
     is_too_large = side > MAX_SIDE and not options.cluster
@@ -170,10 +169,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         (options.resume and cannot_resume, f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
-        (
-            auto and not makes_one_picture,
-            "--samples auto makes one picture: it needs -o, and no --replay or --turntable",
-        ),
+        (auto and not makes_one, "--samples auto makes one picture: it needs -o, and no --replay or --turntable"),
         (options.cluster and options.time, "--cluster has no effect with --time"),
         (options.buffers and not output, f"--buffers needs {NAME.replace('spin.gif', 'normals.png')}"),
         (is_too_large, f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster"),

@@ -171,7 +171,7 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
         if action and getattr(options, action.dest) == action.default:
             with suppress(ValueError):
                 setattr(changed, action.dest, value_of(action, True if action.nargs == 0 else value))
-    if max(changed.size or (0,)) > MAX_SIDE:  # a picture of a cluster
+    if max(changed.size or (0,)) > MAX_SIDE:  # only --cluster makes such pictures
         changed.size = options.size
     if changed.samples != "auto":  # the samples were given, and these two settings are only for "auto"
         changed.error, changed.time = options.error, options.time

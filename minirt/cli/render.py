@@ -99,9 +99,9 @@ def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bo
     """Show the progress of the `share` while the block works, and give it the journal of the output, which is deleted
     when the block ends without an error.
 
-    The block gets None in place of a journal for work of less than LONG rays, for "auto" samples, each of which depends
-    on those before, and for standard output. `has_parts`: the journal holds what was rendered, and not only which
-    pictures of the job are done.
+    The block gets None in place of a journal for standard output and, without --resume, for less than LONG rays; those
+    of "auto" samples count as none, since each depends on those before. `has_parts`: the journal holds what was
+    rendered, and not only which pictures of the job are done.
     """
     journal = None
     with ExitStack() as stack:

@@ -147,9 +147,8 @@ class Dispatcher:
         nowhere: Any = None  # in place of the scene of the band, which travels packed
         # A worker that hangs may be the only one that has a large scene.
         arguments = version(), self.scene.data if self.has_late else self.scene.at_workers, scene.camera
-        how = (
-            {} if self.client is None else {"pure": False}
-        )  # else dask takes a band that is sent again for the same task
+        # By default dask takes a band that is sent again for the same task.
+        how = {} if self.client is None else {"pure": False}
         try:
             with held_signals(), terminal_signals_blocked():  # the first task starts the processes of a pool
                 sent = band._replace(scene=nowhere, settings=settings)

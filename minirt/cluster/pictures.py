@@ -80,8 +80,8 @@ def render_to(
     With `samples` "auto" each band is rendered until its estimated error is at most `error`; the error of the whole
     picture is, too, since its square is the mean of the squares of the bands. `time` is in seconds for each band. The
     result is the outcome of the whole picture; without "auto" it is None. `on_progress` gets the number of bands that
-    are done, and of all.
-    RenderError when rendering or writing fails; TypeError where `scene` is no scene, such as the name of a file.
+    are done, and of all. RenderError when rendering or writing fails; TypeError where `scene` is no scene, such as the
+    name of a file.
     """
     check_scene(scene, "render_to")
     name = format_of(path)

@@ -32,7 +32,7 @@ def calls() -> list[list[Call]]:
 
 
 def build(folder: Path, target: str, most: int | None = None) -> int:
-    """Compile the kernels for the processor `target` that are not in the folder, and return how many that were.
+    """Compile the kernels for the processor `target` that are not in the folder; return how many were compiled.
 
     `most` is the number of groups, from the first one on, that are compiled; None for all. Kernels of other sources are
     deleted. RenderError where compiling fails; OSError where the folder cannot be written.

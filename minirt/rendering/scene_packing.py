@@ -214,19 +214,20 @@ class Packing:
         """
         if LIGHT_BUFFERS in self.without:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
-        shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
+        shapes = self.shape_arrays
+        copies = 2 * len(sources) if len(sources) > 1 else 1  # of lists: each light's, and all of them joined
         has_meshes = Mesh in shapes.group_numbers  # from whose facets rays may be moved out of reach
         has_cones = light_buffers.has_cones(len(sources), len(shapes.listed))
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for light in sources:
             skipped = lights.never_occludes(shapes, eye, light, radius)
-            if not light.position or (light.size and cells > 1):  # by the BVH
+            if not light.position or (light.size and cells > 1):  # the kernel traverses the BVH
                 keys.append(("spread", cells, skipped.tobytes(), has_cones))
                 binned.append(cached(keys[-1], light_buffers.seen_by_parallel_light, shapes, cells, skipped))
             else:
                 position, size = lights.light_position(light), lights.radius_of(light)
-                reach = (not has_meshes and light.fade) or np.inf
+                reach = light.fade if light.fade and not has_meshes else np.inf
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach, has_cones))
                 alike = 1 if binned else copies  # lists in memory: those of the first light stand for all
                 at = position, cells, skipped, size, reach, alike, self.run, self.spare.pop(len(binned), None)

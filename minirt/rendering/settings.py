@@ -137,8 +137,8 @@ def render(
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
     of the picture tells which. Errors are defined in `minirt.rendering.outcome`. With `linear` False the picture has
     8 bits alone, and sampling also ends where rounding to them decides its error. By default a picture of one sample
-    makes its `.linear` light when that is asked for, by rendering again; with `linear` True it keeps it, which takes up
-    to three times as long where frames are fast.
+    makes its `.linear` light when that is asked for, by rendering again; with `linear` True it keeps the light, which
+    takes up to three times as long where frames are fast.
 
     Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
     by blue noise, so that smooth shades have no steps.

@@ -96,7 +96,7 @@ def map_tones(
     """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
 
     Pixels whose light is NaN stay as they are. The pattern that dithers begins with the whole picture, of which `crop`
-    may be a part. `run` runs a job on all threads. They end early where `is_wanted`, which is asked every few
+    may be a part. `run` runs a job on all threads, which end early where `is_wanted`, which is asked every few
     milliseconds, says no.
     """
     curve, lines = tone_named(tone), max(1, STRIP // light.shape[1])

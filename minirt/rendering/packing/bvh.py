@@ -33,7 +33,7 @@ def build_bvh(
 ) -> Tree:
     """Build the BVH over the shapes with the functions of `kernel`, compiled or interpreted.
 
-    A mesh is one shape there, which has a tree of its own: `meshes` are those trees and the triangles of all meshes.
+    A mesh is one shape in it, and has a tree of its own: `meshes` are these trees and the triangles of all meshes.
     All boxes are grown by a margin, a share of their coordinates. Where it is infinite each ray visits every leaf.
     """
     first = shape_arrays.first_primitive[:-1]  # the primitive of each shape, the first one of a mesh

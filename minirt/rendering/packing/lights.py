@@ -152,8 +152,8 @@ def sources_of_cells(
     """Return the lengths of the lists of all cells, and their members one after the other; None where they are too
     long.
 
-    Centres (m, 3) and reach (m, 1) are in edges of a cell; the list of a cell holds up to an edge above it. There are
-    `counts` (3,) cells along x, y and z.
+    Centres (m, 3) and reach (m, 1) are in edges of a cell. There are `counts` (3,) cells along x, y and z. The list of
+    a cell also holds for points up to an edge above it on each axis.
     """
     ends = centres - reach - 1 - FARTHER, centres + reach + FARTHER
     first, last = (np.clip(end, 0, counts - 1).astype(np.int64) for end in ends)

@@ -102,8 +102,8 @@ def boxes_of_triangles(triangles: Triangles, middle: np.ndarray, size: float) ->
 def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTriangles | None:
     """Return the triangles of all meshes of a scene, or None without any.
 
-    They are kept in `shapes.triangles`, with their places in `shapes.placed`: only a mesh that is not there as it is
-    now is placed, by a function of `kernel`, on all threads by `run`.
+    `shapes.triangles` keeps them, and `shapes.placed` the meshes as they were placed: only meshes that have changed are
+    placed anew, by a function of `kernel`, on all threads by `run`.
     """
     if Mesh not in shapes.group_numbers:
         return None

@@ -27,8 +27,8 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tu
     `shape` has the exact fields of n shapes, which `ExactFields.shape` returns, and `point` exact points in their
     frame. Return the distance of each nearest point, (n,); the unit normal of the nearest face there; and the distance,
     (n,), of `normal` from that normal, or from the normal of another face within `rounding`, (n,).
-    Each step linearises all faces and limits about the last foot. Where that ends the foot is on the surface; it may
-    not end beside an apex, where a side is curved as strongly as the point is far from it.
+    Each step linearises all faces and limits about the last foot. Where the steps settle the foot is on the surface;
+    they may not settle beside an apex, where a side is curved as strongly as the point is far from it.
     """
     boundary = kind.boundary(shape, seeded(point))
     count, zero = len(boundary.faces), np.zeros_like(point.x.high)
@@ -72,9 +72,9 @@ def way_to_surface(heights: list[Array], normals: list[Vec], face: Integers, ins
     """The shortest way from a point to where planes bound a convex solid, or to a sheet on the first of them.
 
     The point lies at these `heights` above the planes, along their unit normals; it may be `inside` of the solid.
-    From inside it leads to the nearest `face`. From outside it is the longest of the shortest ways to one plane, to the
-    edge of two and to the corner of three of them, of those that lead straight against a sum of their normals with
-    factors that are not negative (Karush 1939; Kuhn and Tucker 1951).
+    From inside the way leads to the nearest `face`. From outside it is the longest of the shortest ways to one plane,
+    to the edge of two and to the corner of three of them, of those that lead straight against a sum of their normals
+    with factors that are not negative (Karush 1939; Kuhn and Tucker 1951).
     """
     best = -np.choose(face, heights) * chosen(face, normals)
     reach = np.where(inside | is_sheet, dot(best, best), -1.0)
