@@ -166,8 +166,7 @@ def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.nd
     covered = np.zeros((height, width), bool)
     (ax, bx, cx), (ay, by, cy) = x[triangles.corners].T, y[triangles.corners].T
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    # Triangles seen from their front and, unless the mesh is closed and its back lies behind its front, from their
-    # back.
+    # Triangles seen from their front, then those seen from their back, which a closed mesh hides behind its front.
     for facing in (area > 0, area < 0)[: 1 if triangles.closed else 2]:
         start, end = silhouette_edges(facing, triangles.corners, triangles.edges)
         covered |= winding_numbers(x[start], y[start], x[end], y[end], width, height) != 0
