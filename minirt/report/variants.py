@@ -116,7 +116,7 @@ class InvisibleElements:
             case Lengths() if field.unit:  # in scene units; without a unit, it is a share
                 value = (self.size,) * 3
             case Length() if field.unit:
-                value = self.size * (field.initial or 1.0)  # initial values are as for a shape of size 1
+                value = self.size * (field.initial or 1.0)  # an initial length is a factor of the usual one
             case Point():
                 value = next(self.corners)
             case Direction():
