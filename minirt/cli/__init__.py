@@ -22,7 +22,11 @@ NO_THREADS = "the system allows no more threads; 'ulimit -u' shows how many thre
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program and return its exit status."""
+    """Run the program with the arguments `argv` and return its exit status. Errors of miniRT and of memory are printed;
+    others are raised.
+
+    With None they are the arguments of this process, which is the program's own then: a signal ends it here.
+    """
     prepare_streams()
     if argv is None:  # a program of its own
         if not sys.warnoptions:  # nobody has asked Python for the warnings of libraries, which are for developers
@@ -38,10 +42,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         from minirt.helpers.signals import ended
 
-        if ended:  # Python, or a library, has made another error of the interrupt
+        if ended:  # Python, or a library, has turned the interrupt into another error
             return interrupted(error, ended[0], is_program=argv is None)
         message = NO_MEMORY if isinstance(error, MemoryError) else ""
-        if str(error) == "can't start new thread":  # of Python
+        if str(error) == "can't start new thread":  # the RuntimeError that Python raises
             message = NO_THREADS
         if not (message or isinstance(error, MiniRTError)):
             raise
@@ -74,7 +78,7 @@ def tell_notes(error: BaseException) -> None:
 def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     """Parse `argv`, or the program's own arguments, and run the command that they select, for each scene.
 
-    Return the exit status: the greatest of those of the scenes.
+    Return the greatest exit status of the scenes. A scene that fails does not end the others.
     """
     options = parser.parse_args(argv)
     if text := asked_text(parser, options):
@@ -117,7 +121,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
-    """Read the scene of this name and run the command for it; return its exit status. MiniRTError."""
+    """Read the scene of this name and run the command for it; return its exit status. MiniRTError if either fails."""
     from minirt.helpers.signals import ended_by_signals
     from minirt.helpers.system import gc_paused
 
@@ -127,17 +131,18 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         from minirt.cli.options import with_settings
     with ended_by_signals():
         output = output_for(scene, options.output) if options.output else options.output
+        # The options of this scene alone: those that its picture carries are not for the next one.
         options = argparse.Namespace(**vars(options) | {"scene": [scene], "output": output})
         options = with_settings(parser, options)
         command = command_for(options)
         if options.json and command is check:
             return check_as_json(options)
         with gc_paused():
-            read, notices = read_scene(options, command in (show, replay), for_window=command is show)
+            read, notices = read_scene(options, new=command in (show, replay), for_window=command is show)
         for notice in notices:
-            # A picture may go to standard output. A window leaves it free, and standard error is empty without errors.
+            # Standard output may get a picture, but not from a window; standard error stays empty without errors then.
             tell(f"notice: {notice}", sys.stdout if command is show else sys.stderr)
-        if command is show:  # which compares what it shows with the file
+        if command is show:  # the window also gets the scene without options, to tell whether it differs from the file
             return show(with_camera_options(read, options), options, read)
         return command(with_camera_options(read, options), options)
 
@@ -150,19 +155,21 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     check_format(options)  # before the work, not after it
     output, replay, auto = options.output, options.replay, options.samples == "auto"
     nameless = not output or is_nameless(output)
-    last = options.frames.stop - 1 if options.frames else 0  # number of a picture of the turntable
+    last = options.frames.stop - 1 if options.frames else 0  # the last picture of the turntable to render; 0: all are
     is_beyond_turntable = bool(options.turntable) and last > options.turntable
-    is_one = output and not (options.buffers or replay or (options.turntable and not options.cluster))
-    side, made = max(options.size or (0,)), counted(options.turntable, "picture")
+    makes_film_here = options.turntable and not options.cluster
+    makes_one = output and not (options.buffers or replay or makes_film_here)
+    cannot_resume = replay or auto or nameless
+    side, made = max(options.size or (0,)), counted(options.turntable, "picture")  # the longer side; 0: the scene's
     is_too_large = side > MAX_SIDE and not options.cluster
     wrong = (
         (options.turntable and nameless, f"--turntable needs {NAME}"),
         (last and not options.turntable, "--frames needs --turntable"),
         (is_beyond_turntable, f"--frames: --turntable makes {made}, got {last}"),
-        (options.resume and (replay or auto or nameless), f"--resume needs {NAME}, and no --replay or --samples auto"),
+        (options.resume and cannot_resume, f"--resume needs {NAME}, and no --replay or --samples auto"),
         ((options.error or options.time) and not auto, "--error and --time need --samples auto"),
         (options.strict and not options.error, "--strict needs --error"),
-        (auto and not is_one, "--samples auto makes one picture: it needs -o, and no --replay or --turntable"),
+        (auto and not makes_one, "--samples auto makes one picture: it needs -o, and no --replay or --turntable"),
         (options.cluster and options.time, "--cluster has no effect with --time"),
         (options.buffers and not output, f"--buffers needs {NAME.replace('spin.gif', 'normals.png')}"),
         (is_too_large, f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster"),
@@ -186,16 +193,18 @@ def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
     commands = options.check, options.bench, options.report, options.explain, options.compare
     is_headless = output or any(commands)
     streams = [*filter(is_nameless, scenes)]
-    if streams and (not is_headless or options.replay or len(streams) > len(set(streams))):
+    is_read_twice = not is_headless or options.replay or len(streams) > len(set(streams))
+    if streams and is_read_twice:
         parser.error(f"{streams[0]} is a stream, which is read once: it needs -o, --explain or --check")
     if len(scenes) == 1 or options.check:
         return
-    picture = "" if scenes[-1].endswith(".rt") else f"; did you mean -o {scenes[-1]}?"
-    found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}{picture}"
-    if not output or options.bench or options.report or options.compare or options.replay:
-        parser.error(found)
+    suggestion = "" if scenes[-1].endswith(".rt") else f"; did you mean -o {scenes[-1]}?"
+    too_many = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}{suggestion}"
+    needs_one = not output or options.bench or options.report or options.compare or options.replay
+    if needs_one:
+        parser.error(too_many)
     if PLACE not in output:
-        parser.error(f"{found}; several need -o with {PLACE}, such as -o out/{PLACE}.png")
+        parser.error(f"{too_many}; several need -o with {PLACE}, such as -o out/{PLACE}.png")
     outputs = [output_for(scene, output) for scene in scenes]
     if twice := next((each for each in outputs if outputs.count(each) > 1), ""):
         parser.error(f"two scenes would be written to {twice}")

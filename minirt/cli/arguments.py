@@ -112,6 +112,7 @@ class Arguments(argparse.ArgumentParser):
             tell(message.rstrip("\n"))
 
 
+# Groups, each with a title and then, for each option: its names, `=` and its value if it has one, two spaces, its help.
 OPTIONS = package.read(__name__, "options.txt").decode()
 # Defaults of options that are not off or unset without one.
 DEFAULTS: dict[str, object] = {"keys": "auto", "text_scale": 1.0, "camera": 1}
@@ -140,8 +141,8 @@ KINDS: dict[str, Callable[[str], object]] = {  # parsers of values that are more
 
 def argument_parser() -> Arguments:
     """Return the parser of the command line."""
-    about = "Show a .rt scene in a window, or render it to a file."
-    parser = Arguments(prog="miniRT", description=about, allow_abbrev=False)
+    description = "Show a .rt scene in a window, or render it to a file."
+    parser = Arguments(prog="miniRT", description=description, allow_abbrev=False)
     add = parser.add_argument
     scene_help = "the scene file, or a PNG picture of it; - for standard input"
     add("scene", type=file_name, nargs="*", metavar="SCENE.rt", help=scene_help)
@@ -161,22 +162,22 @@ def argument_parser() -> Arguments:
             elif value:
                 kind = KINDS.get(name, str)
                 how = {"type": kind, "default": DEFAULTS.get(name)}
-                listed = value.startswith("{")
-                how |= {"choices": [kind(each) for each in value[1:-1].split(",")]} if listed else {"metavar": value}
+                has_choices = value.startswith("{")
+                how |= {"choices": [*map(kind, value[1:-1].split(","))]} if has_choices else {"metavar": value}
             add(*names.split(), help=about, **how)
     return parser
 
 
 def clearer(parser: argparse.ArgumentParser, message: str) -> str:
-    """Return the message of argparse about wrong arguments, in one line and with a suggestion."""
+    """Return a message of argparse about wrong arguments as one plain line, with a suggestion where there is one."""
     if unknown := UNKNOWN.match(message):
         word = unknown[1].partition("=")[0]
         options = [option for action in parser._actions for option in action.option_strings]
         rows = package.read(__name__, "other_programs.txt").decode().splitlines()
         table = (row.partition("  ") for row in rows)  # an option, and what other programs call it
         meant = [ours for ours, _, others in table if word.lstrip("-") in others.split()]
-        begun = [option for option in options if option.startswith(word)]  # which the word abbreviates
-        near = meant or nearest(word, begun or options, cutoff=0 if begun else 0.6)
+        begun = [option for option in options if option.startswith(word)]  # options that the word abbreviates
+        near = meant or nearest(word, begun or options, cutoff=0 if begun else 0.6)  # 0: any of them is near enough
         return f"unknown option {word}{hint(''.join(near)) or '; miniRT --help lists all'}"
     if choice := CHOICE.fullmatch(message):
         choices = re.sub(r"'", "", choice["choices"])
@@ -187,30 +188,31 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
     return message.removeprefix("unrecognized arguments: ")
 
 
-# What was asked for goes to standard output, and is an error if it cannot be written. Notices and measurements go to
-# standard error, and are dropped if they cannot.
+# What was asked for goes to standard output; RenderError when that fails. Notices go to standard error, or are dropped.
 
 
 def prepare_streams() -> None:
-    """Open the standard streams that the caller has closed, and let all of them write every character.
+    """Open the standard streams that the caller has closed, and let standard output write every character.
 
-    An open stream keeps its number from the next file that is opened. Nothing can be written to it.
+    Otherwise the next file to be opened would get the number of a closed stream, and with it what is printed. Writing
+    to a stream that is opened here fails, so that the loss of what was asked for is an error.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             with suppress(OSError):
                 os.fstat(number)
-                continue
+                continue  # a file has this number: leave it alone
             mode = "r" if name == "stdin" else "w"
-            unwritable = os.open(os.devnull, os.O_RDONLY)
+            unwritable = os.open(os.devnull, os.O_RDONLY)  # gets the lowest free number, which is `number`
             setattr(sys, name, open(unwritable, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
     if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
         sys.stdout.reconfigure(errors="backslashreplace")  # as standard error does
 
 
 def say(text: object, is_own: bool = False) -> None:
-    """Print lines to standard output without control characters; bytes, and a text of the program's own that may have
-    colours, as they are. RenderError when that fails."""
+    """Print lines to standard output without control characters. Bytes, and a text that `is_own`, made by the program
+    with its colours and line ends, are written as they are. RenderError when that fails; BrokenPipeError when nobody
+    reads any more."""
     try:
         if isinstance(text, bytes):
             sys.stdout.buffer.write(text)
@@ -221,7 +223,7 @@ def say(text: object, is_own: bool = False) -> None:
         sys.stdout.flush()
     except OSError as error:
         mute(sys.stdout)
-        if isinstance(error, BrokenPipeError):  # its reader knows
+        if isinstance(error, BrokenPipeError):  # the reader has closed the pipe, and needs no message
             raise
         raise RenderError(f"standard output: cannot write: {error.strerror or error}") from None
 

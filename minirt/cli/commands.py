@@ -42,7 +42,10 @@ def check(scene: Scene, options: argparse.Namespace) -> int:
 
 
 def check_as_json(options: argparse.Namespace) -> int:
-    """Print the errors of a scene file or, if it has none, its notices as a list in JSON, for editors."""
+    """Print the errors of a scene file or, if it has none, its notices as a list in JSON, for editors.
+
+    Return FAILED if there are errors.
+    """
     import json
 
     from minirt.cli.files import read_scene
@@ -106,7 +109,7 @@ def explain(scene: Scene, options: argparse.Namespace) -> int:
 
 def write_buffer(scene: Scene, options: argparse.Namespace) -> int:
     """Write the normals, depths, ids, uv or points of what each pixel shows: as numbers where the format of the output
-    holds them, else as colours."""
+    holds them, else as colours. RenderError for .hdr, which holds numbers but none below 0."""
     from minirt.cli.files import check_output, format_name, write
     from minirt.formats.table import FLOAT, FORMATS
     from minirt.rendering.buffers import MEMORY, geometry
@@ -145,7 +148,7 @@ def compare(scene: Scene, options: argparse.Namespace) -> int:
 def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) -> int:
     """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one.
 
-    `saved` is the scene of the file, where options have changed it.
+    `saved` is the scene as the file has it; None where that is `scene`. MlxError without a display and a fallback.
     """
     from minirt.rendering.renderer import renderer
 
@@ -212,7 +215,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
             film.save()
             return OK
         pixels = play(scene, lines, **settings)
-    if options.output:  # which carries no scene: keys have edited it
+    if options.output:  # the picture carries no scene, since keys have edited the one of the file
         without_scene = argparse.Namespace(**vars(options) | {"metadata": False})
         write(Image.from_bgra(pixels).encode(**encoding(scene, options.output, without_scene)), options.output)
     return OK

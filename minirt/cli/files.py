@@ -24,10 +24,11 @@ PLACE = "{name}"  # in an output, stands for the name of the scene's file withou
 
 
 def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool = False) -> Reading:
-    """Load the scene, with notices about tolerated mistakes. `new`: an empty file is one.
+    """Return the scene that the options name, with notices about tolerated mistakes. `new`: an empty file is a scene.
 
-    For a window a file that is not there is a new scene, and one in another dialect, which a strict reader refuses, is
-    read as --lenient does, after its error.
+    For a window a file that is not there is a new scene, unless there is a fallback. A file in another dialect, which
+    the strict reader refuses, is then read as with --lenient, after its error is printed. `options.lenient` becomes the
+    way in which the file is read. SceneError; RenderError where the scene has no camera of the number asked for.
     """
     from minirt.scene import Reading, files, load, parse
     from minirt.scene.examples import example
@@ -39,7 +40,7 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
     with progress(lambda: WorkState(f"reading {STANDARD_INPUT if path == '-' else path}")):
         if options.example:
             reading = Reading(example(options.example), ())
-        elif is_nameless(path):  # its pictures and meshes are looked for in the current folder
+        elif is_nameless(path):  # pictures and meshes of a stream are looked for in the current folder
             name = STANDARD_INPUT if path == "-" else path
             reading = parse(stream_data(path, name), name, options.lenient, Path())
         else:
@@ -55,7 +56,7 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
                     reading = load(path, options.lenient, new=new)
             except SceneError as error:
                 if not options.lenient:
-                    note_lenience(path, error)
+                    add_hints(path, error)
                 raise
     scene = reading.scene.mirrored() if options.left_handed else reading.scene
     if options.camera > len(scene.cameras):
@@ -63,8 +64,8 @@ def read_scene(options: argparse.Namespace, new: bool = False, for_window: bool 
     return Reading(scene.seen_by(options.camera), reading.notices)
 
 
-def note_lenience(path: str, error: SceneError) -> None:
-    """Add notes to the error of a file: what its lines may mean, and whether --lenient reads it."""
+def add_hints(path: str, error: SceneError) -> None:
+    """Add notes to the error of a scene file: what its lines may mean, and that --lenient reads it where it does."""
     from minirt.scene import load
     from minirt.scene.dialect_tables import ABSENT, LEFT_OUT, LIGHTS, SETTINGS
     from minirt.scene.hints import suggestions
@@ -73,10 +74,10 @@ def note_lenience(path: str, error: SceneError) -> None:
         error.add_note(suggestion)
     with suppress(SceneError):
         scene, notices = load(path, lenient=True)
-        but = f" without {len(scene.missing)} of its shapes" if scene.missing else ""
+        exceptions = f" without {len(scene.missing)} of its shapes" if scene.missing else ""
         if any(each.message.startswith((LEFT_OUT, LIGHTS, SETTINGS, ABSENT)) for each in notices):
-            but += ", leaves out some of it"
-        error.add_note(f"--lenient reads this file{but}, and tells what it makes of it")
+            exceptions += ", leaves out some of it"
+        error.add_note(f"--lenient reads this file{exceptions}, and tells what it makes of it")
 
 
 def is_nameless(path: str) -> bool:
@@ -85,7 +86,8 @@ def is_nameless(path: str) -> bool:
 
 
 def stream_data(path: str, name: str) -> bytes:
-    """Read the bytes of a scene from a stream: standard input for the path "-". SceneError, which calls it `name`."""
+    """Read the bytes of a scene from a stream: standard input for the path "-". SceneError, which calls the stream
+    `name`, where that fails or there are more than MAX_BYTES."""
     from minirt.scene.files import MAX_BYTES, file_error
 
     try:

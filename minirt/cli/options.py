@@ -79,7 +79,8 @@ def configuration_path(named: str | None) -> Path | None:
 
 
 def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, object]:
-    """Return the defaults in a file by the names of options; FileError for what no option takes."""
+    """Return the defaults in a file by the names of options; FileError where the file is not TOML, and for a name or a
+    value that no option takes."""
     import tomllib
 
     try:
@@ -121,15 +122,19 @@ def value_of(action: argparse.Action, value: object) -> object:
 
 
 def without_effect(parser: argparse.ArgumentParser, options: argparse.Namespace) -> str:
-    """Return a message about an option that was given and has no effect with the command that others choose, or ''.
+    """Return a message about the first option that was given and has no effect on the command, which other options
+    choose; '' if there is none.
 
     Defaults of the configuration file are for the commands that use them.
     """
     command = next((name for name in COMMANDS if getattr(options, name, None)), "window")
-    commands = {command, *(["output"] if options.fallback else [])}
+    commands = {command}
+    if options.fallback:  # a picture is rendered where no window opens
+        commands.add("output")
     for action in actions_of(parser, [*EFFECTS]).values():
         has_effect = EFFECTS[action.dest]
-        if getattr(options, action.dest) != parser.get_default(action.dest) and not commands & has_effect:
+        is_given = getattr(options, action.dest) != parser.get_default(action.dest)
+        if is_given and not commands & has_effect:
             if action.dest in COMMANDS:
                 return f"{COMMANDS[action.dest]} does not go with {COMMANDS[command]}"
             needed = [COMMANDS[name] for name in COMMANDS if name in has_effect]
@@ -148,9 +153,9 @@ def settings_text(options: argparse.Namespace, width: int, height: int) -> str:
 
 
 def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) -> argparse.Namespace:
-    """Return the options with the settings of the picture that is the scene, where none were given.
+    """Return the options; where the scene is a picture, with its settings for the options that were not given.
 
-    They may come from anybody: what is unknown or out of range is left out.
+    A picture may come from anybody: settings that are unknown or out of range are left out.
     """
     from minirt.scene import files
 
@@ -166,12 +171,12 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
         if action and getattr(options, action.dest) == action.default:
             with suppress(ValueError):
                 setattr(changed, action.dest, value_of(action, True if action.nargs == 0 else value))
-    if max(changed.size or (0,)) > MAX_SIDE:
+    if max(changed.size or (0,)) > MAX_SIDE:  # only --cluster makes such pictures
         changed.size = options.size
-    if changed.samples != "auto":
+    if changed.samples != "auto":  # the samples were given, and these two settings are only for "auto"
         changed.error, changed.time = options.error, options.time
     (x, y, across, down), (width, height) = changed.region or (0, 0, 1, 1), changed.size or (0, 0)
-    if not options.region and (x + across > width or y + down > height):
+    if not options.region and (x + across > width or y + down > height):  # the size was given, or is unknown
         changed.region = None
     return changed
 

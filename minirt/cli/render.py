@@ -32,7 +32,8 @@ PATIENCE = 10  # seconds for a scheduler to answer
 
 
 def render_output(scene: Scene, options: argparse.Namespace) -> int:
-    """Render a picture, or the pictures of a turntable, and write the output."""
+    """Render a picture, or the pictures of a turntable, and write the output. Return the exit status: FAILED where
+    --strict is given and the error that was asked for is not reached."""
     size = options.size or size_of(scene)
     given: dict[str, Any] = {name: value for name in GIVEN if (value := getattr(options, name)) is not None}
     settings = RenderSettings(options.samples or SAMPLES, linear=needs_light(options, options.output), **given)
@@ -56,14 +57,15 @@ def render_output(scene: Scene, options: argparse.Namespace) -> int:
 
 @contextmanager
 def workers(options: argparse.Namespace) -> Iterator[Any]:
-    """Connect to the workers that the options name, None for this process; RenderError when that fails."""
+    """Give the block the workers that --cluster names: None for this process, the function that makes a pool of local
+    processes, or a client of dask that is connected until the block ends. RenderError when that fails."""
     if not options.cluster:
         yield None
         return
     if options.cluster == "local":
         from minirt.cluster.executor import local_pool
 
-        yield local_pool
+        yield local_pool  # it is called when there is work, see `Workers`
         return
     import logging
 
@@ -76,8 +78,10 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
             "--cluster with an address needs dask.distributed: install it (pip install 'minirt[cluster]'), or try "
             "--cluster local"
         ) from None
-    for name in ["asyncio", *logging.root.manager.loggerDict]:  # their tracebacks where a scheduler ends
-        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):  # some of which have levels of their own
+    # Until the program ends these libraries do not log: they would print tracebacks when a scheduler ends. Some of
+    # their loggers have levels of their own, so that the level of the first would not do.
+    for name in ["asyncio", *logging.root.manager.loggerDict]:
+        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:
         client = Client(options.cluster, timeout=PATIENCE, set_as_default=False)
@@ -85,17 +89,19 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
         raise RenderError(f"--cluster {options.cluster}: no scheduler answers: {error}") from None
     with client:
         if not client.nthreads():
+            # The executor waits for workers when there is work.
             tell(f"notice: {options.cluster} has no workers yet, and is waited for {DESERTED:.0f} s")
         yield client
 
 
 @contextmanager
 def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bool = True) -> Iterator[Journal | None]:
-    """Show the progress of the `share`, and keep what the block puts into the journal of the output, until it ends
-    without an error.
+    """Show the progress of the `share` while the block works, and give it the journal of the output, which is deleted
+    when the block ends without an error.
 
-    The block gets that journal, or None: short work is not kept, and neither are samples that depend on those before.
-    Without `has_parts` the journal only has which pictures of the job are done.
+    The block gets None in place of a journal for standard output and, without --resume, for less than LONG rays; those
+    of "auto" samples count as none, since each depends on those before. `has_parts`: the journal holds what was
+    rendered, and not only which pictures of the job are done.
     """
     journal = None
     with ExitStack() as stack:
@@ -106,7 +112,7 @@ def kept_work(job: Job, options: argparse.Namespace, share: Share, has_parts: bo
             journal = stack.enter_context(Journal(options.output, work, **how))
             if options.resume and not journal.places:
                 tell(f"notice: there is nothing to go on with, {options.output} is rendered from the beginning")
-        elif options.output != "-":
+        elif options.output != "-":  # a journal that is there is of work that nobody goes on with
             file_io.delete(journal_path(options.output))
         stack.enter_context(progress(share.state))
         yield journal
@@ -143,7 +149,7 @@ class Share:
 def render_picture(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
     """Render a picture as the options ask and write the output; print measurements and notices to standard error.
 
-    Return the error that was reached, where the job asks for one, else None.
+    Return how the goal of "auto" samples was met, None for a number of samples.
     """
     from minirt.rendering.notices import measurements, notices_about
 
@@ -158,8 +164,9 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
         image = picture_of(job, executor, journal, share.note)
         seconds = perf_counter() - start
         write(image.encode(**how), options.output)
-    single = None if executor or job.settings.precision == "double" else job.settings.renderer.packing
-    for each in notices_about(job.scene, image.array, job.size, single, job.settings.samples):
+    in_single = not executor and job.settings.precision != "double"
+    packing = job.settings.renderer.packing if in_single else None  # knows what single precision may spoil
+    for each in notices_about(job.scene, image.array, job.size, packing, job.settings.samples):
         tell(f"notice: {each}")
     if is_measured:
         tell("\n".join(measurements(job.scene, job.size, job.settings, seconds, image.not_finite)))
@@ -167,7 +174,8 @@ def render_picture(job: Job, options: argparse.Namespace, executor: Workers | No
 
 
 def render_film(job: Job, options: argparse.Namespace, executor: Workers | None, share: Share) -> Outcome | None:
-    """Render the scene from all around it and write the film, or numbered pictures; return the worst outcome."""
+    """Render the scene from all around it and write the film, or numbered pictures; return the outcome with the largest
+    error, None for a number of samples."""
     from minirt.movie import Film, numbered
     from minirt.viewer.editing.motion import turntable
 
@@ -176,7 +184,7 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None,
     jobs = [job._replace(scene=view, number=number) for number, view in zip(wanted, views, strict=True)]
     film = Film(options.output, quality=options.quality) if is_film(options) else None
     outcomes = []
-    # Numbered pictures are files already: of them the journal holds outcomes, and not the pictures as parts of a film.
+    # Numbered pictures are files already: the journal holds only their outcomes. It holds the pictures of a film.
     with kept_work(job, options, share, has_parts=film is not None) as journal:
         if journal and not film:  # a picture whose file is gone is rendered again
             places = journal.places.items()
@@ -185,7 +193,7 @@ def render_film(job: Job, options: argparse.Namespace, executor: Workers | None,
             outcomes.append(image.reached)
             if film:
                 film.add(image)
-            elif isinstance(image, Image):  # and not what the journal holds of one
+            elif isinstance(image, Image):  # else the journal has its outcome, and its file is there
                 output = str(numbered(options.output, each.number))
                 write(image.encode(**encoding(each.scene, output, options)), output)
         if film:
@@ -203,16 +211,16 @@ def encoding(scene: Scene, output: str, options: argparse.Namespace) -> dict[str
 
 
 def is_streamed(options: argparse.Namespace, region: Region) -> bool:
-    """Whether a picture is written as its bands come: by workers or beyond memory, as TIFF.
+    """Whether a picture is written band by band: as TIFF, where workers render it or memory does not hold it.
 
-    RenderError where there is no memory for another, or where the output cannot hold it.
+    RenderError where memory does not hold a picture of another format, or where the output cannot hold the picture.
     """
     check_output(options.output, region.width, region.height)
     name = format_name(options.output)
     is_light_extra = (options.dither or options.verbose) and not needs_light(options, options.output)
     may_stream = name == "TIFF" and not options.time and not options.turntable
     try:
-        bytes_per_pixel = memory_of(name, options.bits) + LIGHT * is_light_extra
+        bytes_per_pixel = memory_of(name, options.bits) + (LIGHT if is_light_extra else 0)
         system.check_picture(region.height, region.width, bytes_per_pixel)
     except system.TooLargeError:
         if not may_stream:

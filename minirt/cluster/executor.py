@@ -51,6 +51,10 @@ class Dispatcher:
     """Bands in flight to an executor. One that is late is sent to another worker, too, since the first may hang."""
 
     def __init__(self, workers: Workers) -> None:
+        """Take `workers`, or make them where that is a function; those that are made here end with `close`.
+
+        A process of a pool that runs the main script once more, and so comes here, is ended.
+        """
         if getattr(current_process(), "_inheriting", False):  # as multiprocessing marks one that imports the script
             os._exit(UNGUARDED)
         self.is_own = callable(workers) and not hasattr(workers, "submit")
@@ -81,9 +85,9 @@ class Dispatcher:
     ) -> Generator[tuple[Job, Made], None, None]:
         """Yield bands and what was made of them, the first that is done first, or `in_order`.
 
-        When the generator ends or is closed, what is not made yet is cancelled, as `close` does. `restore` returns what
-        was made of a band before, or None where it has to be rendered. RenderError where a band fails, its worker dies
-        or the cluster has ended.
+        When the generator ends or is closed, bands that are not made yet are cancelled, as `close` does. `restore` gets
+        a band and returns what was made of it before, or None where it has to be rendered. RenderError where a band
+        fails, its worker dies or the cluster has ended.
         """
         rest = iter(bands)
         running: dict[Future[Made], Job] = {}
@@ -99,8 +103,9 @@ class Dispatcher:
                 if not running:
                     return
                 future = self.first_made(dict(islice(running.items(), 1)) if in_order else running)
-                for task in [task for task, owner in self.tasks.items() if owner is future][1:]:
-                    task.cancel()  # but not the first: a worker that hangs should not get another
+                tasks_of_band = [task for task, owner in self.tasks.items() if owner is future]
+                for task in tasks_of_band[1:]:  # but not the first: a worker that hangs should get no other band
+                    task.cancel()
                 self.sendings.pop(future, None)
                 band = running.pop(future)
                 yield band, self.made_of(band, future)
@@ -108,13 +113,13 @@ class Dispatcher:
             self.close()
 
     def first_made(self, running: dict[Future[Made], Job]) -> Future[Made]:
-        """Wait until one of some bands is made, and send those that are late once more; RenderError where there have
-        been no workers for too long."""
-        seen = perf_counter()
+        """Wait until one of some bands is made, and return its future. Bands that are late are sent once more, and have
+        twice the time then. RenderError where there have been no workers for too long."""
+        workers_seen = perf_counter()
         while not (made := wait(running, WATCH, "FIRST_COMPLETED").done):
             now = perf_counter()
-            seen = now if self.count else seen
-            if now - seen > DESERTED:
+            workers_seen = now if self.count else workers_seen
+            if now - workers_seen > DESERTED:
                 raise RenderError(f"{self.where} has had no workers for {DESERTED:.0f} s")
             for future, band in running.items():
                 sending = self.sendings[future]
@@ -127,7 +132,7 @@ class Dispatcher:
         """Send a band to a worker, which has `patience` seconds for it.
 
         The future gets the result, unless another worker with the same band is faster. Scenes that differ in the camera
-        alone are packed once.
+        alone are packed once. RenderError where the executor takes no tasks.
         """
         scene, settings = band.scene, band.settings
         contents = scene.file, [each for each in scene.elements if not isinstance(each, Camera)]
@@ -139,10 +144,11 @@ class Dispatcher:
             self.scene = SentScene(contents, data, at_workers)
         if settings.threads is None and self.is_pool:
             settings = settings.replace(threads=max(1, usable_cores() // self.count))
-        nowhere: Any = None
+        nowhere: Any = None  # in place of the scene of the band, which travels packed
         # A worker that hangs may be the only one that has a large scene.
         arguments = version(), self.scene.data if self.has_late else self.scene.at_workers, scene.camera
-        how = {} if self.client is None else {"pure": False}  # dask makes the same again
+        # By default dask takes a band that is sent again for the same task.
+        how = {} if self.client is None else {"pure": False}
         try:
             with held_signals(), terminal_signals_blocked():  # the first task starts the processes of a pool
                 sent = band._replace(scene=nowhere, settings=settings)
@@ -173,7 +179,7 @@ class Dispatcher:
         except Exception as error:
             if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # the latter of dask
                 processes = self.processes()
-                if processes:  # whose exit statuses a thread of the pool collects
+                if processes:  # wait for the thread of the pool that collects their exit statuses
                     self.executor._executor_manager_thread.join(COLLECTING)
                 is_unguarded = any(each.exitcode == UNGUARDED for each in processes)
                 why = f": {GUARD}" if is_unguarded else ""
@@ -185,7 +191,7 @@ class Dispatcher:
         return list((vars(self.executor).get("_processes") or {}).values()) if self.is_pool else []
 
     def close(self) -> None:
-        """Cancel what has not been made, and end the executor if it was made here."""
+        """Cancel the bands that have not been made, and end the executor if it was made here."""
         with held_signals():
             unfinished = [each for each in self.tasks if not each.done()]
             # A pool whose processes are killed fails with InvalidStateError if some of its tasks are cancelled.

@@ -101,10 +101,10 @@ def rows_of(region: Region, samples: int) -> list[Region]:
 
 
 def whole(parts: Sequence[tuple[Region, Outcome | None]]) -> Outcome | None:
-    """Return the outcome of a picture that consists of bands, None where one of them has none.
+    """Return the outcome of a picture from its bands, each with its region and outcome; None where one has no outcome.
 
-    The square of an error is a mean over pixels: that of the whole is the mean of the squares of its bands. Where each
-    of them is at most the goal the whole is, too. Seconds are those of all workers together.
+    The square of an error is a mean over pixels: the square for the whole is the mean of those of its bands, weighted
+    by their pixels. Where the error of each band is at most the goal that of the whole is, too. Seconds are added up.
     """
     in_order = sorted(parts, key=itemgetter(0))  # so that sums are rounded alike
     outcomes = [each for _, each in in_order if each is not None]

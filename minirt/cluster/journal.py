@@ -50,10 +50,11 @@ class Journal:
     ) -> None:
         """Go on with the journal of an output, or, without `resume`, delete it.
 
-        `work` is a line that says what is rendered, and how: the same for the same pixels. One that `keeps_all` bands,
-        of which the output is put together, begins anew where it is of other work. Without parts it has what is done,
-        and not what was rendered. `again` and `what` are words of the note. RenderError where another program writes
-        it, and where it is of other work.
+        `work` is a line that says what is rendered, and how: the same for the same pixels. A journal that `keeps_all`
+        bands, of which the output is put together, begins anew where that of the file is of other work. Without
+        `has_parts` the records have outcomes, and nothing that was rendered. The note says that so many of `what` are
+        kept, and that the command or call `again` goes on. RenderError where another program writes the journal, and
+        where it is of other work and does not keep all.
         """
         self.path = journal_path(output)
         self.start = TITLE + work.encode() + b"\n"
@@ -78,7 +79,8 @@ class Journal:
             raise
 
     def find_records(self, file: IO[bytes]) -> None:
-        """Find the whole records of an open file, and cut the rest. RenderError where it is of other work; OSError."""
+        """Find the places of the whole records of an open file, and cut the rest. RenderError where the file is of
+        other work, unless the journal `keeps_all`; OSError."""
         start = file.read(len(self.start))
         if not (self.keeps_all or self.start.startswith(start)):  # a part: of a program killed before the first band
             raise RenderError(f"{self.path}: {OTHER_WORK}")
@@ -118,7 +120,7 @@ class Journal:
         except OSError:
             if self.keeps_all:
                 raise
-            self.credit = -inf
+            self.credit = -inf  # nothing is kept any more
         self.credit -= perf_counter() - start
 
     def append(self, number: int, data: bytes) -> None:

@@ -41,9 +41,10 @@ def render_all(
 ) -> Iterator[Image]:
     """Render scenes, such as the frames of a film or the steps of a sweep, and yield their pictures in order.
 
-    A few scenes are taken ahead of the picture that is waited for. The executor is that of `render_to`, the other
-    arguments are those of `render`, without a size that of the first scene; the pictures are those of `render`, whoever
-    renders them. Scenes that differ from the one before in the camera alone send just that.
+    The executor is that of `render_to`, and the other arguments are those of `render`; without a size all pictures have
+    that of the first scene. The pixels are those of `render`, whoever renders them. A few scenes are taken ahead of the
+    picture that is waited for. Where a scene differs from the one before in the camera alone just the camera is sent.
+    RenderError when rendering fails; TypeError where a scene is none.
     """
     how = RenderSettings(linear=linear, **settings)
 
@@ -76,10 +77,11 @@ def render_to(
     complete or absent: until then a hidden `.NAME.journal` beside it has the bands that are done. The same call after
     an interruption goes on with those that are missing.
 
-    With `samples` "auto" each band is rendered until its estimated error is at most `error`; then that of the whole
-    picture is, too, since its square is the mean of theirs; `time` is in seconds for each band. The result is the
-    whole picture's; without "auto" it is None. `on_progress` gets the number of bands that are done, and of all.
-    RenderError when rendering or writing fails; TypeError where `scene` is no scene, such as the name of a file.
+    With `samples` "auto" each band is rendered until its estimated error is at most `error`; the error of the whole
+    picture is, too, since its square is the mean of the squares of the bands. `time` is in seconds for each band. The
+    result is the outcome of the whole picture; without "auto" it is None. `on_progress` gets the number of bands that
+    are done, and of all. RenderError when rendering or writing fails; TypeError where `scene` is no scene, such as the
+    name of a file.
     """
     check_scene(scene, "render_to")
     name = format_of(path)
@@ -108,7 +110,8 @@ def stream(
 
 
 def picture_of(job: Job, executor: Workers | None, journal: Journal | None, on_progress: Progress) -> Image:
-    """Render a picture: as a whole, or of bands for workers and for a journal, which has some of them already."""
+    """Render a picture: as a whole, or in bands where there are workers or a journal. The journal may have some bands
+    already and gets the others; its file is left to the caller. RenderError."""
     if executor is None and journal is None:
         whole_picture: Image = render_band(job)
         return whole_picture
@@ -133,9 +136,11 @@ def results(
     on_progress: Progress = lambda done, bands: None,
     in_order: bool = False,
 ) -> Iterator[tuple[Job, Made]]:
-    """Yield bands and what is made of them, as it comes or in the order of the bands. RenderError.
+    """Yield bands and what is made of them: the first that is made first, or `in_order`. RenderError.
 
-    What the journal has is not rendered again; it keeps what is new once that was used.
+    Bands that the journal has are not rendered again. The journal keeps a new band after it was used: when the caller
+    asks for the next one. `bands` is a list where there is a journal, else any iterable. `on_progress` gets the numbers
+    of bands that are done, and of all: 0 where that is not known.
     """
     kept = set(journal.places) if journal else set()
     restore = journal.restore if journal else lambda band: None
@@ -149,7 +154,7 @@ def results(
 
         made_of = Dispatcher(executor).results(bands, restore, in_order)
     start = perf_counter()
-    with closing(made_of):  # now, and not when nobody looks at the error any more
+    with closing(made_of):  # an error ends the work now, and not when the generator is deleted
         for band, made in made_of:
             seconds = perf_counter() - start
             yield band, made

@@ -96,6 +96,7 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     if int(np.ptp(theirs, axis=(0, 1)).max()) <= pictures.EDGE:
         notices += ("The picture has one colour alone.",)
         return Comparison(False, 0.0, False, (), (), notices, scene, theirs, OURS)
+    # Errors, in shares of light, up to which a pixel is equal, and up to which it is nearly so.
     exact, tolerance = (lighting.LEVEL * (levels + 0.5) for levels in pictures.tolerances(is_lossy))
     case = Case(scene, theirs / 255)
     is_alike = pictures.are_alike(theirs, reference, is_lossy)
@@ -109,9 +110,9 @@ def compare(scene: Scene, picture: str | os.PathLike[str]) -> Comparison:
     if not is_known:
         judge = Judge(case, guess, tolerance)
     found = answer.causes(judge, guess) + (answer.factors(judge) if is_known else [])
-    if side > 1:  # where in its block a ray went is a choice of a preview
+    if side > 1:  # a preview may send the ray of a block through any of its pixels
         found = [each for each in found if each.name != "pixel"]
-    if is_alike and not found:
+    if is_alike and not found:  # pixels at edges may differ
         return Comparison(True, 1.0, True, (), answer.rest(judge, tolerance), notices, scene, theirs, OURS)
     is_told = is_known and bool(found)
     is_sure = is_told and judge.is_right(exact)

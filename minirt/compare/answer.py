@@ -10,7 +10,7 @@ import numpy as np
 from minirt.compare import lighting
 from minirt.compare.cameras import is_aimed
 from minirt.compare.changed_shapes import changed_scene
-from minirt.compare.geometry import frame, on_cap, slopes
+from minirt.compare.geometry import cosines, frame, on_cap, slopes
 from minirt.compare.judge import LEAST_GAIN, Judge
 from minirt.compare.sky import background
 from minirt.compare.table import FREE, TABLE, Guess
@@ -38,11 +38,12 @@ class Rest(NamedTuple):
 
 
 def causes(judge: Judge, guess: Guess) -> list[Cause]:
-    """Return what a guess says, as sentences."""
+    """Return the causes that a guess names: each row of the table that it follows, then the field of view, the roll and
+    the direction of the camera where they are numbers of its own."""
     fit, scene = judge.fit, judge.case.scene
     found = []
     for row in TABLE:
-        (name, value), *_ = row.changes.items()
+        (name, value), *_ = row.changes.items()  # the first change tells the row from others
         if guess[name] != value:
             continue
         sentence, told = row.sentence, row.value
@@ -50,30 +51,31 @@ def causes(judge: Judge, guess: Guess) -> list[Cause]:
             sentence = FREE["share"].format(sentence=sentence, value=round(float(fit.factors[lighting.SPECULAR]), 2))
         if name == "background":
             colour, here = ([round(each * 255) for each in sky[0]] for sky in (fit.sky, background(scene)))
-            told = colour if told == "own" else told
+            told = colour if told == "own" else told  # a gradient is told by its name
             sentence = sentence.format(colour=",".join(map(str, colour)), ours=",".join(map(str, here)))
         found.append(Cause(row.name, told, sentence))
     if guess["scale"] != 1.0:
-        across = round(2 * degrees(atan(slopes(scene.camera, judge.case.width / judge.case.height, guess)[0])), 1)
-        found.append(Cause("fov", across, FREE["scale"].format(value=across, ours=scene.camera.fov)))
+        across, _ = slopes(scene.camera, judge.case.width / judge.case.height, guess)
+        fov = round(2 * degrees(atan(across)), 1)
+        found.append(Cause("fov", fov, FREE["scale"].format(value=fov, ours=scene.camera.fov)))
     if guess["roll"]:
         angle = round(guess["roll"], 1)
         found.append(Cause("roll", angle, FREE["roll"].format(value=angle)))
     if is_aimed(guess):
-        way, here = (
-            [round(float(x), 3) for x in each] for each in (frame(scene.camera, guess)[2], scene.camera.direction)
-        )
+        _, _, forward = frame(scene.camera, guess)
+        way, here = ([round(float(x), 3) for x in each] for each in (forward, scene.camera.direction))
         spelled, ours = (",".join(map(str, each)) for each in (way, here))
         found.append(Cause("direction", way, FREE["direction"].format(value=spelled, ours=ours)))
     return found
 
 
 def factors(judge: Judge) -> list[Cause]:
-    """Return the factors of ambient light and of lamps that are not those of the scene, and that count."""
+    """Return the factors of ambient light, lamps and highlights that are not 1, and without which the guess explains
+    clearly fewer pixels."""
     guess, fit = judge.guess, judge.fit
     diffuse = [round(float(each), 2) for each in fit.diffuse]
     if max(diffuse, default=1.0) - min(diffuse, default=1.0) < lighting.SLACK:
-        diffuse = diffuse[:1]
+        diffuse = diffuse[:1]  # one for all lamps
     told = {"ambient": [round(float(fit.factors[lighting.AMBIENT]), 2)], "diffuse": diffuse}
     if lighting.has_highlights(judge.case.scene) and not guess["specular"]:
         told["specular"] = [round(float(fit.factors[lighting.SPECULAR]), 2)]
@@ -89,12 +91,15 @@ def factors(judge: Judge) -> list[Cause]:
 
 
 def rest(judge: Judge, tolerance: float, always: bool = False) -> tuple[Rest, ...]:
-    """Return where the pixels lie that a guess does not explain to a tolerance, the largest part first; the largest one
-    `always`, however small it is."""
+    """Return where the pixels lie that a guess does not explain to a tolerance, the largest part first.
+
+    Parts of less than LEAST_REST are left out; `always` keeps the largest part, however small it is.
+    """
     seen, scene = judge.seen, changed_scene(judge.case.scene, judge.guess)
     wrong = judge.judged & (judge.fit.error > tolerance)
-    _, cosine = lighting.cosines(seen, judge.guess)
-    shadow = (cosine > 0).any(axis=0) & ~((cosine > 0) & seen.open_to).any(axis=0)
+    _, cosine = cosines(seen, judge.guess)
+    is_lit = ((cosine > 0) & seen.open_to).any(axis=0)
+    shadow = (cosine > 0).any(axis=0) & ~is_lit
     masks = {"edge": ~judge.inner, "cap": on_cap(scene, seen.owner, seen.normal), "shadow": shadow}
     masks["surface"] = np.ones(len(wrong), bool)
     found = []
@@ -106,6 +111,8 @@ def rest(judge: Judge, tolerance: float, always: bool = False) -> tuple[Rest, ..
             place = int(x[middle]), int(y[middle])
             name = shape_name(judge.case.scene, int(owner)) if owner >= 0 else "background"
             found.append(Rest(name, part, len(here) / len(wrong), place))
-        wrong &= ~mask
-    large = [each.share >= LEAST_REST for each in found].count(True)
-    return tuple(sorted(found, key=lambda each: -each.share)[: min(max(large, always), MOST_REST)])
+        wrong &= ~mask  # a pixel counts in the first of its parts
+    count = [each.share >= LEAST_REST for each in found].count(True)
+    if always:
+        count = max(count, 1)
+    return tuple(sorted(found, key=lambda each: -each.share)[: min(count, MOST_REST)])

@@ -46,7 +46,10 @@ def changed_scene(scene: Scene, guess: Guess) -> Scene:
 
 @lru_cache(64)
 def edited(scene: Scene, radius: str, cylinder: str, axis: str, cone: str) -> Scene:
-    """Return the scene with changed spheres, cylinders and cones."""
+    """Return the scene with spheres, cylinders and cones as the values of a guess for the parameters SHAPES read them.
+
+    Second halves of cones come behind all other shapes.
+    """
     for shape in scene.shapes:
         new: Any = shape
         if isinstance(shape, Sphere) and radius in ("spheres", "all"):
@@ -79,7 +82,7 @@ def lengthened(shape: Cone | Cylinder, length: float, axis: str) -> Cone | Cylin
 
 
 def cylinder_changes(shape: Cylinder | Hyperboloid, radius: str, cylinder: str, axis: str) -> dict[str, Any]:
-    """Return the fields of a cylinder as a guess reads them."""
+    """Return the changed fields of a cylinder, as the values of a guess read them; other values change nothing."""
     x, y, z = shape.axis
     ways = {"upright": (0.0, 1.0, 0.0), "-x": (-x, y, z), "-z": (x, y, -z), "swapped": (z, y, x)}
     way, centre = np.array(ways.get(axis, shape.axis)), np.array(shape.centre)

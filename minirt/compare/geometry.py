@@ -79,7 +79,8 @@ def frame(camera: Camera, guess: Guess) -> Floats:
 
 @lru_cache(256)
 def looking(direction: tuple[float, float, float], way_up: str, roll: float) -> Floats:
-    """Return right, up and forward of a camera, (3, 3), whose up is made in one of the ways."""
+    """Return right, up and forward of a camera, (3, 3): `way_up` is a value of the parameter "up", which says how they
+    are made from the direction; `roll` is in degrees."""
     forward = np.array(direction)
     if way_up.startswith("from the "):
         axis = np.array(AXES[way_up.removeprefix("from the ")], float)
@@ -87,11 +88,11 @@ def looking(direction: tuple[float, float, float], way_up: str, roll: float) -> 
         right, up = matrix @ np.cross(axis, (0.0, 1.0, 0.0)), matrix @ np.array([0.0, 1.0, 0.0])
     elif way_up == "x first":
         up = unit(np.cross((-1.0, 0.0, 0.0), forward))
-        up = up if up.any() else np.array([0.0, 0.0, 1.0])
+        up = up if up.any() else np.array([0.0, 0.0, 1.0])  # it looks along x
         right = np.cross(forward, up)
     else:
         right = np.cross(forward, AXES[way_up])
-        right = unit(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0.0, 0.0])
+        right = unit(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0.0, 0.0])  # it looks along the axis
         up = np.cross(right, forward)
     turn = radians(roll)
     return np.array([cos(turn) * right - sin(turn) * up, sin(turn) * right + cos(turn) * up, forward])
@@ -111,7 +112,8 @@ def slopes(camera: Camera, aspect: float, guess: Guess) -> tuple[float, float]:
 
 
 def directions(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guess: Guess) -> Floats:
-    """Return the directions of the rays through pixels of a picture, (n, 3)."""
+    """Return the unit directions, (n, 3), of the rays through pixels of a picture of this size, of columns x and rows y
+    from the upper left corner, (n,)."""
     width, height = size
     across, upward = slopes(scene.camera, width / height, guess)
     inset = 0.5 if guess["pixel"] == "centre" else 0.0
@@ -135,7 +137,8 @@ def on_cap(scene: Scene, owner: NDArray[np.int64], normal: Floats) -> Mask:
 
 
 def hits(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> tuple[Any, ...]:
-    """Return distance, owner, point and normal of what rays meet, past the surfaces that the guess does not draw."""
+    """Return distance, owner, point and normal of what rays meet, arrays of n, as `trace` does. Rays pass MOST_LAYERS
+    surfaces that the guess does not draw; one more counts as met."""
     found = trace(scene, origins, ways, threads=1)
     undrawn = np.array([shape.plural in guess["missing"] for shape in scene.shapes] + [False])
     if guess["caps"] and guess["inside"] and not undrawn.any():
@@ -179,12 +182,15 @@ def see_each(scene: Scene, size: tuple[int, int], x: Floats, y: Floats, guesses:
 
 
 def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:
-    """Trace rays, and from what they meet to all lamps. Second halves of cones, the last shapes, count as the first."""
+    """Trace rays, and from what they meet to all lamps; return what is seen, without mirrors.
+
+    `scene` is the changed one. The second half of a cone, one of its last shapes, counts as the cone itself.
+    """
     _, owner, point, normal = hits(scene, origins, ways, guess)
     if guess["cone"] == "both halves":
-        first = len(scene.shapes) - len(scene.cones) // 2
-        cones = [scene.shapes.index(cone) for cone in scene.cones[: len(scene.cones) // 2]]
-        owner = np.array([*range(first), *cones, -1])[owner]
+        cones = scene.cones[: len(scene.cones) // 2]
+        as_in_scene = len(scene.shapes) - len(cones)  # shapes before the second halves
+        owner = np.array([*range(as_in_scene), *map(scene.shapes.index, cones), -1])[owner]
     lamps, count = scene.lights, len(owner)
     to_light, distance = np.zeros((len(lamps), count, 3)), np.full((len(lamps), count), np.inf)
     strength, open_to, open_beyond = np.ones((len(lamps), count)), *np.zeros((2, len(lamps), count), bool)
@@ -197,14 +203,43 @@ def met(scene: Scene, origins: Floats, ways: Floats, guess: Guess) -> Seen:
             offset = np.array(lamp.position) - point[there]
             distance[i, there] = np.linalg.norm(offset, axis=-1)
             to_light[i, there] = offset / np.maximum(distance[i, there], 1e-30)[:, None]
-            if edge > -2.0 or lamp.fading():
+            is_spot = edge > -2.0  # the cosine at the edge of other lamps
+            if is_spot or lamp.fading():
                 rim = np.clip((-(to_light[i] @ axis) - edge) * steepness, 0, 1)
                 faded = np.maximum(1 - distance[i, there] * lamp.fading(), 0)
                 strength[i, there] = (rim * rim * (3 - 2 * rim))[there] * faded
-        occluder = hits(scene, point[there], to_light[i, there], guess)[0]
-        open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)
+        occluder, *_ = hits(scene, point[there], to_light[i, there], guess)  # how far away it is
+        open_to[i, there] = occluder >= distance[i, there] * (1 - 1e-9)  # but for rounding
         open_beyond[i, there] = np.isinf(occluder)
     return Seen(owner, point, np.nan_to_num(normal), ways, to_light, distance, strength, open_to, open_beyond)
+
+
+def cosines(seen: Seen, guess: Guess) -> tuple[Floats, Floats]:
+    """Return the normals that light falls onto, and the cosine for each lamp, (lamps, n), 0 on the other side."""
+    normal = seen.normal
+    if guess["normals"] != "outward":
+        away = dots(normal, seen.direction) > 0
+        normal = np.where(away[:, None], -normal, normal)
+    cosine = dots(seen.to_light, normal)
+    return normal, np.abs(cosine) if guess["normals"] == "both sides" else np.maximum(cosine, 0)
+
+
+def arriving(seen: Seen, guess: Guess) -> Floats:
+    """Return the share of each lamp's light that reaches each point, (lamps, n)."""
+    if guess["shadows"] == "none":
+        return seen.strength
+    return seen.strength * (seen.open_beyond if guess["shadows"] == "behind the lamp" else seen.open_to)
+
+
+def highlights(seen: Seen, normal: Floats, form: str, power: Any) -> Floats:
+    """Return the highlights of each lamp, (lamps, n), without its colour."""
+    if form == "blinn":
+        base = dots(unit(seen.to_light - seen.direction), normal)
+    else:
+        along = dots(seen.to_light, normal) * dots(normal, -seen.direction)
+        base = 2 * along + dots(seen.to_light, seen.direction)
+    result: Floats = np.clip(base, 0, 1) ** power
+    return result
 
 
 def reach(scene: Scene) -> float:

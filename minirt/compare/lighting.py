@@ -1,4 +1,7 @@
-"""The light of another ray tracer: how bright its terms are, by least squares, under a guess about their form."""
+"""The light of another ray tracer: how bright its terms are, by least squares, under a guess about their form.
+
+Light is a sum of terms, each times its factor. `minirt.compare.table` has the names and values of a guess.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.compare.changed_shapes import Mask
-from minirt.compare.geometry import Floats, Seen, dots, reach, unit
+from minirt.compare.geometry import Floats, Seen, arriving, cosines, highlights, reach
 from minirt.compare.sky import found_sky
 from minirt.compare.table import OURS, SOFT_FADING, Guess
 from minirt.scene import Scene
@@ -45,44 +48,18 @@ def numbers(colour: Any) -> Floats:
     return np.array(colour, float) / 255
 
 
-def cosines(seen: Seen, guess: Guess) -> tuple[Floats, Floats]:
-    """Return the normals that light falls onto, and the cosine for each lamp, (lamps, n), 0 on the other side."""
-    normal = seen.normal
-    if guess["normals"] != "outward":
-        away = dots(normal, seen.direction) > 0
-        normal = np.where(away[:, None], -normal, normal)
-    cosine = dots(seen.to_light, normal)
-    return normal, np.abs(cosine) if guess["normals"] == "both sides" else np.maximum(cosine, 0)
-
-
-def arriving(seen: Seen, guess: Guess) -> Floats:
-    """Return the share of each lamp's light that reaches each point, (lamps, n)."""
-    if guess["shadows"] == "none":
-        return seen.strength
-    return seen.strength * (seen.open_beyond if guess["shadows"] == "behind the lamp" else seen.open_to)
-
-
-def highlights(seen: Seen, normal: Floats, form: str, power: Any) -> Floats:
-    """Return the highlights of each lamp, (lamps, n), without its colour."""
-    if form == "blinn":
-        base = dots(unit(seen.to_light - seen.direction), normal)
-    else:
-        along = dots(seen.to_light, normal) * dots(normal, -seen.direction)
-        base = 2 * along + dots(seen.to_light, seen.direction)
-    result: Floats = np.clip(base, 0, 1) ** power
-    return result
-
-
 def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
-    """Return the terms of the light at each point, (n, 3, LAMPS + lamps), in the order of their factors; those of what
-    mirrors show are added up by `factors`."""
+    """Return the terms of the light at each point, (n, 3, LAMPS + lamps), from 0 to 1 as are levels: what the point
+    would show for a factor 1 of each term.
+
+    `factors` add up the light of what a mirror at the point would show, which makes the term MIRROR: its factor is the
+    share that all surfaces reflect. `scene` is without mirrors of its own.
+    """
     shapes, lamps = scene.shapes, scene.lights
-    colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + [(0, 0, 0)])[seen.owner]
+    black = [(0, 0, 0)]  # the last row, of the owner -1: the background has no terms
+    colours = numbers([getattr(shape, "colour", (255, 255, 255)) for shape in shapes] + black)[seen.owner]
     colours = colours ** {"object ignored": 0, "object squared": 2}.get(guess["colours"], 1)
-    is_white = guess["colours"] == "light ignored"
-    bright = [
-        numbers((255, 255, 255) if is_white else lamp.colour) * lamp.brightness ** guess["brightness"] for lamp in lamps
-    ]
+    bright = lamp_colours(scene, guess)
     normal, cosine = cosines(seen, guess)
     arrived = arriving(seen, guess)
     light = cosine * arrived
@@ -90,21 +67,16 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     light = light / np.maximum(distance, 1e-3) ** exponent(guess)
     if guess["fading"] in SOFT_FADING:
         light /= 1 + SOFT_FADING[guess["fading"]] * np.where(np.isfinite(seen.distance), seen.distance, 0.0)
-    tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
-    grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
-    plain, lamps_light = np.ones_like(colours), np.sum([0 * tint, *bright], axis=0)
-    forms = {"object x light": colours * tint, "light alone": plain * tint, "light plus object": plain * tint,
-             "object alone": colours * grey, "of the lamps": colours * lamps_light,
-             "in light of the lamps": colours * tint * lamps_light}  # fmt: skip
-    lit = guess["ambient_in_shadow"] | (light > 0).any(axis=0)
     terms = np.zeros((*colours.shape, LAMPS + len(lamps)))
-    terms[..., AMBIENT] = forms.get(guess["ambient"], 0 * colours) * lit[:, None]
-    terms[..., OBJECT] = colours * (guess["ambient"] == "light plus object")
+    has_ambient = guess["ambient_in_shadow"] | (light > 0).any(axis=0)
+    terms[..., AMBIENT] = ambient_light(scene, colours, bright, guess["ambient"]) * has_ambient[:, None]
+    if guess["ambient"] == "light plus object":
+        terms[..., OBJECT] = colours
     for i, tone in enumerate(bright):
         terms[..., LAMPS + i] = colours * tone * light[i][:, None]
         if guess["fading"] == "linear":
             terms[..., FADED] -= terms[..., LAMPS + i] * distance[i][:, None]
-    shining = (cosine > 0) * arrived
+    shining = (cosine > 0) * arrived  # highlights do not fade with the distance
     if guess["specular"]:
         form, power, of_object = guess["specular"]
         tones = np.einsum("ln,lc->nc", highlights(seen, normal, form, power) * shining, bright)
@@ -119,6 +91,27 @@ def columns(scene: Scene, seen: Seen, guess: Guess, factors: Floats) -> Floats:
     return terms
 
 
+def lamp_colours(scene: Scene, guess: Guess) -> list[Floats]:
+    """Return the light of each lamp, (3,), in its colour or in white, times its brightness or the square of that."""
+    is_white = guess["colours"] == "light ignored"
+    colours = [numbers((255, 255, 255) if is_white else lamp.colour) for lamp in scene.lights]
+    brightnesses = [lamp.brightness ** guess["brightness"] for lamp in scene.lights]
+    return [colour * brightness for colour, brightness in zip(colours, brightnesses, strict=True)]
+
+
+def ambient_light(scene: Scene, colours: Floats, bright: list[Floats], form: str) -> Floats:
+    """Return the ambient term, (n, 3), on objects of some colours, (n, 3), among lamps of `bright` colours, in one of
+    the forms that the parameter "ambient" has; 0 for others."""
+    tint = numbers(scene.ambient.colour) * scene.ambient.brightness if scene.ambient else np.zeros(3)
+    grey = np.full(3, scene.ambient.brightness if scene.ambient else 0.0)
+    plain, lamps_light = np.ones_like(colours), np.sum([np.zeros(3), *bright], axis=0)
+    forms = {"object x light": colours * tint, "light alone": plain * tint, "light plus object": plain * tint,
+             "object alone": colours * grey, "of the lamps": colours * lamps_light,
+             "in light of the lamps": colours * tint * lamps_light}  # fmt: skip
+    result: Floats = forms.get(form, 0 * colours)
+    return result
+
+
 def added(terms: Floats, factors: Floats) -> Floats:
     """Return the sums of terms, (n, 3, k), with factors; in one product of a matrix, which is several times faster."""
     return (terms.reshape(-1, len(factors)) @ factors).reshape(terms.shape[:-1])
@@ -130,23 +123,27 @@ def exponent(guess: Guess) -> int:
 
 
 def unevenness(seen: Seen, colours: Floats, guess: Guess) -> Floats:
-    """Return by how much each pixel differs from its shape's, if that has one colour in one light; squares, (n,)."""
+    """Return how far each pixel is from what a shape of one colour would show, squared, (n,).
+
+    That is, for each shape and channel of `colours`, (n, 3), the linear function of the lamps' light that fits best.
+    """
     _, cosine = cosines(seen, guess)
     light = (cosine * arriving(seen, guess)).sum(axis=0)
-    region = seen.owner + 1
+    region = seen.owner + 1  # 0 is the background
     count = np.maximum(np.bincount(region), 1)
-    off = light - (np.bincount(region, light) / count)[region]
-    variance = np.bincount(region, off * off) + 1e-6
+    light_off = light - (np.bincount(region, light) / count)[region]  # from the mean of the shape
+    variance = np.bincount(region, light_off * light_off) + 1e-6  # not 0 in even light
     residual = np.zeros(len(region))
     for channel in colours.T:
-        apart = channel - (np.bincount(region, channel) / count)[region]
-        slope = np.bincount(region, apart * off) / variance
-        residual += (apart - slope[region] * off) ** 2
+        level_off = channel - (np.bincount(region, channel) / count)[region]
+        slope = np.bincount(region, level_off * light_off) / variance
+        residual += (level_off - slope[region] * light_off) ** 2
     return residual
 
 
 def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: Mask, fixed: str = "") -> Fit:
-    """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best.
+    """Find the factors of the terms of light by which a guess explains colours, (n, 3) from 0 to 1, best, and return
+    the levels that follow.
 
     `judged` are the pixels that count; the factor of the `fixed` term, ambient, diffuse or specular, is that of this
     program.
@@ -160,7 +157,7 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: Mask, f
     sky = found_sky(scene, seen.direction[beyond], theirs[beyond], guess["background"])
     shown = drawn(terms, seen, guess, factors, sky)
     error = np.abs(shown - theirs).max(axis=-1)
-    if guess["acne"]:
+    if guess["acne"]:  # dark specks show no more than the first terms: they count as explained where they are few
         dark = np.abs(drawn(terms[..., :SPECULAR], seen, guess, factors[:SPECULAR], sky) - theirs).max(axis=-1)
         specks = (dark < error - WORST) & own
         if specks.sum() < MOST_SPECKS * own.sum():
@@ -169,7 +166,7 @@ def fit(scene: Scene, seen: Seen, colours: Floats, guess: Guess, judged: Mask, f
     slack = SLACK if guess["brightness"] == 1 else SQUARED_SLACK
     if exponent(guess):
         slack = FADING_SLACK
-    odd = differs(float(factors[AMBIENT])) + differs(middle(diffuse), slack)
+    odd = [differs(float(factors[AMBIENT])), differs(middle(diffuse), slack)].count(True)
     differences = [guess[name] != value for name, value in OURS.items()].count(True)
     score = float(np.minimum(error[judged], WORST).mean()) if judged.any() else WORST
     return Fit(score + PRICE * (differences + odd), error, shown, factors, diffuse, sky, odd)
@@ -189,9 +186,15 @@ def has_highlights(scene: Scene) -> bool:
 
 
 def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fixed: str) -> Floats:
-    """Return the factors of terms, (n, 3, k), whose sum is nearest to colours, in their levels, without outliers."""
+    """Return the factors (k,), 0 or more, of terms of light, (n, 3, k), whose sum is nearest to the levels `theirs`,
+    (n, 3), of light^(1/gamma).
+
+    Levels that are nearly black or white do not count, nor, from the second round on, do outliers: those off by more
+    than twice the median. Factors that the levels do not tell are near the `usual` ones, as is that of the `fixed`
+    term.
+    """
     usable = (theirs > DARKEST) & (theirs < BRIGHTEST)
-    slope = gamma * theirs[usable] ** (gamma - 1)
+    slope = gamma * theirs[usable] ** (gamma - 1)  # of light over levels: errors are to be those of levels
     rows, values = terms[usable] / slope[:, None], theirs[usable] ** gamma / slope
     step = len(values) // MOST_ROWS + 1
     rows, values = rows[::step], values[::step]
@@ -210,7 +213,8 @@ def least_squares(terms: Floats, theirs: Floats, gamma: float, usual: Floats, fi
         off = np.abs(rows @ factors - values)
         is_lit = rows[:, FADED:] @ factors[FADED:] >= 0  # as far as lamps reach that fade
         if lit := np.count_nonzero(is_lit):
-            kept = (off < max(2 * np.partition(off[is_lit], lit // 2)[lit // 2], 3 * LEVEL)) & is_lit
+            median = np.partition(off[is_lit], lit // 2)[lit // 2]
+            kept = (off < max(2 * median, 3 * LEVEL)) & is_lit
     return factors
 
 

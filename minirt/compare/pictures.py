@@ -33,10 +33,12 @@ BRIGHTER = 4  # times the difference, in its panel
 
 def read(path: Path) -> tuple[Levels, tuple[str, ...], bool, int]:
     """Return a picture without its border and with single pixels in place of blocks, what is to be told about that,
-    whether its format is lossy, and the side of the blocks."""
+    whether its format is lossy, and the side of the blocks in pixels, 1 without any. FileError where it cannot be read
+    or is too small."""
     levels, notices = picture(path), []
     left, above, right, below = border(levels)
-    if left and above and right and below:
+    has_border = left and above and right and below
+    if has_border:
         height, width, _ = levels.shape
         levels = levels[above : height - below, left : width - right]
         sides = f"{left}, {above}, {right} and {below} pixels at the left, top, right and bottom"
@@ -117,7 +119,7 @@ def edges(levels: Levels) -> NDArray[np.bool_]:
 
 
 def explained(scene: Scene, theirs: Levels, guess: Guess) -> Levels:
-    """Return the reference under a guess; black where the light of shapes is not known."""
+    """Return the reference under a guess that is fitted to `theirs`; black where the light of shapes is not known."""
     height, width, _ = theirs.shape
     case = Case(scene, theirs / 255)
     fit = case.fit(guess, LARGE)

@@ -17,7 +17,7 @@ from minirt.compare.cameras import CAMERA, FOVS, TURNED, cameras, differences, d
 from minirt.compare.changed_shapes import SHAPES, Mask, changed_scene
 from minirt.compare.geometry import Floats, Seen, plain_shapes, see, see_each, slopes
 from minirt.compare.lighting import Fit
-from minirt.compare.table import EXPONENTS, GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis, values
+from minirt.compare.table import GEOMETRY, LIGHT, OURS, TABLE, Guess, Hypothesis, is_near, values
 from minirt.scene import Scene
 
 COARSE, FINE, LARGE = 900, 2600, 10_000  # pixels of the samples
@@ -38,7 +38,6 @@ NEAR_SCORE, NEAR_CAMERA = 0.0004, 0.00004  # as are those that differ by a tenth
 NEAR = 0.05  # by which slopes and axes of cameras that draw nearly the same differ
 BETTER, BETTER_YET = 0.97, 0.99  # a step is taken where the score falls to this share; that of a large sample
 SPECKLED, SPECK = 0.01, 0.1  # share of pixels that are so much darker than their neighbours, in pictures with acne
-FIRST_EXPONENTS, STEPS = (16, 64, 512), 2  # of highlights: those that are tried first, and how far others are from them
 
 
 class Case:
@@ -104,7 +103,8 @@ class Case:
     def evenest(self, guesses: Iterable[Guess]) -> list[Guess]:
         """Sort guesses by how far their regions are from being one colour in one light each; first the evenest.
 
-        Cameras that look at the same shapes are traced at once: the rays of one take less time than a call.
+        `unevenness` keeps these numbers, by the values of the guesses: means of squares of levels from 0 to 1. Cameras
+        that look at the same shapes are traced at once: the rays of one take less time than a call.
         """
         x, y, colours = self.sample(COARSE)
         groups: dict[Any, list[Guess]] = {}
@@ -123,9 +123,9 @@ GEOMETRIC = *dict.fromkeys(name for row in GEOMETRY for name in row.changes), "s
 
 
 def search(case: Case) -> Guess:
-    """Find the guess that explains the picture best."""
+    """Find the guess that explains the picture best, by steps that take the best few guesses of the step before."""
     seen_from = case.evenest(case.cameras.values())
-    if case.unevenness[tuple(seen_from[0].values())] > EVEN:  # sizes may hide the camera
+    if case.unevenness[tuple(seen_from[0].values())] > EVEN:  # wrong sizes of shapes may hide that a camera is right
         radii = [row.changes for row in case.table if row.name == "radius"]
         named = [each for each in seen_from if each["scale"] == 1.0]
         seen_from = case.evenest([*seen_from, *(each | changes for each in named for changes in radii)])
@@ -152,8 +152,9 @@ def speck_share(picture: Floats) -> float:
 
 
 def turned(case: Case, least: float) -> list[Guess]:
-    """Return a camera that is turned, rolled and zoomed, in steps that get smaller, until its regions are evenest; none
-    if the evenest camera of the table, of unevenness `least`, is nearly as even, or none fits."""
+    """Return a list of one camera, which is turned, rolled and zoomed, in steps that get smaller, until its regions are
+    evenest. The list is empty where the evenest camera of the table, of unevenness `least`, is nearly as even, and
+    where no camera fits."""
 
     def unevenness(guess: Guess) -> float:
         return case.unevenness[tuple(guess.values())]
@@ -178,19 +179,21 @@ def neighbours(guess: Guess, step: float) -> list[Guess]:
 
 
 def steps(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, list[Guess]]:
-    """Return the neighbours of a guess by the parameter in which they differ."""
+    """Return the neighbours of a guess by the parameter in which they differ: a row of the table more or less, or, with
+    rows of the camera, a little more or less of its free numbers."""
     found: dict[str, list[Guess]] = {}
     for row in rows:
         (name, value), *_ = row.changes.items()
         if guess[name] != value and (name != "specular" or is_near(guess[name], value)):
             found.setdefault(name, []).append(guess | row.changes)
-            if name in SHAPES:  # one size may hide another
+            if name in SHAPES:  # another change of shapes, if it is wrong, may hide that this one is right
                 found[name].append(guess | {each: OURS[each] for each in SHAPES} | row.changes)
     for name, near in found.items():
         if guess[name] != OURS[name]:
             near.append(guess | {name: OURS[name]})
-    if "fov" in found:  # rows of the camera
-        plain = guess | {"fov": "square" if guess["fov"] == "square" else "horizontal"}  # the others are factors, too
+    if "fov" in found:  # the rows are those of the camera, too
+        # Other values of "fov" are factors of the slopes, as the scale is: it takes their place.
+        plain = guess | {"fov": "square" if guess["fov"] == "square" else "horizontal"}
         across = [slopes(case.scene.camera, case.aspect, each)[0] for each in (guess, plain)]
         scales = [guess["scale"] * across[0] / across[1] * factor for factor in FINER]
         found["fov"] = [each | {"scale": 1.0} for each in found["fov"]]
@@ -200,13 +203,6 @@ def steps(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> dict[str, lis
         if is_aimed(guess):
             found["yaw"] = neighbours(guess, FINE_TURN)
     return found
-
-
-def is_near(highlight: Any, other: tuple[str, int, str]) -> bool:
-    """Whether the exponent of a highlight is a step from that of another, or one of the first ones to be tried."""
-    if not highlight:
-        return other[1] in FIRST_EXPONENTS
-    return abs(EXPONENTS.index(highlight[1]) - EXPONENTS.index(other[1])) <= STEPS
 
 
 def by_gain(case: Case, guess: Guess, rows: Iterable[Hypothesis]) -> list[Hypothesis]:
@@ -245,5 +241,6 @@ def simplest(case: Case, guess: Guess) -> Guess:
         limit = case.score(guess)[0] * times + more
         alike = [each for each in guesses if case.score(each)[0] <= limit]
         odd = [case.score(each)[1] for each in alike]  # a name is preferred to a factor
-        guess = min(zip(alike, odd, strict=True), key=lambda each: (differences(each[0]) + each[1], each[1]))[0]
+        ranks = [(differences(each) + number, number) for each, number in zip(alike, odd, strict=True)]
+        guess = alike[ranks.index(min(ranks))]
     return guess

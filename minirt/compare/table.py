@@ -122,6 +122,7 @@ GEOMETRY = rows(
 # Shares by which light fades at distance 1, by the name of its form.
 SOFT_FADING = {f"1/(1 + {each} distance)": each for each in (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0)}
 EXPONENTS = 4, 8, 16, 32, 50, 64, 100, 128, 200, 256, 360, 512, 1000
+FIRST_EXPONENTS, STEPS = (16, 64, 512), 2  # of highlights: those that are tried first, and how far others are from them
 LIGHT = rows(
     ("ambient", "light alone", "the ambient light is added as it is: multiply it by the colour of the object"),
     ("ambient", "light plus object",
@@ -174,6 +175,15 @@ FREE = {
     "share": "{sentence}; their share is {value}",
 }
 TABLE = GEOMETRY + LIGHT
+
+
+def is_near(highlight: Any, other: tuple[str, int, str]) -> bool:
+    """Whether the exponent of a highlight is a step from that of another; without a highlight, whether that of the
+    other is one of the first to be tried."""
+    (_, exponent, _) = other
+    if not highlight:
+        return exponent in FIRST_EXPONENTS
+    return abs(EXPONENTS.index(highlight[1]) - EXPONENTS.index(exponent)) <= STEPS
 
 
 def values(name: str) -> list[Any]:

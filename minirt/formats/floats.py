@@ -30,7 +30,8 @@ def encode_exr(light: np.ndarray) -> bytes:
 
 def exr_header(width: int, height: int) -> bytes:
     """Return the header of an EXR file of so many pixels, from the magic number to the end of the attributes."""
-    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", FLOAT32, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    channel = struct.pack("<iB3xii", FLOAT32, 0, 1, 1)  # the type, "not linear to perception", a sample for each pixel
+    channels = b"".join(name + b"\0" + channel for name in (b"B", b"G", b"R")) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     attributes = (
         ("channels", "chlist", channels),
@@ -42,7 +43,7 @@ def exr_header(width: int, height: int) -> bytes:
         ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
         ("screenWindowWidth", "float", struct.pack("<f", 1)),
     )
-    parts = [f"{name}\0{kind}\0".encode() + struct.pack("<i", len(v)) + v for name, kind, v in attributes]
+    parts = [f"{name}\0{kind}\0".encode() + struct.pack("<i", len(data)) + data for name, kind, data in attributes]
     return struct.pack("<2i", MAGIC, VERSION) + b"".join(parts) + b"\0"
 
 

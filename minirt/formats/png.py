@@ -20,7 +20,7 @@ SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
 def encode(array: np.ndarray, texts: Mapping[str, str] | None = None) -> bytes:
-    """Return the PNG file of a picture, (h, w, 3) uint8 or uint16; ValueError when it has no pixels.
+    """Return the PNG file of a picture, (h, w, 3) uint8 or uint16; ValueError when it has no or too many pixels.
 
     The keywords of `texts` have at most 79 letters of ASCII.
     """
@@ -43,10 +43,11 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 
 def filtered(rows: np.ndarray, step: int = 3) -> Iterator[bytes]:
-    """Yield the bytes of some rows after others, each with the filter whose differences have the least sum. The rows
-    (h, n) are uint8 or uint16; a pixel has `step` bytes.
+    """Yield the bytes of rows (h, n), uint8 or uint16, block by block: for each row the number of its filter, then the
+    differences. A pixel has `step` bytes.
 
-    Pillow chooses so among five filters; the other two make files 4 % smaller and take twice the time.
+    The filter of a row is the one whose differences have the least sum. Pillow chooses so among five filters; the other
+    two make files 4 % smaller and take twice the time.
     """
     length = rows.shape[1] * rows.dtype.itemsize
     above = np.zeros((1, length), np.uint8)
@@ -58,8 +59,8 @@ def filtered(rows: np.ndarray, step: int = 3) -> Iterator[bytes]:
         candidates = np.stack([block, block, block])
         candidates[SUB, :, step:] -= block[:, :-step]
         candidates[UP] -= np.concatenate([above, block[:-1]])
-        signed = np.abs(candidates.view(np.int8)).view(np.uint8)  # 128 for -128
-        best = signed.sum(axis=2, dtype=np.int64).argmin(axis=0)
+        sizes = np.abs(candidates.view(np.int8)).view(np.uint8)  # of differences with signs; 128 for -128
+        best = sizes.sum(axis=2, dtype=np.int64).argmin(axis=0)
         chosen = np.empty((len(block), 1 + length), np.uint8)
         chosen[:, 0] = best
         chosen[:, 1:] = candidates[best, np.arange(len(block))]

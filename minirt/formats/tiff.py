@@ -61,33 +61,35 @@ def directory(
 ) -> bytes:
     """Return the directory that begins at byte `start` of a file with strips at these places, of these sizes in bytes.
 
-    A channel of a pixel has so many `bits`. In a big file, a BigTIFF, places and sizes have 64 bits.
+    A channel of a pixel has so many `bits`. In a big file, a BigTIFF, places and sizes have 64 bits. Values that do not
+    fit into an entry follow behind all entries.
     """
-    number, word, kind_of_place = ("Q", "Q", LONG8) if is_big else ("H", "I", LONG)
-    entries: list[tuple[int, int, Sequence[int]]] = [
+    count_code, word, kind_of_place = ("Q", "Q", LONG8) if is_big else ("H", "I", LONG)
+    entries: list[tuple[int, int, Sequence[int]]] = [  # tags, types and values
         (256, LONG, [width]),
         (257, LONG, [height]),
         (258, SHORT, [bits] * 3),
         (259, SHORT, [DEFLATE]),
         (262, SHORT, [2]),  # RGB
         (273, kind_of_place, places),
-        (277, SHORT, [3]),
+        (277, SHORT, [3]),  # channels of a pixel
         (278, LONG, [ROWS]),
         (279, kind_of_place, sizes),
-        (282, RATIONAL, [72, 1]),  # pixels per inch
+        (282, RATIONAL, [72, 1]),  # pixels per inch across, and down
         (283, RATIONAL, [72, 1]),
         (284, SHORT, [1]),  # the channels of a pixel side by side
-        (296, SHORT, [2]),
+        (296, SHORT, [2]),  # the inch
         (317, SHORT, [PLAIN if bits == FLOAT else DIFFERENCES]),
         (339, SHORT, [REAL if bits == FLOAT else WHOLE] * 3),
     ]
     short = struct.calcsize(word)  # bytes of values that stand in the entry itself
-    out, behind = struct.pack(f"<{number}", len(entries)), b""
-    place = start + len(out) + (4 + 2 * short) * len(entries) + short
+    out, behind = struct.pack(f"<{count_code}", len(entries)), b""
+    place = start + len(out) + (4 + 2 * short) * len(entries) + short  # of what is behind
     for tag, kind, values in entries:
         data = struct.pack(f"<{len(values)}{CODES[kind]}", *values)
         if len(data) > short:
             data, behind = struct.pack(f"<{word}", place + len(behind)), behind + data
         count = len(values) // 2 if kind == RATIONAL else len(values)
         out += struct.pack(f"<HH{word}", tag, kind, count) + data.ljust(short, b"\0")
-    return out + struct.pack(f"<{word}", 0) + behind
+    no_further_directory = struct.pack(f"<{word}", 0)
+    return out + no_further_directory + behind

@@ -72,7 +72,7 @@ def read_pixels(strings: Iterator[bytes], header: XpmHeader) -> np.ndarray:
         raise XpmError(f"it has {len(definitions)} of {count} colours")
     colours = {line[:length]: colour(line[length:], number) for number, line in enumerate(definitions, 1)}
     words = np.empty((height, width), "<u4")
-    number = 0
+    number = 0  # of the last row that was read
     for number, row in enumerate(islice(strings, height), 1):
         try:
             words[number - 1] = [colours[row[at : at + length]] for at in range(0, width * length, length)]
@@ -90,7 +90,7 @@ def colour(definition: bytes, number: int) -> int:
     XpmError for one without a colour, with the `number` of the definition.
     """
     values: dict[str, str] = {}  # by the keys before them
-    key = ""  # of the words that follow
+    key = ""  # the last key: the words behind it are its value
     for word in definition[:LONGEST_DEFINITION].decode("latin-1").split():
         # A key is a value, too, where one is missing: `c g` is a colour named g.
         if word in KEYS and (not key or key in values):

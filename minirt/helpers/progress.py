@@ -37,7 +37,8 @@ class WorkState(NamedTuple):
 def drawn(read: Callable[[], WorkState], draw: Callable[[str], object]) -> Iterator[None]:
     """Draw the state that `read` returns while the block runs, from another thread, by `draw(text)`.
 
-    Nothing is drawn in the first second, or where the system allows no more threads; `draw("")` erases what was drawn.
+    Nothing is drawn in the first second, or where the system allows no more threads. `draw("")` erases what was drawn,
+    at the end. The thread sees the context variables of the caller.
     """
     ended = Event()
 

@@ -102,7 +102,7 @@ def held_signals() -> Iterator[list[int]]:
     if not _in_main_thread():
         yield []
         return
-    came = holds[-1] if holds else []
+    came = holds[-1] if holds else []  # blocks inside of each other have one list
     holds.append(came)
     try:
         yield came
@@ -145,7 +145,7 @@ def interruptible(interrupted: Callable[[], None], wake: Callable[[], None]) -> 
     from threading import Thread
 
     def handle(_number: int, _frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # the second Ctrl+C raises
         interrupted()
 
     def watch() -> None:

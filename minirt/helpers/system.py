@@ -136,7 +136,8 @@ if hasattr(os, "register_at_fork"):  # Windows has no fork
 
 @contextmanager
 def gc_paused(freeze: bool = True) -> Iterator[None]:
-    """Collect no garbage inside the context; `freeze` excludes all objects that exist at its end from later ones.
+    """Collect no garbage inside the context; `freeze` excludes the objects that exist at its end from all later
+    collections.
 
     With the modules of numba loaded a collection takes 30 ms, in which no thread runs, and the last one, at the end of
     the program, 100 ms.

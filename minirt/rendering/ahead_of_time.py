@@ -32,9 +32,11 @@ def calls() -> list[list[Call]]:
 
 
 def build(folder: Path, target: str, most: int | None = None) -> int:
-    """Compile the kernels for a processor, those of all groups or of at most so many, that are not in a folder, and
-    delete older ones; return the number of those that were compiled. RenderError where compiling fails; OSError where
-    the folder cannot be written."""
+    """Compile the kernels for the processor `target` that are not in the folder; return how many were compiled.
+
+    `most` is the number of groups, from the first one on, that are compiled; None for all. Kernels of other sources are
+    deleted. RenderError where compiling fails; OSError where the folder cannot be written.
+    """
     kernels, fingerprint = CodeCache(folder), fingerprint_of(target)
     folder.mkdir(parents=True, exist_ok=True)
     groups = [[identity_of(*call, fingerprint) for call in group] for group in calls()]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.errors import RenderError
 from minirt.fields import unit
-from minirt.kernel.scene_arrays import kind_of
+from minirt.kernel.scene_arrays import KIND, ROW, kind_of
 from minirt.lanes import Vec
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import GOLDEN_RATIO
@@ -121,8 +121,10 @@ def geometry(
     has_uv: bool = False,
     rows: tuple[int, int] | None = None,
 ) -> Buffers:
-    """Return the buffers, or some rows of them, without albedo: an array without rows, and so is uv unless it is asked
-    for, which takes most of the time."""
+    """Return the buffers of a picture, or those of its `rows` (a, b) from a to b - 1, without albedo.
+
+    The albedo has no rows, nor has uv without `has_uv`: it would take most of the time.
+    """
     origins, directions = camera_rays(scene, width, height, rows)
     height, width, _ = directions.shape
     hits = trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), threads=threads)
@@ -155,17 +157,22 @@ def albedo(scene: Scene, width: int, height: int, threads: int | None) -> NDArra
 def coordinates(
     arrays: ShapeArrays, primitive: NDArray[np.int64], point: NDArray[np.float64], normal: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return u and v, (n, 2), of n points of primitives, -1 where there is none, and their outward normals."""
-    shapes, owner = arrays.shapes, np.append(arrays.owner, -1)[primitive]  # the last one where there is none
+    """Return u and v at n points, (n, 2); NaN where there is no primitive.
+
+    `primitive` (n,) has the index of the primitive on which each point lies, -1 for none, `point` (n, 3) the points and
+    `normal` (n, 3) the outward normals there.
+    """
+    no_shape = -1  # the last row, which the primitive -1 selects
+    shapes, owner = arrays.shapes, np.append(arrays.owner, no_shape)[primitive]
     uv, normal = np.full((len(owner), 2), np.nan), normal.copy()
     # Where `uv:` or a turn of the shape changes its coordinates from those of its `mapping`.
-    turned = [i for i in np.unique(owner[owner >= 0]) if shapes[i].uv or shapes[i].map_frame()]
-    placements = {i: placement_numbers(shapes[i]) for i in turned}
-    for i, numbers in placements.items():
-        normal[owner == i] = normal[owner == i] @ np.reshape(numbers[6:], (3, 3)).T
+    placed = [i for i in np.unique(owner[owner >= 0]) if shapes[i].uv or shapes[i].map_frame()]
+    placements = {i: placement_numbers(shapes[i]) for i in placed}
+    for i, (_, _, _, _, _, _, *axes) in placements.items():
+        normal[owner == i] = normal[owner == i] @ np.reshape(axes, (3, 3)).T
     for group, rows in enumerate(arrays.rows):
-        here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, 0] == group))
-        packed = packed_columns(rows[arrays.slots[primitive[here], 1]])
+        here = np.flatnonzero((owner >= 0) & (arrays.slots[primitive, KIND] == group))
+        packed = packed_columns(rows[arrays.slots[primitive[here], ROW]])
         with np.errstate(all="ignore"):
             u, v, *_ = kind_of(rows.dtype.names).mapping(packed, Vec(*point[here].T), Vec(*normal[here].T))
         uv[here, 0], uv[here, 1] = u, v

@@ -86,8 +86,8 @@ def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants:
 def frame_rays(arrays: Any, samples: int) -> np.ndarray:
     """Return the rays of a packet of a packed scene, a row for each sample of each of its variants.
 
-    They are (k, 3 * lanes), or with apertures (k, 8 * lanes): see `minirt.rendering.packing.camera`. One sample comes
-    from the centre of a lens, and sees the centres of lights.
+    They are (k, 3 * lanes), or with apertures, a lens or lights with a size, (k, 8 * lanes): see `packet_rays` and
+    `with_apertures`. One sample comes from the centre of a lens, and sees the centres of lights.
     """
     lanes = width(arrays.camera)
     places = camera.by_pixel(camera.packet_places(lanes, sample_positions(samples)), samples)
@@ -109,8 +109,13 @@ def frame_arguments(
     rays: np.ndarray | None = None,
     memory: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> Frame:
-    """Return the arguments for all packets of a packed scene: of a picture, or of a rectangle of a larger one. `rays`
-    are those of `frame_rays`, and `memory` that of a thread, where they are known."""
+    """Return the arguments of the kernel that draws all packets of a packed scene: of a picture, or of the rectangle of
+    a larger one at `crop`.
+
+    The kernel writes `pixels`, (h, w, 4) uint8, and `linear`, (h, w, 3), which has no rows where nobody wants light.
+    `counter` (1,) counts the rows that threads have taken. `rays` are those of `frame_rays`, and `memory` is that of
+    `thread_memory`. What is None is made anew.
+    """
     rays, plan = frame_rays(arrays, samples) if rays is None else rays, ALL_PACKETS
     if samples > 1 and camera.has_apertures(arrays):
         whole = Crop(pixels.shape[1], pixels.shape[0])
@@ -152,18 +157,20 @@ class SampleTable:
     def __init__(
         self, levels: np.ndarray, pixels: int, with_places: bool = False, with_references: bool = True
     ) -> None:
-        """Place samples for packets of so many pixels, each with a level in `levels`, (n,).
+        """Place samples for n packets of so many pixels. `levels` (n,) has for each an index of COUNTS.
 
-        Without references there are no second samples for an estimate of the error.
+        `with_references` adds samples for an estimate of the error.
         """
         self.with_references = with_references
-        self.first, self.reference = np.zeros((2, len(COUNTS)), np.int32)  # rows of a level
+        # For each level: the rows at which samples and references begin, and how many variants of both there are.
+        self.first, self.reference = np.zeros((2, len(COUNTS)), np.int32)
         self.drawn_variants, self.variants = np.ones((2, len(COUNTS)), np.int32)
         parts, rows = [], 0
         for level, packets in enumerate(np.bincount(levels).tolist()):
-            count, most = int(COUNTS[level]), 2 ** (packets - 1).bit_length()
             if not packets:
                 continue
+            count = int(COUNTS[level])
+            most = 2 ** (packets - 1).bit_length()  # variants: as many as packets, rounded up to a power of two
             pairs = min(max(REFERENCE_ROWS // (2 * count), 1), VARIANTS, most)
             drawn = min(camera.variants_of(count), most) if with_places else 1
             self.variants[level], self.drawn_variants[level] = pairs, drawn

@@ -69,22 +69,26 @@ class FrameRunner:
         """Render a frame on all threads, which share its rows or its packets; an error of any is raised.
 
         The caller's thread is one of them where the frame is expected to be brief; else it only waits, so that Ctrl+C
-        reaches it.
+        reaches it. The pace of a frame without a plan is kept, and its time is counted for the kernel.
         """
         choice = self.choose(frame)
-        work, is_planned = len(frame.rays) * frame.pixels.size, len(frame.plan) > 0
+        work, is_planned = len(frame.rays) * frame.pixels.size, len(frame.plan) > 0  # work: samples of all pixels
+        has_one_sample = work == frame.pixels.size
         height, across = frame.pixels.shape
         few_rows = FEW_ROWS * self.threads if len(frame.scene.lights) <= TOGETHER else 0  # more lights need whole tiles
         if is_planned:
             sets = np.where(frame.plan[:, REFERENCES], 3, 1)  # of samples: those that are drawn, and two of references
             work = int(frame.plan[:, DRAWN] @ sets) * width(frame.scene.camera)
-        elif work == frame.pixels.size and height < TILE * few_rows:
+        elif has_one_sample and height < TILE * few_rows:
             whole = plan_of_variants((height, across), width(frame.scene.camera), 1, 1, Crop(across, height, 0, 0))
             frame = frame._replace(plan=whole)
-        start, rays = perf_counter(), frame[3:6]
-        if not all(map(is_, rays, self.of_rays[0])):
+        start, rays = perf_counter(), (frame.rays, frame.plan, frame.errors)
+        before, _ = self.of_rays
+        if not all(map(is_, rays, before)):
             self.of_rays = rays, words_of(rays)
-        shared = words_of(frame[:3]) + self.of_rays[1]
+        _, words_of_rays = self.of_rays
+        # The words of all arguments, in the order of `Frame`.
+        shared = words_of((frame.next_row, frame.pixels, frame.linear)) + words_of_rays
         jobs: list[Job] = [partial(choice.entry.run, shared + each) for each in self.words]
         self.pool.run(jobs, self.cancel, helps=self.pace * work < BRIEF)
         seconds = perf_counter() - start
@@ -114,11 +118,11 @@ class FrameRunner:
     def render_samples(
         self, packing: Packing, request: Request, samples: int, is_wanted: Callable[[], bool], edges_only: bool
     ) -> bool:
-        """Render a scene that has shapes, each pixel with so many samples; False where it was cancelled or `is_wanted`
-        said no.
+        """Render a scene that has shapes into the arrays of the request, each pixel with so many samples; return False
+        where `cancel` ended it early or `is_wanted` said no.
 
-        With `edges_only` only packets in which neighbouring pixels differ are drawn, unless a lens or a light with a
-        size blurs others, too.
+        `is_wanted` is asked once, when `cancel` can already end the frame. With `edges_only` only packets in which
+        neighbouring pixels differ are drawn, unless a lens or a light with a size blurs others, too.
         """
         scene, pixels, light, crop = request
         counter = self.reset_counter()
@@ -142,7 +146,7 @@ class FrameRunner:
         or so many seconds have passed, packing included. The first sweep is always completed.
 
         `error` is the RMSE of light from 0 to 1. `least` is the error below which more samples are useless; see
-        `minirt.rendering.sampling.auto`. None where `cancel` ended it early.
+        `minirt.rendering.sampling.auto`. Return None where `cancel` ended it early.
         """
         scene, pixels, linear, crop = request
         start, cancellations = perf_counter(), self.cancellations

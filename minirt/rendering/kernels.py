@@ -155,9 +155,9 @@ class Kernels:
         *packing, drawing = self.specialised(scene, samples)
         pool = ThreadPoolExecutor(1)
         try:
-            first = pool.submit(LIBRARY.compile, packing, self.packing_process)
+            beside = pool.submit(LIBRARY.compile, packing, self.packing_process)
             LIBRARY.compile([drawing], self.compile_process)
-            first.result()
+            beside.result()
         except BaseException:  # such as an interrupt, which should not wait for the other process
             self.packing_process.stop()
             raise
@@ -192,8 +192,8 @@ PIXEL = np.zeros((1, 1, 4), np.uint8)
 
 
 def calls_for(scene: Scene, precision: str, depth: int, samples: object = None) -> list[Call]:
-    """Return calls of the kernels for a scene: of those that pack it, that find contrast and that copy levels, and of
-    the specialised one that draws it."""
+    """Return calls of the kernels for a scene: of those that pack it, find contrast and copy levels, and at last of the
+    specialised one that draws it. `samples` are those of `features`."""
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1, samples=samples)

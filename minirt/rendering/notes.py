@@ -27,7 +27,7 @@ NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for thes
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
     """Describe how the shapes of a scene were packed: tiles, light buffers, and what has no effect."""
     shapes = counted(len(shape_arrays.listed), "shape")
-    sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)
+    sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)  # shapes of all groups in each tile
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if arrays.light_buffer_cells == 1:
         yield f"light buffer: none, every shape is tried ({shapes})"
@@ -47,8 +47,11 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
 
 
 def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool, samples: object = None) -> Iterator[str]:
-    """Describe the kernel that drew a scene with so many samples as of `features`: what it leaves out; `generic` is
-    None for the specialised one."""
+    """Describe the kernel that drew a scene: which one it is, and which kinds of shapes and features it leaves out.
+
+    `generic` is None for the specialised kernel, `compiling` tells whether that is being made; `samples` are those of
+    `features`.
+    """
     used = {type(shape) for shape in scene.shapes}
     if generic:
         yield f"generic kernel for all kinds of shapes and {'all' if generic.name == 'full' else 'no'} features"

@@ -24,8 +24,10 @@ NOT_COMPUTED = "a notice about the picture cannot be computed"
 def notices_about(
     scene: Scene, image: np.ndarray | None, size: tuple[int, int], single: Packing | None = None, samples: object = None
 ) -> Iterator[str]:
-    """Yield sentences about a picture of this size, or a region of it, (h, w, channels), None without it. The packing
-    is that of a picture in single precision which this process has rendered, with so many samples a pixel.
+    """Yield sentences about a scene in a picture of this size: what its user may not have expected.
+
+    `image` (h, w, channels) is the picture or a region of it, None where it is not rendered. `single` is the packing of
+    a picture that this process has rendered in single precision, None for others, `samples` the number for each pixel.
 
     A notice costs nobody the picture: numbers that leave the range of a float64 or of a field are told in its place.
     """
@@ -51,8 +53,11 @@ def notices_about(
 def measurements(
     scene: Scene, size: tuple[int, int], settings: RenderSettings, seconds: float, not_finite: int
 ) -> Iterator[str]:
-    """Yield lines about a picture that was rendered in this process: its time, how its scene was packed, and how many
-    pixels are brighter than the picture can show, by their light with one sample each."""
+    """Yield lines about a picture that was rendered in this process, in so many seconds and with `not_finite` rays
+    whose light was not: its time, how its scene was packed, and how many pixels are brighter than the picture can show.
+
+    For these the picture is rendered once more, with one sample for each pixel.
+    """
     from minirt.rendering.settings import rendered
 
     renderer = settings.renderer

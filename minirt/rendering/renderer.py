@@ -45,9 +45,12 @@ class Renderer:
         dither: bool = False,
         without: Collection[str] = (),
     ) -> None:
-        """Use as many threads as there are usable processors unless `threads` is given; `precision` is "double" or
-        "single", or RenderError; light is reflected or refracted at most `depth` times, `DEPTH` by default. `dither`
-        replaces rounding to 8 bits by blue noise; `without` names what does not cull, as of `Packing`."""
+        """Use as many threads as there are usable processors unless `threads` is given.
+
+        `precision` is "double" or "single". Light is reflected or refracted at most `depth` times, `DEPTH` by default.
+        `dither` replaces rounding to 8 bits by blue noise. `without` names what does not cull, see `Packing`.
+        RenderError for a value that is none of these.
+        """
         if precision not in PRECISIONS:
             raise RenderError(f"precision must be double or single, got '{precision}'")
         self.threads = usable_cores() if threads is None else check_whole("threads", threads, 1)
@@ -86,7 +89,7 @@ class Renderer:
         if not choice or not last:
             return []
         missing = [] if LIBRARY.has(self.kernels.for_all_scenes[-1]) else [NO_GENERIC_KERNEL]
-        sentences = kernel_notes(last[0], choice.generic, self.kernels.background.busy, self.packing.samples)
+        sentences = kernel_notes(last.scene, choice.generic, self.kernels.background.busy, self.packing.samples)
         return [*sentences, *missing, *self.packing.notes]
 
     def is_ready(self, scene: Scene, samples: object = 1) -> bool:
@@ -130,11 +133,11 @@ class Renderer:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and the unclamped
         light into `linear`, float64 (h, w, 3), if given: the whole picture, or the rectangle at `crop` of a larger one.
 
-        False where `cancel` ended it early, or `is_wanted` says no. That is asked twice: once `cancel` has an effect,
-        before the first ray, and after the last one; so stop wanting the picture, and then call `cancel`. With
-        `edges_only` the pixels hold a picture of the scene, and only packets of it in which neighbours differ are
-        rendered again, unless a lens or a light with a size blurs all of it; elsewhere the light stays as it is, too.
-        RenderError for a wrong number of samples, or where there is too little memory.
+        Return False where `cancel` ended it early, or `is_wanted` says no. `is_wanted` is asked twice: before the first
+        ray, when `cancel` already has an effect, and after the last one; so stop wanting the picture, and then call
+        `cancel`. With `edges_only` the pixels hold a picture of the scene, and only packets of it in which neighbours
+        differ are rendered again, unless a lens or a light with a size blurs all of it; elsewhere pixels and light
+        stay. RenderError for a wrong number of samples, or where there is too little memory.
         """
         with self.busy:
             return self._draw(Request(scene, pixels, linear, crop), samples, is_wanted, edges_only)
@@ -153,9 +156,10 @@ class Renderer:
         return is_done and is_wanted()
 
     def _begin(self, request: Request, samples: object = None, edges_only: bool = False) -> tuple[Request, bool]:
-        """Return the request with an array for its light, and whether it is done, as it shows the background alone.
+        """Return the request with an array for its light, and whether the picture is done: a scene without shapes shows
+        the background, which is drawn here.
 
-        Otherwise there is a kernel that can draw it."""
+        Otherwise a kernel is made ready. Rays that are not finite are counted anew. The caller holds `busy`."""
         for memory, _ in self.runner.memories:
             memory[-1, NOT_FINITE] = 0.0
         has_shapes = bool(request.scene.runs and request.pixels.size)
@@ -180,7 +184,8 @@ class Renderer:
     ) -> Outcome | None:
         """Render into `pixels` and `linear`, as `render` does, until the estimated error is at most `error` or that
         many seconds have passed; see `minirt.rendering.sampling.auto`. Without `linear` it ends where rounding to 8
-        bits decides. None where `cancel` ended it early; then the picture is incomplete."""
+        bits decides. Return samples, error and seconds; None where `cancel` ended it early and the picture is
+        incomplete."""
         request, start = Request(scene, pixels, linear, crop), perf_counter()
         with self.busy:
             request, is_done = self._begin(request)

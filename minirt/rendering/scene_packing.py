@@ -24,7 +24,7 @@ from minirt.rendering.packing.features import APERTURES, DEPTH, SECONDARY, SPREA
 from minirt.rendering.packing.mesh_trees import pack_meshes
 from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.packing.view import View, all_but_pose
+from minirt.rendering.packing.view import PackedScene, View, all_but_pose
 from minirt.rendering.packing.visibility import BinnedShapes, Bins, Run
 from minirt.scene import Lamp, Scene
 from minirt.shapes import Mesh, Shape
@@ -51,16 +51,14 @@ class Packing:
         run: Run | None = None,
     ) -> None:
         """`run` runs a job on all threads; without it the caller's thread packs."""
-        self.kernel = kernel
-        self.without = without
-        self.run = run
+        self.kernel, self.without, self.run = kernel, without, run
         self.precision = precision
         self.depth = depth  # bounces at most
         self.shape_arrays = ShapeArrays()
         self.cache: dict[Hashable, Any] = {}  # results for the last scene, by what they depend on beside its shapes
         self.cells_that_fit: dict[int, int] = {}  # by the number of lights, where the usual cells do not fit
         self.bvh: Tree | None = None  # of the last shapes, once it was needed
-        self.last: tuple[Scene, Place, SceneArrays] | None = None
+        self.last: PackedScene | None = None
         self.view: View | None = None  # of the last scene
         self.samples: object = None  # as of `features`, for which the last scene was packed
         self.spare: dict[int, Bins] = {}  # of the first lights, after a change of shapes
@@ -86,23 +84,24 @@ class Packing:
     def pack(
         self, scene: Scene, width: int, height: int, crop: Crop | None = None, samples: object = None
     ) -> SceneArrays:
-        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one,
-        with so many samples as of `features`.
+        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one at
+        `crop`. `samples` are those of `features`.
 
-        Until the next call: where nothing but the camera moves they are the same arrays, with other contents.
+        The next call may overwrite them: where nothing but the camera moves it returns the same arrays.
         """
         place = width, height, crop or Crop(width, height)
         self.shape_arrays_for(*scene.runs)
-        last, self.last = self.last, None  # an error leaves none
-        is_other = (samples == 1) != (self.samples == 1) and not APERTURES.isdisjoint(features(scene))
+        last, self.last = self.last, None  # after an error there is no last scene
+        changes_apertures = (samples == 1) != (self.samples == 1) and not APERTURES.isdisjoint(features(scene))
         self.samples = samples
-        if not (last and last[1] == place and not is_other and self.follows(scene, last[0], last[2])):
-            last = scene, place, self.pack_anew(scene, place)
-        self.last = scene, place, last[2]
-        return last[2]
+        is_alike = last and last.place == place and not changes_apertures
+        can_stay = last and is_alike and self.follows(scene, last.scene, last.arrays)
+        arrays = last.arrays if last and can_stay else self.pack_anew(scene, place)
+        self.last = PackedScene(scene, place, arrays)
+        return arrays
 
     def follows(self, scene: Scene, last: Scene, arrays: SceneArrays) -> bool:
-        """Whether the arrays of the last scene are those of this one, or have followed its camera."""
+        """Whether the arrays of the last scene are those of this one, or now follow its camera: they are written."""
         if scene is last:
             return True
         if not self.view or arrays.lens is not None or all_but_pose(scene) != all_but_pose(last):
@@ -112,7 +111,7 @@ class Packing:
         return self.view.follow(scene.camera, self.run)
 
     def pack_anew(self, scene: Scene, place: Place) -> SceneArrays:
-        """Return arrays that are made anew, except what the scene shares with the last one.
+        """Return arrays that are made anew, except what the scene shares with the last one: `cache` is renewed.
 
         TooLargeError where even the coarsest light buffers have no room.
         """
@@ -129,11 +128,7 @@ class Packing:
         colours = lights.colours_of(scene.camera)
         if "soft" not in used:
             sources = [each.replace(size=None) if each.size else each for each in sources]
-        lens = None
-        if "lens" in used:
-            key = "middle", numbers.tobytes()
-            focus = scene.camera.focus or cached(key, nearest_hits, shapes, *camera.middle_ray(numbers))[0]
-            lens = camera.lens_numbers(scene.camera, float(focus))
+        lens = self.lens_of(scene, numbers, cached) if "lens" in used else None
         radius, _ = camera.radius_and_focus(lens)
         cells, binned, keys = self.light_buffers_that_fit(sources, numbers[:3], cached, radius)
         light_starts, lists_of_lights = cached(keys, light_buffers.joined_light_buffers, binned, shapes)
@@ -153,10 +148,7 @@ class Packing:
         trees, triangles = ([part if kind is Mesh else None for kind in shapes.group_numbers] for part in meshes)
         tinted = cached("tinted", materials.tinted, shapes) if "media" in used else []
         paint: Any = scene.background and scene.background.paint
-        environment_key, colours_key = ("environment", paint, colours), ("colours", colours.decodes)
-        environment = (
-            cached(environment_key, materials.pack_environment, scene, paint) if "environment" in used else None
-        )
+        sky_key, colours_key = ("environment", paint, colours), ("colours", colours.decodes)
         arrays = SceneArrays(
             camera=np.append(camera.pixel_rays(scene.camera, crop.width, crop.height), (crop.left, crop.top)),
             ambient=colours.light(scene.ambient.colour, scene.ambient.brightness) if scene.ambient else np.zeros(3),
@@ -178,12 +170,20 @@ class Packing:
             smooth=cached("smooth", shapes.smooth) if "smooth" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
-            environment=environment,
+            environment=cached(sky_key, materials.pack_environment, scene, paint) if "environment" in used else None,
             bvh=self.bvh_of(*scene.runs) if needs_bvh and BVH not in self.without else None,
             **packed,
         )
         is_single = self.precision == "single" and fits_single(arrays)
         return self.view.complete(arrays, is_single) if self.view else arrays
+
+    def lens_of(self, scene: Scene, numbers: np.ndarray, cached: Callable[..., Any]) -> np.ndarray:
+        """Return the numbers of the lens, whose focus is what the middle of the picture shows unless the camera has
+        one. `numbers` are its `camera_numbers`; `cached` keeps what is computed."""
+        if not (focus := scene.camera.focus):
+            key = "middle", numbers.tobytes()
+            focus, _ = cached(key, nearest_hits, self.shape_arrays, *camera.middle_ray(numbers))
+        return camera.lens_numbers(scene.camera, float(focus))
 
     def light_buffers_that_fit(
         self, sources: list[Lamp], eye: np.ndarray, cached: Callable[..., Any], radius: float
@@ -214,21 +214,22 @@ class Packing:
         """
         if LIGHT_BUFFERS in self.without:
             return [visibility.in_all_cells(self.shape_arrays, 1)] * len(sources), len(sources)
-        shapes, copies = self.shape_arrays, 2 * len(sources) if len(sources) > 1 else 1
+        shapes = self.shape_arrays
+        copies = 2 * len(sources) if len(sources) > 1 else 1  # of lists: each light's, and all of them joined
         has_meshes = Mesh in shapes.group_numbers  # from whose facets rays may be moved out of reach
         has_cones = light_buffers.has_cones(len(sources), len(shapes.listed))
         binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for light in sources:
             skipped = lights.never_occludes(shapes, eye, light, radius)
-            if not light.position or (light.size and cells > 1):  # by the BVH
+            if not light.position or (light.size and cells > 1):  # the kernel traverses the BVH
                 keys.append(("spread", cells, skipped.tobytes(), has_cones))
                 binned.append(cached(keys[-1], light_buffers.seen_by_parallel_light, shapes, cells, skipped))
             else:
                 position, size = lights.light_position(light), lights.radius_of(light)
-                reach = (not has_meshes and light.fade) or np.inf
+                reach = light.fade if light.fade and not has_meshes else np.inf
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size, reach, has_cones))
-                alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
+                alike = 1 if binned else copies  # lists in memory: those of the first light stand for all
                 at = position, cells, skipped, size, reach, alike, self.run, self.spare.pop(len(binned), None)
                 binned.append(cached(keys[-1], light_buffers.seen_by_light, self.kernel, shapes, *at))
             if len(binned) > FEW:  # scratch memory, of twice the size of the lists
@@ -240,10 +241,10 @@ class Packing:
     @property
     def notes(self) -> list[str]:
         """Sentences that say what was chosen for the last scene, and what it leaves out."""
-        return list(notes(self.last[0], self.shape_arrays, self.last[2])) if self.last else []
+        return list(notes(self.last.scene, self.shape_arrays, self.last.arrays)) if self.last else []
 
     @property
     def computed_in(self) -> str:
         """The precision of the last scene, and why it is double where single was asked for."""
-        is_other = self.precision == "single" and self.last is not None and not fits_single(self.last[2])
+        is_other = self.precision == "single" and self.last is not None and not fits_single(self.last.arrays)
         return IN_DOUBLE if is_other else f"{self.precision} precision"

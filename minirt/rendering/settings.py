@@ -137,8 +137,8 @@ def render(
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
     of the picture tells which. Errors are defined in `minirt.rendering.outcome`. With `linear` False the picture has
     8 bits alone, and sampling also ends where rounding to them decides its error. By default a picture of one sample
-    makes its `.linear` light when that is asked for, by rendering again; with `linear` True it keeps it, which takes up
-    to three times as long where frames are fast.
+    makes its `.linear` light when that is asked for, by rendering again; with `linear` True it keeps the light, which
+    takes up to three times as long where frames are fast.
 
     Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
     by blue noise, so that smooth shades have no steps.
@@ -155,7 +155,7 @@ def render(
         if settings.get("region") is not None:
             raise RenderError("a picture has a region or rows, not both")
         settings["region"] = (0, rows[0], size[0], rows[1] - rows[0])
-    is_lit = settings.get("samples", 1) != 1 if linear is None else linear
+    is_lit = settings.get("samples", 1) != 1 if linear is None else linear  # else one sample is drawn without light
     picture = rendered(scene, size, RenderSettings(linear=is_lit, **settings))
     if is_lit or linear is not None:
         return picture
@@ -163,16 +163,17 @@ def render(
 
 
 def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> Image:
-    """Return the picture of a scene: what `minirt.render` returns. RenderError."""
+    """Return the picture of a scene of this size, or the region of it that the settings name, as `minirt.render` does.
+    RenderError where that fails or is cancelled."""
     crop, shape, kept, _ = cut_for(settings.region, *size)
-    system.check_picture(*shape, PIXEL + LIGHT * (settings.linear or settings.dither))
+    system.check_picture(*shape, PIXEL + (LIGHT if settings.linear or settings.dither else 0))
     pixels = np.empty((*shape, 4), np.uint8)
     light = np.zeros((*shape, 3)) if settings.linear else None
     chosen, reached = settings.renderer, None
     if settings.samples == "auto":
         error = settings.error or (DEFAULT_ERROR if settings.time is None else 0.0)
         seconds = inf if settings.time is None else settings.time
-        if settings.time is not None:
+        if settings.time is not None:  # compiling does not count
             chosen.prepare(scene, settings.samples)
         with in_notebooks(lambda: WorkState("sampling")):
             reached = chosen.reach(scene, pixels, error, seconds, light, crop)
@@ -190,8 +191,8 @@ def rendered(scene: Scene, size: tuple[int, int], settings: RenderSettings) -> I
 
 
 def identity(scene: Scene, settings: str) -> str:
-    """Return a hash of a scene, the files that it names, the settings and the kernel. FileError where a file cannot be
-    read."""
+    """Return a hash of a scene, the contents of the files that it names, the settings and the sources of the kernel.
+    FileError where a file cannot be read."""
     found = hashlib.sha256(f"{fingerprint_of(V3)} {settings} {scene.shown}\n{dump(scene)}".encode())
     found.update(repr([mesh.triangles.materials for mesh in scene.meshes]).encode())
     from minirt.meshes.from_arrays import digest

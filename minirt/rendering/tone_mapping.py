@@ -96,7 +96,7 @@ def map_tones(
     """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
 
     Pixels whose light is NaN stay as they are. The pattern that dithers begins with the whole picture, of which `crop`
-    may be a part. `run` runs a job on all threads. They end early where `is_wanted`, which is asked every few
+    may be a part. `run` runs a job on all threads, which end early where `is_wanted`, which is asked every few
     milliseconds, says no.
     """
     curve, lines = tone_named(tone), max(1, STRIP // light.shape[1])
@@ -109,7 +109,7 @@ def map_tones(
                 return
             strip = np.ascontiguousarray(light[top : top + lines])
             levels = dithered(strip, curve, left, above + top) if dither else rounded(strip, tone)
-            into, known = pixels[top : top + lines], strip[..., 0] == strip[..., 0]
+            into, known = pixels[top : top + lines], ~np.isnan(strip[..., 0])
             if known.all():
                 into[..., 2::-1], into[..., 3] = levels, 255
             else:
@@ -179,9 +179,10 @@ class ToneMapper:
         return scene.camera.tone != PLAIN or self.dither
 
     def light_for(self, request: Request, edges_only: bool = False) -> np.ndarray:
-        """Return the array for the light of a picture: that of the request, one without rows where no one needs it.
+        """Return the array for the light of a picture: that of the request, else `scratch` where levels are made of it,
+        else one without rows.
 
-        With `edges_only` the light of pixels that are not drawn is NaN, unless it is in that of the request.
+        With `edges_only` `scratch` is filled with NaN, which stays for pixels that are not drawn.
         """
         if request.linear is not None or not self.needed(request.scene):
             self.scratch = NO_LINEAR

@@ -60,7 +60,7 @@ class Ablation:
         """Yield the scene as it is, and each variant; `step` is called with the name of each before it is measured."""
         self.draw()
         runs = [run for (run,) in take_turns([self.draw], LEAST_PAIRS, PAIRS, self.seconds)]
-        if not all(variant.without for variant in variants):
+        if not all(variant.without for variant in variants):  # variants without a list need no kernel of their own
             step("compiling the scene as it is")
             self.compile_s = compile_seconds(self.scene)
         yield Part("scene", "the scene", "as it is", self.milliseconds(runs), compile_s=self.compile_s)
@@ -69,10 +69,10 @@ class Ablation:
             try:
                 yield self.part(variant)
             except RenderError as error:
-                yield Part(*variant[:3], remark=f"failed: {error}")
+                yield Part(variant.sort, variant.name, variant.change, remark=f"failed: {error}")
 
     def part(self, variant: Variant) -> Part:
-        """Measure a variant: RenderError if it fails."""
+        """Measure a variant, in turn with the scene as it is. RenderError if that fails."""
         renderer, pixels = Renderer(self.threads, without=variant.without), np.zeros_like(self.pixels)
         compile_s = nan if variant.without else compile_seconds(variant.scene)
         draw = frame(renderer, variant.scene, pixels)
@@ -82,7 +82,9 @@ class Ablation:
         changes = [change(base, other) for base, other in turns]
         low, high = of_median(changes)
         return Part(
-            *variant[:3],
+            variant.sort,
+            variant.name,
+            variant.change,
             frame_ms=self.milliseconds([other for _, other in turns]),
             percent=median(changes),
             percent_low=low,

@@ -49,12 +49,13 @@ def answers(found: Findings) -> list[tuple[str, str]]:
 def automatic(found: Findings) -> str:
     """Tell whether automatic sampling is faster than uniform sampling with the same true error, on the diagram's line.
 
-    The interval of the ratio of their times holds those of time and error.
+    The interval of the ratio of their times follows from the intervals of time and of error.
     """
     timed = [row for row in found.pictures if isfinite(row.ms)]
     known = [row for row in timed if row.rmse > CLEAR * found.reference_error]
     uniform = sorted((row.rmse, row.ms) for row in known if row.knob == UNIFORM.name)
-    rows = [row for row in known if row.knob == AUTO.name and uniform and row.rmse_low > uniform[0][0]]
+    least_error = uniform[0][0] if uniform else nan
+    rows = [row for row in known if row.knob == AUTO.name and row.rmse_low > least_error]
     if not rows:
         names = {row.knob for row in timed}
         if not {UNIFORM.name, AUTO.name} <= names:
@@ -64,10 +65,10 @@ def automatic(found: Findings) -> str:
         return "No: one sample per pixel has no error that the reference could tell"
     times = np.array([(row.ms_low, row.ms, row.ms_high) for row in rows])
     errors = np.array([(row.rmse_low, row.rmse, row.rmse_high) for row in rows])
-    others = np.exp(np.interp(np.log(errors), *np.log(uniform).T))
+    others = np.exp(np.interp(np.log(errors), *np.log(uniform).T))  # times of uniform sampling for these errors
     low, ratio, high = (times / others).T
     told = [
-        f"{word} for an error of {', '.join(f'{row.asked:g}' for row, so in zip(rows, which, strict=True) if so)}"
+        f"{word} for an error of {', '.join(f'{row.asked:g}' for row, is_so in zip(rows, which, strict=True) if is_so)}"
         for word, which in (("yes", high < 1), ("no", low > 1))
         if which.any()
     ]

@@ -47,8 +47,9 @@ def timed(work: Callable[[], object]) -> Run:
 
 
 def take_turns(works: Sequence[Callable[[], Run]], least: int, most: int, seconds: float) -> list[tuple[Run, ...]]:
-    """Run works in turn, so that a slow moment of the machine affects all: at least so many rounds, and at most, until
-    they have taken `seconds`. Every second round has the opposite order."""
+    """Run works in turn, so that a slow moment of the machine affects all: `least` rounds, and up to `most` until they
+    have taken `seconds`. Return the runs of each round, in the order of the works; every second round is run backwards.
+    """
     rounds: list[tuple[Run, ...]] = []
     spent = 0.0
     while len(rounds) < least or (len(rounds) < most and spent < seconds):
@@ -79,7 +80,7 @@ def is_disturbed(run: Run, threads: int) -> bool:
 def measure(
     path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, precision: str
 ) -> dict[str, str | float]:
-    """Measure the time to load a scene, in seconds, and to render frames, in milliseconds.
+    """Measure the time to load the scene file `path`, in seconds, and to render frames, in milliseconds.
 
     `ms_min` and `ms_median` are of the same frame again and again, which keeps the lists of what each tile shows;
     `ms_min_moving` and `ms_median_moving` are of an eye that moves, whose every frame needs new lists.

@@ -50,7 +50,8 @@ def squares_of(picture: np.ndarray, side: tuple[int, int]) -> np.ndarray:
 
 
 def representative(squares: np.ndarray, most: int) -> Crops:
-    """Choose crops of at most so many pixels together, given a squared error of each pixel of the picture (h, w).
+    """Choose crops of at most `most` pixels together, given the squared error of each pixel of the picture, (h, w); the
+    whole picture where it has no more pixels, or fewer squares than are wanted.
 
     They are every n-th square in the order of errors, beginning in the middle of the first n: systematic sampling of
     strata (Cochran, Sampling Techniques, 1977). The RMSE of a picture in them is within a tenth of that of the whole

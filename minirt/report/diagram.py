@@ -46,7 +46,8 @@ def require_packages() -> None:
 
 
 def draw(found: Findings, size: tuple[float, float]) -> str:
-    """Return the diagram as the text of an SVG file; lines of the report to compare with are dashed."""
+    """Return the diagram, of this size in inches, as the text of an SVG file; lines of the report to compare with are
+    dashed."""
     import matplotlib
     from matplotlib.figure import Figure
 

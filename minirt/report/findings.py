@@ -143,17 +143,18 @@ class Findings:
     def choices(self) -> list[Recommendation]:
         """The best setting for each target error, of those that the command line has.
 
-        Of those that reach it in at most `SLACK` of the least time it is the one that usually takes least, or a simpler
-        one that usually takes hardly more. What is usual follows from numbers of samples, which are the same in every
-        run: so noise in the times does not change it, and two reports of a scene say the same.
+        Candidates reach the error in at most `SLACK` times the least time. The best is the first of them, and so the
+        simplest, that usually takes at most `HARDLY` times as long as any other. What is usual follows from numbers of
+        samples, which are the same in every run: so noise in the times does not change it, and two reports of a scene
+        say the same.
         """
         found = []
         for most in ERRORS:
             rows = [row for row in self.pictures if row.options and row.rmse_high <= most and isfinite(row.ms)]
             least = min((row.ms for row in rows), default=nan)
             near = [(row, USUAL.get(row.knob, 1.0) * row.samples) for row in rows if row.ms <= SLACK * least]
-            usual = min((work for _, work in near), default=nan)
-            best = next((row for row, work in near if work <= HARDLY * usual), None)
+            least_work = min((work for _, work in near), default=nan)
+            best = next((row for row, work in near if work <= HARDLY * least_work), None)
             others = [row.name for row in rows if best and row != best and row.ms <= MARGIN * best.ms]
             equal = "".join(others[:1]) + (f", {len(others) - 1} more" if len(others) > 1 else "")
             told = (best.options, best.ms, best.rmse, equal, best) if best else ()

@@ -108,7 +108,8 @@ class Measurement:
             self.stage.stop()
 
     def measure(self, other: Findings | None) -> None:
-        """Measure all settings, while the kernels of later ones are compiled, and then hits and parts."""
+        """Measure all settings, while the kernels of later ones are compiled, and then hits and parts: `found` and
+        `pictures` are filled. `other` is the report to compare with."""
         scene, plan, stage = self.scene, self.plan, self.stage
         first, *_ = [stage.prepare(setting.knob) for setting in self.wanted]
         stage.prepare_queries()
@@ -159,11 +160,12 @@ def report(
 ) -> str:
     """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
 
-    With `ablation` it tells what each absent feature and kind of shape would cost, each of which needs a kernel of its
-    own. `against` is the `report.json` of a report to compare with, and `tell` gets a sentence about what begins, and
-    how long it takes. KeyboardInterrupt ends the measurements: what was measured until then is written, a note of it
-    says so, and it is raised again. RenderError if the scene has no shapes, a package is missing or a file cannot be
-    written; FileError if `against` is no report.
+    With `quick` pictures have fewer samples and errors are measured in fewer pixels. `ablation` adds what each
+    absent feature and kind of shape would cost, each of which needs a kernel of its own. `against` is the `report.json`
+    of a report to compare with, and `tell` gets a sentence about what begins, and how long it takes. KeyboardInterrupt
+    ends the measurements: what was measured until then is written, a note of it says so, and it is raised again.
+    RenderError if the scene has no shapes, a package is missing or a file cannot be written; FileError if `against` is
+    no report.
     """
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")

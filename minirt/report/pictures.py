@@ -19,6 +19,7 @@ from minirt.lanes import width as lanes_of
 from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.kernels import ray_query
 from minirt.rendering.packing.camera import (
+    STEPS,
     aperture_places,
     by_pixel,
     has_apertures,
@@ -79,7 +80,7 @@ def reference(scene: Scene, crops: Crops, samples: int, seed: int, step: Step = 
             some = places[start : start + PASS]
             traced = renderer.packing.pack(scene, crops.width, crops.height)
             lanes = lanes_of(traced.camera)
-            rays = packet_rays(traced.camera[6:12], by_pixel(packet_places(lanes, some), len(some)))
+            rays = packet_rays(traced.camera[STEPS], by_pixel(packet_places(lanes, some), len(some)))
             if has_apertures(traced):
                 discs = aperture_places(len(places), 1, lanes, 2 * seed + half)[start : start + PASS]
                 rays = with_apertures(rays, by_pixel(discs, len(some)), traced.lens)
@@ -90,8 +91,7 @@ def reference(scene: Scene, crops: Crops, samples: int, seed: int, step: Step = 
             renderer.runner.run(frame)
             total = total + crops.of(linear) * len(some)
         halves.append(np.clip(total / len(places), 0.0, 1.0))
-    mean = (halves[0] + halves[1]) / 2
-    return ReferencePicture(mean, rmse(*halves) / 2, crops)
+    return ReferencePicture((halves[0] + halves[1]) / 2, rmse(*halves) / 2, crops)
 
 
 class Row(NamedTuple):

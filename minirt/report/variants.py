@@ -14,6 +14,7 @@ import numpy as np
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, MeshField, Picture, Point
+from minirt.kernel.scene_arrays import SHAPE
 from minirt.materials import Attributes, Clouds, Compound
 from minirt.rendering.image import Image
 from minirt.rendering.packing.camera import camera_numbers
@@ -106,7 +107,7 @@ class InvisibleElements:
         initial value of the field, or the middle of its range.
         """
         match field:
-            case Compound():  # `bare`: what its name alone stands for
+            case Compound():  # `bare`: the text for which the name of the field alone stands
                 value = field.check(field.parse(field.bare)) if field.bare else self.record(field.record)
             case MeshField():
                 value = field.check(field.parse(self.mesh))
@@ -115,7 +116,7 @@ class InvisibleElements:
             case Lengths() if field.unit:  # in scene units; without a unit, it is a share
                 value = (self.size,) * 3
             case Length() if field.unit:
-                value = self.size * (field.initial or 1.0)
+                value = self.size * (field.initial or 1.0)  # an initial length is a factor of the usual one
             case Point():
                 value = next(self.corners)
             case Direction():
@@ -137,7 +138,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     packing = Packing()
     arrays = packing.pack(scene, width, height)
     in_tiles = arrays.tile_shapes[: arrays.groups[-1].tile_starts[-1]]  # behind those is room to spare
-    listed = arrays.listed[:, 3]  # the index of each shape in the lists
+    listed = arrays.listed[:, SHAPE]  # the index of each shape in the lists
     seen, lit = (
         [scene.shapes[index] for index in listed[np.unique(each)].tolist()] for each in (in_tiles, arrays.light_shapes)
     )

@@ -119,9 +119,9 @@ def read_given(path: str | os.PathLike[str], largest: int) -> bytes:
 
 
 def read_once(read: Callable[[Path], Content]) -> Callable[[str | os.PathLike[str]], Content]:
-    """Decorate a reader of a file that a scene names: it gives the same object until the file changes, or one of the
-    `libraries` that the object names. FileError."""
-    entries: dict[str, tuple[list[tuple[int, ...]], Content]] = {}
+    """Decorate a reader of a file that a scene names: it returns the same object until the file changes, or one of the
+    `libraries`, paths of further files, which the object may name. FileError."""
+    entries: dict[str, tuple[list[tuple[int, ...]], Content]] = {}  # by path: the stamps of these files, and the object
     lock = ForkSafeLock()
 
     @wraps(read)

@@ -84,9 +84,10 @@ def create(path: str | os.PathLike[str], data: bytes) -> None:
 
 @contextmanager
 def temporary_file(folder: Path, data: Data, permissions: int | None = None) -> Iterator[Path]:
-    """Write data to a temporary file in a folder, which the block renames; it is deleted when that fails.
+    """Write data to a temporary file in a folder, and give its path to the block, which renames or deletes it.
 
-    The data are bytes, or a function that writes them to the open file. The file has no more than these permissions.
+    The file is deleted when writing or the block fails. The data are bytes, or a function that writes them to the open
+    file. With `permissions` nobody but the user can open the file, until the block gives it these.
     """
     sweep(folder)
     path = folder / TEMPORARY.replace("*", os.urandom(8).hex())

@@ -92,8 +92,7 @@ def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
     """Return the basis of a camera's picture in world space: the orthonormal vectors right, up and forward.
 
     Without a roll the picture is upright; `upright` says what that is in a view straight up or down. A roll turns right
-    and up about forward, clockwise as the camera sees it.
-    A left-handed camera mirrors its picture: right is negated.
+    and up about forward, clockwise as the camera sees it. A left-handed camera mirrors its picture: right is negated.
     """
     x, y, z = camera.direction
     right, up = upright(x, y, z)

@@ -127,7 +127,8 @@ def shape_features(shape: Shape) -> Iterable[str]:
 
 
 def material_features(shape: Shape) -> Iterable[str]:
-    """The features that the materials of a shape need, without those of attributes that lack another one."""
+    """The features that the materials of a shape need. An attribute that NEEDS others, such as a colour of glass,
+    counts only where the shape has one of these."""
     if ATTRIBUTES(shape) == NO_MATERIALS:
         return ()
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)

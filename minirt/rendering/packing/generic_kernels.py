@@ -60,13 +60,16 @@ def fitting(arrays: SceneArrays) -> list[GenericKernel]:
 
 
 def generalised(arrays: Any, empty: Any) -> Any:
-    """Return a packed scene, or its BVH, as the argument of a generic kernel that fits it: with the fields of the
-    `empty` one in place of those that are None. Its arrays are shared, not copied.
+    """Return a packed scene, or its BVH, as the argument of a generic kernel that fits it. Its arrays are shared, not
+    copied.
 
-    Groups are in the order of the registry, with an `empty` one for each kind of shape that is missing.
+    `empty` is the same part of the `empty_arrays` of that kernel, whose fields replace those that are None. Groups are
+    in the order of the registry, with the empty one for each kind of shape that is missing.
     """
-    if arrays is None or not hasattr(empty, "_fields"):
-        return empty if arrays is None else arrays
+    if arrays is None:
+        return empty
+    if not hasattr(empty, "_fields"):  # no record: an array, or a number
+        return arrays
     parts = {name: generalised(getattr(arrays, name), getattr(empty, name)) for name in arrays._fields}
     whole = arrays._replace(**parts)
     if not hasattr(arrays, "groups"):

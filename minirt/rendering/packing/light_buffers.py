@@ -62,16 +62,19 @@ def seen_by_light(
     run: Run | None = None,
     spare: Bins | None = None,
 ) -> BinnedShapes:
-    """Bin the shapes that a light sees into its light buffer, with so many `cells` along an edge of its cube.
+    """Bin the shapes that a light sees into its light buffer, with `cells` cells along an edge of its cube; with one
+    cell list all shapes.
 
     The light is a ball of some radius about its `position`, (3,). Shapes beyond its `reach`, in scene units, and planes
-    for which `skipped` (p,) is True are left out. `spare` bins are used again where they fit. `TooLargeError` where
-    there is no room for so many `copies` of the lists.
+    for which `skipped` (p,) is True are left out. `kernel` has the functions that bin, compiled or interpreted, and
+    `run` runs them on all threads. `spare` bins are overwritten and used again where they fit. `TooLargeError` where
+    there is no room for `copies` copies of the lists, or where lists of small cells would take long to build.
     """
     grid = cube_grid(cells)
     fits = spare and spare.fit(shape_arrays, grid, radius, reach)
     bins = spare if spare and fits else Bins(kernel, shape_arrays, grid, radius, reach=reach)
-    bins.arrays.shown[:], bins.shown, bins.copies = 1 - skipped, skipped.tobytes(), copies
+    bins.arrays.shown[:] = np.where(skipped, 0, 1)
+    bins.skipped, bins.copies = skipped.tobytes(), copies
     bins.largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
     bins.see_from(tuple(position.tolist()), run)
     if cells == 1:
@@ -89,7 +92,8 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 
 
 def joined_light_buffers(binned: list[BinnedShapes], shapes: ShapeArrays) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Join the bins of m lights: starts (kinds, m, cells + 1), and fields of `SceneArrays`."""
+    """Join the bins of m lights; return the starts of their lists, (kinds, m, cells + 1), and fields of `SceneArrays`
+    by their names."""
     starts, members = np.zeros((len(shapes.tables), 0, 1), np.int32), np.zeros(0, np.int32)
     cones = np.zeros((0, len(shapes.listed), 5))
     if len(binned) == 1:  # in the same memory: a million shapes take long to copy

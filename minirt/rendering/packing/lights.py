@@ -105,7 +105,7 @@ def light_sizes(lights: list[Lamp]) -> np.ndarray:
 
 
 def spot_parameters(lights: list[Lamp]) -> np.ndarray:
-    """A row for each of m lights, (m, 7): cone, fading, and 1 if it is parallel, else 0."""
+    """A row for each of m lights, (m, 7): the 5 numbers of its cone, fading, and 1 if it is parallel, else 0."""
     rows = [(*light.cone(), light.fading(), not light.position) for light in lights]
     return np.array(rows, np.float64).reshape(len(lights), 7)
 
@@ -113,15 +113,20 @@ def spot_parameters(lights: list[Lamp]) -> np.ndarray:
 # Light sources that fade have lists where there are so many. Cells along the usual reach, by how much the cells of one
 # grid are longer than those of the last, and entries of all lists of a grid, at most.
 MANY, CELLS_IN_REACH, COARSER, MOST_ENTRIES = 8, 3, 4, 2**19
+FADING = 5  # column of `spot_parameters`
 
 
 def light_grid(sources: np.ndarray, spots: np.ndarray | None) -> LightGrid | None:
-    """List which of m light sources, rows (m, 6) and of `spot_parameters`, reach each cell of grids around all that
-    fade; without grids where few do."""
+    """List the light sources that reach each cell of grids around all sources that fade.
+
+    `sources` (m, 6) are `positions_and_intensities`, `spots` (m, 7) `spot_parameters`; None for None. There are no
+    grids where less than MANY sources fade, else finer and coarser ones, as far as their lists are short enough. The
+    last list is that of all sources.
+    """
     if spots is None:
         return None
     with np.errstate(divide="ignore"):
-        reach, centres = 1 / spots[:, 5:6], sources[:, :3]
+        reach, centres = 1 / spots[:, FADING, None], sources[:, :3]
     fades = np.isfinite(reach[:, 0])
     grids, sizes, members = np.zeros((0, 8)), [np.zeros(1, np.int64)], [np.zeros(0, np.int64)]
     if fades.sum() >= MANY:
@@ -131,9 +136,11 @@ def light_grid(sources: np.ndarray, spots: np.ndarray | None) -> LightGrid | Non
             counts = np.ceil((high - low) / edge)
             lists = sources_of_cells((centres - low) / edge, reach / edge, counts)
             if lists:
-                grids = np.vstack([grids, [*low, 1 / edge, *counts, sum(map(len, sizes)) - 1]])
-                sizes.append(lists[0])
-                members.append(lists[1])
+                first_list = sum(map(len, sizes)) - 1
+                grids = np.vstack([grids, [*low, 1 / edge, *counts, first_list]])
+                lengths, members_of_grid = lists
+                sizes.append(lengths)
+                members.append(members_of_grid)
             edge *= COARSER
     starts = np.cumsum(np.concatenate([*sizes, [len(reach)]]))
     return LightGrid(grids, starts.astype(np.int32), np.concatenate([*members, np.arange(len(reach))]).astype(np.int32))
@@ -145,8 +152,8 @@ def sources_of_cells(
     """Return the lengths of the lists of all cells, and their members one after the other; None where they are too
     long.
 
-    Centres (m, 3) and reach (m, 1) are in edges of a cell; the list of a cell holds up to an edge above it. There are
-    `counts` (3,) cells along x, y and z.
+    Centres (m, 3) and reach (m, 1) are in edges of a cell. There are `counts` (3,) cells along x, y and z. The list of
+    a cell also holds for points up to an edge above it on each axis.
     """
     ends = centres - reach - 1 - FARTHER, centres + reach + FARTHER
     first, last = (np.clip(end, 0, counts - 1).astype(np.int64) for end in ends)
@@ -154,10 +161,11 @@ def sources_of_cells(
     entries = spans.prod(axis=1)
     if max(counts.prod(), entries.sum()) > MOST_ENTRIES:
         return None
+    # All pairs of a source and a cell of the box around its reach, of which `number` counts the cells.
     source = np.repeat(np.arange(len(reach)), entries)
     number = np.arange(len(source)) - np.repeat(np.cumsum(entries) - entries, entries)
-    x, xy = spans[source, 0], spans[source, 0] * spans[source, 1]
-    cell = first[source] + np.stack([number % x, number % xy // x, number // xy], axis=1)
+    row, layer = spans[source, 0], spans[source, 0] * spans[source, 1]  # cells of a row and of a layer of the box
+    cell = first[source] + np.stack([number % row, number % layer // row, number // layer], axis=1)
     apart = np.clip(centres[source], cell, cell + 2) - centres[source]
     meets = (apart * apart).sum(axis=1) <= (reach[source, 0] + FARTHER) ** 2
     place = (cell @ [1, counts[0], counts[0] * counts[1]]).astype(np.int64)[meets]
@@ -166,25 +174,27 @@ def sources_of_cells(
 
 
 def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radius: float = 0.0) -> np.ndarray:
-    """Whether each plane hides nothing that an eye in a lens of some radius sees from a light; False for transparent
-    planes.
+    """Whether each plane, (p,), never lies between the light and what the eye sees. The eye is anywhere in a ball of
+    some radius about `eye`, (3,): in a lens.
 
-    Whatever an eye sees lies on its side of every plane, because the plane hides the rest. So a plane occludes nothing
-    if the light is on that side, too, or if parallel light comes from there, whatever the rounding.
+    Whatever an eye sees lies on its side of every opaque plane, because the plane hides the rest. So a plane occludes
+    nothing if the light is on that side, too, or if parallel light comes from there, whatever the rounding. Transparent
+    planes do not hide the rest: False.
     """
     planes = shape_arrays.planes
     heights = signed_heights(planes, eye, radius)
     if light.position:
         harmless = heights * signed_heights(planes, light_position(light), radius_of(light)) > 0
     else:
-        slopes = planes[:, :3] @ -np.array(light.cone()[:3])
-        harmless = (heights * slopes > 0) & (np.abs(slopes) > MARGIN + tangent_of(light))
+        cosines = planes[:, :3] @ -np.array(light.cone()[:3])  # of the normals with the direction to the light
+        harmless = (heights * cosines > 0) & (np.abs(cosines) > MARGIN + tangent_of(light))
     owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
     glass = [shape_arrays.shape(owner).glass for owner in owners]
     return harmless & np.array([each is None or each.share <= 0 for each in glass], bool)
 
 
 def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
-    """Lower bounds of the heights of a ball about a point above planes, (p, 5), as of `signed_height`."""
+    """Signed heights (p,) of the points of a ball above planes, (p, 5), whose magnitudes are lower bounds: 0 where the
+    ball meets a plane, see `signed_height`."""
     heights: np.ndarray = signed_height(planes.T, Vec(*point), MARGIN * np.abs(point).max() + radius)
     return heights

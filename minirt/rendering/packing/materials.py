@@ -39,9 +39,9 @@ OF_SHAPES = {name for name, feature in FEATURES.items() if feature.of_shapes}  #
 
 
 def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -> dict[str, Any]:
-    """Pack the materials of n primitives for the features that a scene uses.
+    """Pack the materials of n primitives for the `used` features of a scene.
 
-    They are fields of `minirt.kernel.scene_arrays.SceneArrays`; those that are missing are None.
+    Return fields of `minirt.kernel.scene_arrays.SceneArrays` by their names; those that are missing are None there.
     """
     if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
         return {}
@@ -108,7 +108,7 @@ def pack_patterns(
 ) -> Patterns:
     """Pack the patterns of shapes, given with their indices below `count`, for kernels with the `used` features.
 
-    `owner` (n,) has the shape of each primitive, and may name no primitive of some.
+    `owner` (n,) has the index of the shape of each primitive; some shapes may have no primitive.
     """
     rows: list[list[float]] = []
     heights: list[float] = []

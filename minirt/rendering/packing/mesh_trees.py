@@ -10,7 +10,7 @@ import numpy as np
 from minirt.kernel import mesh_nodes
 from minirt.kernel.bvh_build import INDEX
 from minirt.kernel.machine_code.library import bound
-from minirt.kernel.scene_arrays import MeshTriangles
+from minirt.kernel.scene_arrays import ROW, MeshTriangles
 from minirt.meshes import Triangles
 from minirt.meshes.triangles import BLOCK
 from minirt.rendering.packing.bvh import Meshes, aligned_copy, lanes_of, wide_nodes
@@ -37,7 +37,7 @@ def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
     roots = np.cumsum([0, *map(len, nodes[:-1])]) // mesh_nodes.NODE
     first = shapes.first_primitive[owners]
-    rows = shapes.slots[first, 1]
+    rows = shapes.slots[first, ROW]  # of the first triangle of each mesh, in the table of all triangles
     numbers = np.zeros(rows[-1] + 1, np.int64)
     numbers[rows] = np.arange(len(rows))
     joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
@@ -61,50 +61,61 @@ def space_of(triangles: Triangles) -> tuple[np.ndarray, float]:
 
 
 def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.ndarray:
-    """Return the nodes of the tree of a mesh, which is built at the first call."""
+    """Return the nodes of the tree of a mesh, flat, float32, see `minirt.kernel.mesh_nodes`. The tree is built at the
+    first call: inner nodes, then leaves."""
     if triangles not in trees:
         middle, size = space_of(triangles)
-        boxes = np.zeros((len(triangles), 8))
-        columns = [(triangles.points[:, axis] - middle[axis]) / size for axis in range(3)]
-        for start in range(0, len(boxes), BLOCK):
-            corners = triangles.corners[start : start + BLOCK].T
-            for axis, (a, b, c) in enumerate([numbers[each] for each in corners] for numbers in columns):
-                boxes[start : start + BLOCK, axis] = -np.minimum(np.minimum(a, b), c)
-                boxes[start : start + BLOCK, 3 + axis] = np.maximum(np.maximum(a, b), c)
-        boxes[:, INDEX] = np.arange(len(boxes))
+        boxes = boxes_of_triangles(triangles, middle, size)
         nodes, leaves = wide_nodes(boxes, kernel, mesh_nodes.WIDE, run=run)
-        names = nodes[:, 6]
-        names[names < 0] -= len(nodes) - 1
+        references = nodes[:, 6]
+        references[references < 0] -= len(nodes) - 1  # leaves follow the nodes and are numbered with them
         places, spare = lanes_of(leaves, mesh_nodes.WIDE)
-        inside = boxes[places, INDEX].astype(np.int64)
-        del boxes
+        members = boxes[places, INDEX].astype(np.int64)  # triangles of each leaf
+        del boxes  # they take more memory than the tree
         packed = np.zeros((len(nodes) + len(leaves), mesh_nodes.NODE // mesh_nodes.WIDE, mesh_nodes.WIDE), np.float32)
-        packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], names
-        corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[inside]]
+        packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], references
+        corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[members]]
         corners[spare] = mesh_nodes.HUGE
-        packed[len(nodes) :, :9] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
-        packed[len(nodes) :, -1] = -1 - inside
+        packed[len(nodes) :, :9] = corners.reshape(*members.shape, 9).transpose(0, 2, 1)
+        packed[len(nodes) :, -1] = -1 - members
         trees[triangles] = aligned_copy(packed)
     return trees[triangles]
+
+
+def boxes_of_triangles(triangles: Triangles, middle: np.ndarray, size: float) -> np.ndarray:
+    """Return the boxes of n triangles as those of `BinaryTree`, (n, 8), in the space of `space_of`, with the numbers of
+    the triangles as indices."""
+    boxes = np.zeros((len(triangles), 8))
+    columns = [(triangles.points[:, axis] - middle[axis]) / size for axis in range(3)]
+    for start in range(0, len(boxes), BLOCK):
+        corners = triangles.corners[start : start + BLOCK].T
+        for axis, (a, b, c) in enumerate([numbers[each] for each in corners] for numbers in columns):
+            boxes[start : start + BLOCK, axis] = -np.minimum(np.minimum(a, b), c)
+            boxes[start : start + BLOCK, 3 + axis] = np.maximum(np.maximum(a, b), c)
+    boxes[:, INDEX] = np.arange(len(boxes))
+    return boxes
 
 
 # Triangles of meshes.
 
 
 def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTriangles | None:
-    """Return the triangles of all meshes of a scene, or None without any. They are those of the last call where the
-    files are the same; meshes that were edited are placed anew, on all threads by `run`."""
+    """Return the triangles of all meshes of a scene, or None without any.
+
+    `shapes.triangles` keeps them, and `shapes.placed` the meshes as they were placed: only meshes that have changed are
+    placed anew, by a function of `kernel`, on all threads by `run`.
+    """
     if Mesh not in shapes.group_numbers:
         return None
     meshes = [shape for shape in shapes.shapes if isinstance(shape, Mesh)]
     files, sizes = [mesh.triangles for mesh in meshes], [mesh.parts for mesh in meshes]
-    points, rows = np.cumsum([0, *(len(file.points) for file in files)]), np.cumsum([0, *sizes])
+    points, rows = np.cumsum([0, *(len(file.points) for file in files)]), np.cumsum([0, *sizes])  # the first of each
     if shapes.triangles is None:
-        corners = [file.corners + first for file, first in zip(files, points, strict=False)]
+        corners_of_files = [file.corners + first for file, first in zip(files, points, strict=False)]
         shapes.triangles = MeshTriangles(
             points=np.empty((points[-1], 3)),
             normals=np.empty((rows[-1], 3)),
-            corners=np.concatenate(corners, dtype=np.int32, casting="same_kind"),
+            corners=np.concatenate(corners_of_files, dtype=np.int32, casting="same_kind"),
             numbers=np.repeat(np.arange(len(meshes), dtype=np.int32), sizes),
             turns=np.empty((len(meshes), 9)),
             shading=joined([file.normals for file in files], sizes, np.zeros(9)),
@@ -112,10 +123,12 @@ def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Me
         )
     for number, mesh in enumerate(meshes):
         if mesh is not shapes.placed.get(number):
-            (first, end), its, file = points[number : number + 2], slice(*rows[number : number + 2]), files[number]
+            file, first, end = files[number], points[number], points[number + 1]
+            own_rows = slice(rows[number], rows[number + 1])
             shapes.triangles.turns[number] = turn = mesh.turned(np.eye(3)).ravel()
             source = np.array([*turn, mesh.scale, *mesh.position]), file.points, file.flat_normals, int(first)
-            into = shapes.triangles.corners[its], shapes.triangles.points[first:end], shapes.triangles.normals[its]
+            corners, normals = shapes.triangles.corners[own_rows], shapes.triangles.normals[own_rows]
+            into = corners, shapes.triangles.points[first:end], normals
             job = bound(kernel.place_triangles, np.zeros(1, np.int64), *source, *into)
             if run and mesh.parts >= PARALLEL:
                 run(job)

@@ -71,10 +71,11 @@ def nearest_hits(arrays: ShapeArrays, origin: Vec, direction: Vec) -> tuple[np.n
     none. Origins and directions broadcast, and the results have the shape of all rays."""
     shape = np.broadcast(origin.x, origin.y, origin.z, direction.x, direction.y, direction.z).shape
     nearest, found = np.full(shape, inf), np.full(shape, -1)
+    of_rays = (1,) * len(shape)  # axes of the rays, behind that of the primitives
     for group, rows in enumerate(arrays.rows):
         primitives = arrays.primitives_of(group)
         for start in range(0, len(rows), CHUNK):
-            t = cast(packed_columns(rows[start : start + CHUNK], *(1 for _ in shape)), origin, direction)
+            t = cast(packed_columns(rows[start : start + CHUNK], *of_rays), origin, direction)
             t = np.broadcast_to(t, (len(t), *shape))
             least = t.min(axis=0)
             closer = least < nearest

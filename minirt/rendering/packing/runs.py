@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, groupby, islice, takewhile
 from typing import Any
 
@@ -25,6 +25,17 @@ def joined(runs: Sequence[Any], start: int) -> Iterator[tuple[np.ndarray, Sequen
                 run = Crowd(run.kind, [*chain.from_iterable(each.sources for each in some)], columns)
             yield np.arange(start, start + len(run)), run
             start += len(run)
+
+
+def groups_of(runs: Iterable[Sequence[Shape]], numbers: Mapping[type[Shape], int]) -> np.ndarray:
+    """Return the group of each shape of some runs, (s,), from the `numbers` of the kinds' groups."""
+    groups = [np.zeros(0, np.int64)]
+    for run in runs:
+        if isinstance(run, Crowd):
+            groups.append(np.repeat(numbers[run.kind], len(run)))
+        else:
+            groups.append(np.fromiter(map(numbers.__getitem__, map(type, run)), np.int64, len(run)))
+    return np.concatenate(groups)
 
 
 def common(runs: Sequence[Sequence[Shape]], others: Sequence[Sequence[Shape]]) -> int:

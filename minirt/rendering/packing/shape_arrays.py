@@ -17,11 +17,10 @@ import numpy as np
 
 from minirt.fields import Triple
 from minirt.kernel.projection import MARGIN
-from minirt.kernel.scene_arrays import TRIANGLE_ROW, row_type
+from minirt.kernel.scene_arrays import KIND, PRIMITIVE, ROW, SHAPE, TRIANGLE_ROW, row_type
 from minirt.rendering.packing.features import examined
 from minirt.rendering.packing.packed_shapes import bounding_balls, column, morton_order, pack_shapes, spans
-from minirt.rendering.packing.runs import common, differing_shapes, joined
-from minirt.scene.pages import Crowd
+from minirt.rendering.packing.runs import common, differing_shapes, groups_of, joined
 from minirt.shapes import ALL_KINDS, MESH, Shape
 from minirt.shapes.mesh import Mesh
 
@@ -56,9 +55,9 @@ class ShapeArrays:
             return False
         before = copy(self)
         self.runs = runs
-        fits = [*map(len, runs)] == [*map(len, before.runs)]
-        changed = [*differing_shapes(before.runs, runs)] if fits else []
-        fits = fits and all(
+        has_same_lengths = [*map(len, runs)] == [*map(len, before.runs)]
+        changed = [*differing_shapes(before.runs, runs)] if has_same_lengths else []
+        fits = has_same_lengths and all(
             type(a) is type(b) and getattr(a, "triangles", a) is getattr(b, "triangles", a) for _, a, b in changed
         )
         for name in ("shapes", "rows"):
@@ -72,7 +71,7 @@ class ShapeArrays:
             parts = joined(runs[first:last], sum(map(len, runs[:first])))
         self.updates += 1
         for indices, members in parts:
-            groups = self.slots[self.first_primitive[indices], 0]
+            groups = self.slots[self.first_primitive[indices], KIND]
             for group in set(groups.tolist()):
                 at = np.flatnonzero(groups == group)
                 self.write(group, indices[at], members if len(at) == len(members) else [members[i] for i in at])
@@ -99,18 +98,11 @@ class ShapeArrays:
         examples = [present[kind.element].some(FIRST) for kind in used]
         self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.infinite_plane() is not None for each in examples], bool)
-        number = self.group_numbers.__getitem__
-        of_runs = [
-            np.repeat(number(run.kind), len(run))
-            if isinstance(run, Crowd)
-            else np.fromiter(map(number, map(type, run)), np.int64, len(run))
-            for run in runs
-        ]
-        groups = np.concatenate([FIRST[:0], *of_runs])
-        sizes = np.ones(len(groups), np.int64)
+        groups = groups_of(runs, self.group_numbers)
+        sizes = np.ones(len(groups), np.int64)  # primitives of each shape
         if Mesh in present:
             sizes[:] = [shape.parts for shape in self.shapes]
-        groups = np.repeat(groups, sizes)
+        groups = np.repeat(groups, sizes)  # from here on of each primitive
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
         self.first_primitive = np.concatenate([[0], np.cumsum(sizes)])
@@ -119,13 +111,11 @@ class ShapeArrays:
         )
         self.tints: dict[int, Triple] = {}  # the colours of meshes that are written
         self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # what `by_primitive` has returned, and for what
-        self.triangles: Any = (
-            None  # of meshes, and which are placed, see `minirt.rendering.packing.mesh_trees.place_meshes`
-        )
-        self.placed: dict[int, Shape] = {}
+        self.triangles: Any = None  # of meshes, see `minirt.rendering.packing.mesh_trees.place_meshes`
+        self.placed: dict[int, Shape] = {}  # the meshes of these triangles, by their numbers
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
         for group in range(len(used)):
-            self.slots[groups == group, 1] = np.arange(counts[group])
+            self.slots[groups == group, ROW] = np.arange(counts[group])
         self.plane_indices = np.flatnonzero(self.is_plane[groups])
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
         self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.first_primitive[:-1]]])])
@@ -135,17 +125,18 @@ class ShapeArrays:
         self.places = np.arange(len(sizes))
 
     def arrange(self, order: np.ndarray) -> None:
-        """Number the shapes in lists, their balls and the rows of their tables in some order, but not triangles."""
+        """Number the shapes in lists, their balls and the rows of their tables, but not triangles, in an order (s,)."""
         at, first = self.balls_of(order), self.first_primitive[order]
         self.first_ball, self.balls = np.append(0, np.cumsum(np.diff(self.first_ball)[order])), self.balls[at]
         for kind, group in self.group_numbers.items():
             if kind is not Mesh:
-                members = first[self.slots[first, 0] == group]
+                members = first[self.slots[first, KIND] == group]
                 rows = self.tables[group].view(np.float64).reshape(len(members), -1)  # copied in half of the time
-                rows[:] = rows[self.slots[members, 1]]
-                self.slots[members, 1] = np.arange(len(members))
+                rows[:] = rows[self.slots[members, ROW]]
+                self.slots[members, ROW] = np.arange(len(members))
         self.listed, self.places = np.empty((len(order), 4), np.int32), np.empty(len(order), np.int32)
-        self.listed[:, :2], self.listed[:, 2], self.listed[:, 3] = self.slots[first], first, order
+        self.listed[:, KIND : ROW + 1], self.listed[:, PRIMITIVE] = self.slots[first], first
+        self.listed[:, SHAPE] = order
         self.places[order] = np.arange(len(order))
         self.plane_places = self.places[self.owner[self.plane_indices]]
 
@@ -157,8 +148,8 @@ class ShapeArrays:
 
     def primitives_of(self, group: int) -> np.ndarray:
         """Return the indices of the primitives of a group in the order of its rows."""
-        members = np.flatnonzero(self.slots[:, 0] == group)
-        return members[np.argsort(self.slots[members, 1])]
+        members = np.flatnonzero(self.slots[:, KIND] == group)
+        return members[np.argsort(self.slots[members, ROW])]
 
     def take_ends(self, before: ShapeArrays) -> tuple[int, int]:
         """Copy the rows of the first and the last runs that other arrays have, too; return the number of the first run
@@ -168,14 +159,15 @@ class ShapeArrays:
         ends = [sum(map(len, self.runs[:number])) for number in (first, last)]
         primitives = self.first_primitive[ends]
         balls = before.balls[before.balls_of(np.arange(len(before.boxes)))]
+        # Arrays to write, the same ones as they were, and the rows between which nothing is copied.
         pairs: list[Any] = [(self.boxes, before.boxes, ends), (self.balls, balls, self.first_ball[ends])]
         pairs.append((self.colours_and_extents, before.colours_and_extents, primitives))
         pairs.append((self.planes, before.planes, np.searchsorted(self.plane_indices, primitives)))
         for kind, group in self.group_numbers.items():
             if kind in before.group_numbers:
-                counts = np.cumsum(np.append(0, self.slots[:, 0] == group))[primitives]
+                counts = np.cumsum(np.append(0, self.slots[:, KIND] == group))[primitives]
                 number = before.group_numbers[kind]
-                rows = before.tables[number][before.slots[before.slots[:, 0] == number, 1]]
+                rows = before.tables[number][before.slots[before.slots[:, KIND] == number, ROW]]
                 pairs.append((self.tables[group], rows, counts))
         for into, rows, (start, stop) in pairs:
             into[:start], into[stop:] = rows[:start], rows[len(rows) - len(into) + stop :]
@@ -207,7 +199,7 @@ class ShapeArrays:
         return np.array([shape.smooth for shape in self.shapes], np.int64)[self.owner]
 
     def write(self, group: int, shapes: np.ndarray, members: Sequence[Shape]) -> None:
-        """Write some shapes of one kind, given by their indices, too, into the arrays."""
+        """Write `members`, shapes of one group with the indices `shapes`, into the arrays."""
         indices, places = self.first_primitive[shapes], self.places[shapes]
         self.written[places] = self.updates
         rows, boxes, balls = pack_shapes(members)
@@ -217,7 +209,7 @@ class ShapeArrays:
             for index, mesh in zip(shapes.tolist(), members, strict=True):
                 self.tint(index, mesh)
         else:
-            self.tables[group].view(np.float64).reshape(len(self.tables[group]), -1)[self.slots[indices, 1]] = rows
+            self.tables[group].view(np.float64).reshape(len(self.tables[group]), -1)[self.slots[indices, ROW]] = rows
             self.colours_and_extents[indices, :3] = column(members, "colour", 3) / 255
             self.colours_and_extents[indices, 3] = extents
         if self.is_plane[group]:
@@ -251,7 +243,7 @@ class ShapeArrays:
         boxes, extents = self.boxes[self.owner], self.colours_and_extents[:, 3].copy()
         if Mesh in self.group_numbers:
             group = self.group_numbers[Mesh]
-            at, numbers = self.slots[:, 0] == group, self.rows[group].view(np.float64).reshape(-1, 27)
+            at, numbers = self.slots[:, KIND] == group, self.rows[group].view(np.float64).reshape(-1, 27)
             low, high, extents[at] = spans(numbers[:, :9].reshape(-1, 3, 3))
             boxes[at, 0], boxes[at, 1] = low.T, high.T
         return boxes, extents

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from copy import copy
 from struct import pack_into
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,6 +36,14 @@ from minirt.scene import Camera, Scene
 SPARE = 0.25  # of the lists of a camera that moves
 
 
+class PackedScene(NamedTuple):
+    """A scene, and its arrays for a picture or a rectangle of one."""
+
+    scene: Scene
+    place: Place
+    arrays: SceneArrays
+
+
 class View:
     """The shapes in the tiles of a picture, or of a rectangle of one, and all else that depends on the camera."""
 
@@ -54,14 +62,16 @@ class View:
     ) -> None:
         """Prepare lists for shapes in the picture of a camera, or a rectangle of it, in "double" or "single" precision.
 
-        `lens` are its `lens_numbers`, or None. The bins of a `spare` view are used again where they fit.
+        `kernel` has the functions that bin, compiled or interpreted; `lens` are the camera's `lens_numbers`, or None.
+        The bins of a `spare` view are used again where they fit. No array follows the camera before `complete`.
         """
-        self.size = place[2][:2]  # of the whole picture
+        *_, crop = place
+        self.size = crop.width, crop.height  # of the whole picture
         radius, per_focus = radius_and_focus(lens)
         if radius:
             shapes = copy(shapes)
             shapes.balls = blurred_balls(shapes.balls, camera_numbers(camera, *self.size), radius, per_focus)
-        extents = np.zeros((len(shapes.slots) if precision == "single" else 0, 4), np.float32)
+        extents = np.zeros((len(shapes.slots) if precision == "single" else 0, 4), np.float32)  # float64 needs none
         self.square = square_edge(shapes, width(extents if len(extents) else shapes.balls) // PACKET_HEIGHT)
         grid = screen_grid(*slopes_at_edges(camera, *self.size), place, self.square)
         if spare and spare.bins.fit(shapes, grid, radius) and len(spare.bins.arrays.extents) == len(extents):
@@ -77,7 +87,10 @@ class View:
         return BinnedShapes(self.bins.starts, self.bins.members, self.bins.arrays.cones)
 
     def complete(self, arrays: SceneArrays, is_single: bool) -> SceneArrays:
-        """Let the arrays of a scene follow the camera; return them, or those that are rounded to float32."""
+        """Let the arrays of a scene follow the camera; return them or, if it `is_single`, their copies in float32.
+
+        `rays` are set.
+        """
         self.rounding, bins = Rounding(), self.bins
         single = in_single(arrays, bins.arrays.extents, self.rounding) if is_single else arrays
         rays = frame_rays(single, 1).astype(np.float64)
@@ -85,9 +98,9 @@ class View:
         self.rays = None if arrays.lens is not None else followed
         tables = [(a.ctypes.data, *a.shape, first, b.ctypes.data) for a, first, b in self.rounding.tables]
         places = np.ascontiguousarray(packet_places(width(single.camera), sample_positions(1))[0].T)
-        kinds, shifts = np.array(self.rounding.kinds, np.int64), np.append(np.zeros(4), MARGIN)
-        rounding = np.array(tables, np.int64).reshape(-1, 5), kinds, shifts
-        bins.followers, bins.pack = Followers(arrays.camera, places, rays[0], *rounding), None
+        kinds, shifts = np.array(self.rounding.kinds, np.int64), np.append(np.zeros(4), MARGIN)  # the eye comes first
+        to_round = np.array(tables, np.int64).reshape(-1, 5), kinds, shifts
+        bins.followers, bins.pack = Followers(arrays.camera, places, rays[0], *to_round), None
         bins.kernel.follow(bins.followers)
         return single
 
@@ -150,8 +163,11 @@ class Rounding:
 
 
 def in_single(arrays: SceneArrays, extents: np.ndarray, rounding: Rounding) -> SceneArrays:
-    """Return a scene in float32, the eye at the origin, most of which a `rounding` writes; `extents` are those of
-    `minirt.kernel.rectangles.BinningArrays`, (n, 4)."""
+    """Return a scene in float32, the eye at the origin.
+
+    Most arrays are not written yet: they are added to the `rounding`, which follows the eye. `extents`, (n, 4), those
+    of `minirt.kernel.rectangles.BinningArrays`, become its `colours_and_extents`: here the colours are written.
+    """
     extents[:, :3] = arrays.colours_and_extents[:, :3]
     light_cones = np.zeros(arrays.light_cones.shape, np.float32)
     if has_cones(*light_cones.shape[:2]):

@@ -19,6 +19,7 @@ from minirt.kernel.moving_camera import Followers
 from minirt.kernel.pixels import TILE
 from minirt.kernel.projection import Grid
 from minirt.kernel.rectangles import CHUNK, BinningArrays
+from minirt.kernel.scene_arrays import KIND, LEAST_DISTANCE
 from minirt.rendering.packing.camera import Place
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
@@ -79,7 +80,7 @@ class Bins:
 
     copies, largest = 1, system.UNLIMITED
     last: tuple[Any, ...] = ()  # the pose and the planes that the lists are for
-    shown = b""  # planes that are not
+    skipped = b""  # planes that are left out: the bytes of an array of bool
     followers = STILL  # arrays that follow the pose
     pack: Callable[[], Any] | None = None  # the call that makes the lists and lets the arrays follow
     updates = 0  # of the shapes, up to which the lists are theirs
@@ -99,6 +100,7 @@ class Bins:
         chunks, rows_of_planes = -(-shapes // chunk), planes * len(grid.frames) * grid.down
         self.kernel, self.shapes = kernel, shape_arrays
         self.is_large, self.bytes_of_planes = shapes >= PARALLEL, rows_of_planes * RECTANGLE
+        # Rectangles: of each shape one for each frame, of each plane one for each row of cells.
         room, cones = chunks * chunk * len(grid.frames) + rows_of_planes, np.zeros((shapes, 5))
         self.pose = np.append(np.zeros(3), grid.frames)
         self.arrays = BinningArrays(
@@ -135,17 +137,20 @@ class Bins:
         return bound(self.kernel.pack_frame, self.followers, self.counter, *lists)
 
     def see_from(self, pose: tuple[float, ...], run: Run | None = None, spare: float = LITTLE) -> None:
-        """Bin the shapes as seen from a point, or from that and a frame, many of them on all threads by `run`.
+        """Bin the shapes as seen from a `pose`, many of them on all threads by `run`; `starts` and `members` are
+        written.
 
-        Where nothing is moved but one shape, its entries alone change. New lists leave room for a `spare` share of
-        members. `TooLargeError` where there is no room.
+        The pose has the 3 numbers of the point, then the 9 of the frame where the grid is that of a camera. Where
+        nothing is moved but one shape, its entries alone change. New lists leave room for a `spare` share of members.
+        `TooLargeError` where there is no room.
         """
         if not len(self.members):
             self.check(0)
-        view: Any = *pose, self.shown
+        view: Any = *pose, self.skipped
         moved: Any = np.flatnonzero(self.shapes.written > self.updates) if self.shapes.updates > self.updates else []
-        same = view == self.last and not self.shapes.is_plane[self.shapes.listed[moved[:2], 0]].any()
-        self.updates, self.last = self.shapes.updates, ()  # an error leaves none
+        first_moved = moved[:2]  # of more than one all are binned anew
+        same = view == self.last and not self.shapes.is_plane[self.shapes.listed[first_moved, KIND]].any()
+        self.updates, self.last = self.shapes.updates, ()  # after an error the lists are those of no view
         self.counter[0], self.arrays.found[CROSSED] = 0, 0
         pack_into(f"{len(pose)}d", self.pose.data, 0, *pose)
         if same and len(moved) == 1:
@@ -172,19 +177,19 @@ class Bins:
 def in_all_cells(
     shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray | None = None, cones: np.ndarray | None = None
 ) -> BinnedShapes:
-    """Put all shapes, but for the planes that are `skipped`, into each cell; `cones` that are not given hold all
-    directions.
+    """Put all shapes, but for the planes that are `skipped` (p,), into each cell, the nearest of each kind first.
 
-    `TooLargeError` where many cells have so many shapes that nobody would wait for the picture.
+    `cones` (s, 5) are the bounding cones of the shapes; without them all cones hold all directions. `TooLargeError`
+    where many cells have so many shapes that nobody would wait for the picture.
     """
     count = len(shape_arrays.listed)
     if cells > 1 and cells * count > MOST_MEMBERS:
         raise system.TooLargeError(f"{count} shapes in each of {cells} tiles are too many")
     if cones is None:
-        cones = np.tile([0.0, 0.0, 0.0, -2.0, 0.0], (count, 1))
+        cones = np.tile([0.0, 0.0, 0.0, -2.0, 0.0], (count, 1))  # any cosine is more than -2
     shapes = np.setdiff1d(np.arange(count), [] if skipped is None else shape_arrays.plane_places[skipped])
-    kinds = shape_arrays.listed[shapes, 0]
-    order = np.lexsort((cones[shapes, 4], kinds))
+    kinds = shape_arrays.listed[shapes, KIND]
+    order = np.lexsort((cones[shapes, LEAST_DISTANCE], kinds))
     members = shapes[order].astype(np.int32)
     ends = np.searchsorted(kinds[order], np.arange(len(shape_arrays.tables))[:, None] + [0, 1])
     # All lists of one kind come first, then all lists of the next kind.

@@ -64,7 +64,8 @@ class ExactFields(NamedTuple):
 
 
 def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
-    """Collect the fields of shapes of a kind; for a batched kind, the points and directions of the packed form."""
+    """Collect the numbers of shapes of one kind: of their fields or, for a batched kind, of their packed form, which
+    has points and directions alone."""
     if kind.element.batched:
         points, lengths, directions = columns_of_packed(kind, shapes)
     else:
@@ -173,7 +174,7 @@ def certify(shapes: tuple[Shape, ...], owners: Integers, parts: Integers, rays: 
 
 
 def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) -> Certificate:
-    """Certify hits of shapes of one kind, each of the shape in a row of `fields`.
+    """Certify n hits of shapes of one kind: ray i hits the shape in the row `rows[i]` of `fields`.
 
     The normal belongs to the point in the coordinates of the scene, rounded: at a rim it may be that of either face.
     """
@@ -187,6 +188,6 @@ def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) ->
     point = exact_point(rays.origins, first, power) + distances * d
     shape = fields.shape(rows, first, power)
     normal = Vec(*rays.normals.T)
-    distance, exact, turned = foot(kind, shape, point, normal, rounding)
-    slope = exact.x * d.x.high + exact.y * d.y.high + exact.z * d.z.high
-    return Certificate(distance / (U * magnitude), magnitude / (distances * np.abs(slope)), turned)
+    distance, exact_normal, turned = foot(kind, shape, point, normal, rounding)
+    cosine = exact_normal.x * d.x.high + exact_normal.y * d.y.high + exact_normal.z * d.z.high
+    return Certificate(distance / (U * magnitude), magnitude / (distances * np.abs(cosine)), turned)

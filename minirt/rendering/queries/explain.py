@@ -52,7 +52,10 @@ def explain(scene: Scene, width: int, height: int, x: int, y: int, *, depth: int
 
 
 def explained_by(chosen: Renderer, scene: Scene, width: int, height: int, x: int, y: int) -> Explanation:
-    """Return the tree of rays of a pixel, with the packed scene of a renderer, or one of its own while that is busy."""
+    """Return the tree of rays of a pixel. RenderError for one that does not lie in the picture.
+
+    The scene is packed by the chosen renderer; while that is busy, or in single precision, it is packed anew.
+    """
     if not (0 <= x < width and 0 <= y < height):
         raise RenderError(f"pixel {x},{y} does not lie in the picture of {width}x{height} pixels")
     is_free = chosen.precision == "double" and chosen.busy.acquire(timeout=PATIENCE)
@@ -180,14 +183,16 @@ class Watch:
         self.lights = tuple(self.light_part(row, lamp, ray, found, surface, hit) for row, lamp in enumerate(self.lamps))
 
     def light_part(self, row: int, lamp: int, ray: Ray, found: ClosestHit, surface: Surface, hit: Mask) -> LightPart:
-        """Return what the lamp in a row of the kernel's lights gives to a surface."""
+        """Return what a lamp gives to a surface: the one with the index `lamp` in the scene, in the row `row` of the
+        kernel's lights."""
         self.last = {}
-        light = self.lighting.direct_light(self.lit_by(row), self.memory[[row, -1]], ray, found, surface, hit)
+        memory = self.memory[[row, -1]]  # of this light, and of all
+        light = self.lighting.direct_light(self.lit_by(row), memory, ray, found, surface, hit)
         rays, strength = self.last["aim"]
         origin, direction, distance = triple(rays.origin), triple(rays.direction), lane(rays.distance, 0)
         traced = self.last.get("shares_of_light", self.last.get("trace_shadow_rays"))
-        passes = (0.0, 0.0, 0.0)
-        if isinstance(traced, Vec):
+        passes = (0.0, 0.0, 0.0)  # no ray was traced: no light comes from the lamp
+        if isinstance(traced, Vec):  # through coloured glass
             passes = triple(traced)
         elif traced is not None:
             passes = (lane(traced, 0),) * 3

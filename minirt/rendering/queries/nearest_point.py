@@ -22,34 +22,36 @@ AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 
 
 def foot(kind: Kind, shape: Any, point: Vec, normal: Vec, rounding: Array) -> tuple[Array, Vec, Array]:
-    """Find the nearest point of the surface: on a face, on the edge of two or at the corner of three.
+    """Find the nearest points of surfaces to n points: on a face, on the edge of two or at the corner of three.
 
-    Returns its distance; the unit normal of the nearest face there; and the distance of `normal` from it, or from that
-    of another face within `rounding`.
-    Each step linearises all faces and limits about the last foot. Where that ends the foot is on the surface; it may
-    not end beside an apex, where a side is curved as strongly as the point is far from it.
+    `shape` has the exact fields of n shapes, which `ExactFields.shape` returns, and `point` exact points in their
+    frame. Return the distance of each nearest point, (n,); the unit normal of the nearest face there; and the distance,
+    (n,), of `normal` from that normal, or from the normal of another face within `rounding`, (n,).
+    Each step linearises all faces and limits about the last foot. Where the steps settle the foot is on the surface;
+    they may not settle beside an apex, where a side is curved as strongly as the point is far from it.
     """
     boundary = kind.boundary(shape, seeded(point))
-    count, flat = len(boundary.faces), np.zeros_like(point.x.high)
+    count, zero = len(boundary.faces), np.zeros_like(point.x.high)
     is_sheet = not kind.element.solid or kind.element.infinite
-    way = Vec(flat, flat, flat)  # from the point to its foot
+    way = Vec(zero, zero, zero)  # from the point to its foot
     for step in range(STEPS):
         if step:
             near = NEARLY * way
             boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (near.x, near.y, near.z)))))
         heights, normals = linearised((*boundary.faces, *boundary.limits), NEARLY * way)
         if not step:
-            beyond = [np.fmax.reduce([flat, *heights[:i], *heights[i + 1 :]]) for i in range(count)]
-            farther = [np.fmax(np.abs(height), end) for height, end in zip(heights, beyond, strict=False)]
-            face = np.argmin(farther, axis=0)
+            # How far the point is from each face: from its plane, or beyond the planes that end the face.
+            beyond = [np.fmax.reduce([zero, *heights[:i], *heights[i + 1 :]]) for i in range(count)]
+            away = [np.fmax(np.abs(height), end) for height, end in zip(heights, beyond, strict=False)]
+            face = np.argmin(away, axis=0)
             inside = np.fmax.reduce(heights) < 0.0
         before, way = way, way_to_surface(heights, normals, face, inside, is_sheet)
         change = way - before
         if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
             break
     off = [normal - each for each in normals[:count]]
-    limit = np.fmax(rounding, np.fmin.reduce(farther))
-    turned = [np.where(away <= limit, sqrt(dot(v, v)), np.inf) for away, v in zip(farther, off, strict=True)]
+    limit = np.fmax(rounding, np.fmin.reduce(away))
+    turned = [np.where(each <= limit, sqrt(dot(v, v)), np.inf) for each, v in zip(away, off, strict=True)]
     return sqrt(dot(way, way)), chosen(face, normals), np.minimum.reduce(turned)
 
 
@@ -70,9 +72,9 @@ def way_to_surface(heights: list[Array], normals: list[Vec], face: Integers, ins
     """The shortest way from a point to where planes bound a convex solid, or to a sheet on the first of them.
 
     The point lies at these `heights` above the planes, along their unit normals; it may be `inside` of the solid.
-    From inside it leads to the nearest `face`. From outside it is the longest of the shortest ways to one plane, to the
-    edge of two and to the corner of three of them, of those that lead straight against a sum of their normals with
-    factors that are not negative (Karush 1939; Kuhn and Tucker 1951).
+    From inside the way leads to the nearest `face`. From outside it is the longest of the shortest ways to one plane,
+    to the edge of two and to the corner of three of them, of those that lead straight against a sum of their normals
+    with factors that are not negative (Karush 1939; Kuhn and Tucker 1951).
     """
     best = -np.choose(face, heights) * chosen(face, normals)
     reach = np.where(inside | is_sheet, dot(best, best), -1.0)

@@ -24,7 +24,7 @@ MOST_COMPARED = 200  # shapes of which one may be inside of another
 CERTAIN = 1e-3  # of the size of a shape by which its bounding box is grown
 AMBIENT_ALONE = "no light is on but the ambient one, which is the same everywhere: a line L adds another"
 COARSE = 48, 27  # pixels of pictures that show what a light lights
-MOST_LIT = 100  # shapes, times lights: in a twentieth of a second, and mostly in a fiftieth of that
+MOST_LIT = 100  # shapes, times lights: looking takes a twentieth of a second at most, and mostly a thousandth
 
 
 def is_one_square(shape: Shape) -> bool:
@@ -67,10 +67,15 @@ def without_effect(scene: Scene, size: tuple[int, int]) -> Iterator[str]:
 
 
 def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str]:
-    """Yield sentences about what is inside an opaque shape that the eye is not in: lamps without a size, and shapes and
-    lamps inside a convex one, that is, the corners of their bounding boxes, grown."""
+    """Yield sentences about shapes and lamps that are inside an opaque shape, and the eye is not.
+
+    Something is inside a convex shape if all corners of its bounding box, grown, are; `boxes` (s, 2, 3) are those of
+    the shapes. Inside other shapes only lamps without a size are looked for. With a lens nothing is, since the eye is a
+    disc.
+    """
     eye, lamps = np.array(scene.camera.position), [(n, lamp) for n, lamp in enumerate(scene.lights) if lamp.position]
     extents = [np.add(lamp.position or 0.0, np.multiply(lamp.size or 0.0, [[-0.5], [0.5]])) for _, lamp in lamps]
+    # The least and the greatest corners of the boxes of shapes, then of lamps.
     starts, ends = np.concatenate([boxes, np.reshape(extents, (-1, 2, 3))]).swapaxes(0, 1)
     grown = CERTAIN * (ends - starts)
     for outer, shape in enumerate(shapes):
@@ -85,35 +90,42 @@ def hidden(scene: Scene, shapes: list[Shape], boxes: np.ndarray) -> Iterator[str
                     if index < len(shapes):
                         what = f"{shape_name(scene, index)} is never seen"
                     else:
-                        what = f"{light_name(scene, lamps[index - len(shapes)][0])} lights nothing"
+                        number, _ = lamps[index - len(shapes)]
+                        what = f"{light_name(scene, number)} lights nothing"
                     yield f"{what}: it is inside {shape_name(scene, outer)}, which is opaque"
 
 
 def idle_lights(scene: Scene) -> Iterator[str]:
-    """Yield the names of the lights without which a coarse picture is the same; none where mirrors or glass may show
-    what they light, or where looking would take long."""
+    """Yield the names of the lights that light nothing in a coarse picture: with such a light alone it is the same as
+    without any lamp.
+
+    Lights with a size, which are sampled at random, are left out. Nothing is yielded where mirrors or glass may show
+    what is lit, where nothing is in view, or for more than MOST_LIT shapes times lights.
+    """
     lights, arrays = emitting_lights(scene), arrays_of(scene)
     is_quick = len(lights) * sum(each.parts for each in scene.shapes) <= MOST_LIT
     is_direct = "reflective" not in features(scene)
     if not is_quick or not is_direct or not arrays or not len(visible_shapes(arrays, scene.camera, COARSE)):
         return
     others = [each for each in scene.elements if not isinstance(each, Lamp)]
-    without: np.ndarray | None = None
+    unlit: np.ndarray | None = None  # the picture without any lamp
     for number, light in enumerate(scene.lights):
         if light not in lights or light.size or lights_a_solid(arrays, scene.camera, light):
             continue
         from minirt.rendering.queries.preview import render_interpreted
 
-        if without is None:
-            _, without = render_interpreted(Scene(others, scene.file), *COARSE)
-        _, alone = render_interpreted(Scene([*others, light], scene.file), *COARSE)
-        if np.array_equal(alone, without):
+        if unlit is None:
+            _, unlit = render_interpreted(Scene(others, scene.file), *COARSE)
+        _, lit = render_interpreted(Scene([*others, light], scene.file), *COARSE)
+        if np.array_equal(lit, unlit):
             yield light_name(scene, number)
 
 
 def lights_a_solid(arrays: ShapeArrays, camera: Camera, light: Lamp) -> bool:
-    """Whether a point light that does not fade is the first to shine on a solid where some rays of the eye meet it,
-    which takes a tenth of the time of a coarse picture; False for other lights."""
+    """Whether some rays of the eye meet a solid at a point that the light reaches, from outside and past all shapes.
+
+    Finding that takes a tenth of the time of a coarse picture. False for a light that fades or is no point light.
+    """
     if not isinstance(light, Light) or light.fade:
         return False
     solid = np.array([shape.solid and not shape.infinite for shape in arrays.shapes])
@@ -122,8 +134,8 @@ def lights_a_solid(arrays: ShapeArrays, camera: Camera, light: Lamp) -> bool:
     places = [at for at, found in enumerate(primitives.tolist()) if found >= 0 and solid[arrays.owner[found]]]
     if not places:
         return False
-    lamp, to, rays = Vec(*light.position), distances[places], Vec(rays.x[places], rays.y[places], rays.z[places])
-    way = eye + to * rays - lamp
+    lamp, rays = Vec(*light.position), Vec(rays.x[places], rays.y[places], rays.z[places])
+    way = eye + distances[places] * rays - lamp
     reached, found = nearest_hits(arrays, lamp, unit(way))
     is_first = (found == primitives[places]) & (reached >= (1 - CERTAIN) * np.sqrt(dot(way, way)))
     lit = {*arrays.owner[found[is_first]].tolist()}

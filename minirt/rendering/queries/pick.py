@@ -13,7 +13,7 @@ import numpy as np
 from minirt.fields import Triple
 from minirt.kernel.projection import Grid, projected_rectangle
 from minirt.kernel.scene_arrays import kind_of_packed
-from minirt.kernel.trace import COINCIDENT, closer_hit
+from minirt.kernel.trace import COINCIDENT, OWNER, closer_hit
 from minirt.lanes import Vec
 from minirt.rendering.packing.camera import camera_frame, pixel_rays, slopes_at_edges
 from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances, packed_columns
@@ -30,7 +30,7 @@ START = 1 / 1024  # of the shape's height: how far above its top the rays begin,
 
 
 def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: ShapeArrays | None = None) -> Picked:
-    """The shape at the centre of pixel x, y of a picture of that size, and the point on it.
+    """Return the shape at the centre of pixel x, y of a picture of that size, and the point on it, or None for both.
 
     `shape_arrays` are brought up to date; those of the last picture save the time of packing the shapes.
     """
@@ -47,7 +47,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, shape_arrays: Sh
         extent, is_hit = extents[index], np.ones(1, bool)
         with np.errstate(all="ignore"):
             closest = closer_hit(packed, index, extent, is_hit, distance[[index]], origin, direction, closest)
-    primitive = int(closest[1][0])
+    primitive = int(closest[OWNER][0])
     if primitive < 0:
         return None, None
     point = origin + float(distance[primitive]) * direction
@@ -93,8 +93,8 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
 def enclosing_rectangle(
     shape: Shape, camera: Camera, width: int, height: int, margin: float
 ) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom of the pixels that enclose a shape and a margin, in pixels, around it; the picture
-    for an unbounded shape."""
+    """Return left, top, right and bottom, in pixels, of the rectangle of the picture that encloses a shape and a margin
+    around it; the whole picture for an unbounded shape."""
     spheres = np.array([(*centre, radius) for centre, radius in shape.balls()])
     if not len(spheres):
         return 0, 0, width, height
@@ -121,9 +121,9 @@ def clearance(shape: Shape, others: Iterable[Shape]) -> tuple[float, Shape | Non
     (west, bottom, south), (east, top, north) = box
     share = (np.arange(count) + 0.5) / count
     x, z = (each.ravel() for each in np.meshgrid(west + (east - west) * share, south + (north - south) * share))
-    height = top - bottom or east - west
+    height = top - bottom or east - west  # of a flat shape its width
     start = top + START * height
-    underside = bottom - height + vertical(shape, x, bottom - height, z, 1.0)
+    underside = bottom - height + vertical(shape, x, bottom - height, z, 1.0)  # y of the lowest points
     gap, support = np.inf, None
     for other in near:
         with np.errstate(invalid="ignore"):  # where rays miss both
@@ -166,7 +166,7 @@ def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.nd
     covered = np.zeros((height, width), bool)
     (ax, bx, cx), (ay, by, cy) = x[triangles.corners].T, y[triangles.corners].T
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    # Triangles that are seen from their front, and from their back. That of a closed mesh lies behind its front.
+    # Triangles seen from their front, then those seen from their back, which a closed mesh hides behind its front.
     for facing in (area > 0, area < 0)[: 1 if triangles.closed else 2]:
         start, end = silhouette_edges(facing, triangles.corners, triangles.edges)
         covered |= winding_numbers(x[start], y[start], x[end], y[end], width, height) != 0

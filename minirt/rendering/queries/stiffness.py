@@ -25,7 +25,7 @@ from minirt.shapes import Mesh, Shape
 
 
 def defining_lengths(shapes: Sequence[Shape]) -> NDArray[np.float64]:
-    """Return the lengths that define each shape of one type, or the distances of its points, (n, k).
+    """Return the lengths that define each of n shapes of one type, and the distances between its points, (n, k).
 
     A plane has none; a mesh has the diagonal of its bounding box.
     """
@@ -38,6 +38,7 @@ def defining_lengths(shapes: Sequence[Shape]) -> NDArray[np.float64]:
         return [np.array([getattr(shape, name) for shape in shapes], float).reshape(len(shapes), -1) for name in names]
 
     points = columns(Point)
+    # From each point to the one before, from the first to the last.
     sides = [np.linalg.norm(one - points[i - 1], axis=1, keepdims=True) for i, one in enumerate(points)]
     return np.hstack([*columns(Length, Lengths), *(sides if len(points) > 1 else ())] or [np.zeros((len(shapes), 0))])
 
@@ -61,18 +62,19 @@ class Stiff(NamedTuple):
 
 
 def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> Iterator[Stiff]:
-    """Yield the stiff shapes of a scene in a picture of the given size."""
+    """Yield the stiff shapes of a scene, packed in `tables`, in a picture of the given size: those whose hits rounding
+    may spoil, then those thinner than a pixel."""
     eye, right, _, forward = camera_numbers(scene.camera, width, height).reshape(4, 3)
     boxes, extents = tables.primitive_boxes()
     nearest, size = nearest_points_and_sizes(tables, eye, boxes)
     way = nearest - eye
     distance = np.linalg.norm(way, axis=1)
     # Rounding errors of a point on the surface, in scene units; in float32 relative to the eye.
-    double = ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + extents)
-    single = ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, boxes))
+    double_error = ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + extents)
+    single_error = ROUNDING * SINGLE * (np.abs(way).max(axis=1) + extents_from(eye, boxes))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = np.minimum(size, distance)
-        double, single = double / scale, np.where(scale < LEAST_IN_SINGLE, np.inf, single / scale)
+        double, single = double_error / scale, np.where(scale < LEAST_IN_SINGLE, np.inf, single_error / scale)
         pixels = size / (distance * 2 * np.linalg.norm(right) / width)
         thinness = np.where((way @ forward > 0) & (pixels > 0), 1 / pixels, 0.0)
     figures = {"size": size, "distance": distance, "relative rounding of a hit, double": double, "single": single}
@@ -109,8 +111,8 @@ def worst(scene: Scene, tables: ShapeArrays, amounts: np.ndarray, limit: float) 
 
 
 def nearest_points_and_sizes(tables: ShapeArrays, eye: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each of n primitives, in `boxes`, the point nearest to the eye, (n, 3), and the shortest length of its
-    shape, (n,), infinity if it has none."""
+    """Return for each of n primitives, which lie in `boxes` (n, 2, 3), its point nearest to the eye, (n, 3), and the
+    shortest length that defines its shape, (n,), infinity if there is none."""
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
         selected = tables.primitives_of(group)
@@ -136,7 +138,8 @@ CLOSE = 1000  # times TIE: surfaces that nearly coincide
 
 
 def coincident(scene: Scene, tables: ShapeArrays, across: int = ACROSS, down: int = DOWN) -> Iterator[Stiff]:
-    """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye by so many rays."""
+    """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye by `across` times
+    `down` rays. Nothing is yielded for more than MOST_SHAPES primitives."""
     if not 2 <= len(tables.owner) <= MOST_SHAPES:
         return
     y, x = np.mgrid[:down, :across].reshape(2, -1) + 0.5
@@ -144,7 +147,7 @@ def coincident(scene: Scene, tables: ShapeArrays, across: int = ACROSS, down: in
     eye = np.array(scene.camera.position, np.float64)
     with np.errstate(all="ignore"):
         t, slopes = all_hits(tables, origin, ways)
-        pair = np.argsort(t, axis=0, kind="stable")[:2]
+        pair = np.argsort(t, axis=0, kind="stable")[:2]  # the two nearest primitives on each ray
         near, far = np.take_along_axis(t, pair, axis=0)
         gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
         points = near * np.stack([ways.x, ways.y, ways.z])

@@ -37,8 +37,11 @@ DARK_BEFORE_BACKGROUND = f"{DARK}, but for the background"
 
 
 def notice_about(scene: Scene, size: tuple[int, int], pixels: np.ndarray | None = None) -> str:
-    """Return why a picture of that size, or its pixels (h, w, channels) where it is rendered, has one colour or shows
-    none of the bounded shapes, and which camera would show the scene; empty for any other."""
+    """Return why a picture of that size has one colour or shows none of the bounded shapes, and the line of a camera
+    that would show the scene; '' for any other picture, and for a scene of too many primitives.
+
+    `pixels` are (h, w, channels), or None where the picture is not rendered: then rays alone tell what is in view.
+    """
     is_even = pixels is not None and is_blank(pixels)
     if not scene.runs:
         return "the scene has no shapes" if is_even else ""
@@ -85,9 +88,10 @@ def is_lit(scene: Scene) -> bool:
 
 
 def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
-    """Return a sentence about the shape that the eye is in, or nothing.
+    """Return a sentence about the shape that the eye is in, or ''.
 
-    Where the picture is not even that is one of no glass that has others wholly outside of it.
+    Where the picture is not of one colour (`is_even`), only a shape counts that is not of glass and has other shapes
+    wholly outside of it.
     """
     eye, bounded = np.array(scene.camera.position), is_bounded(arrays)
     starts, ends = arrays.boxes[:, 0], arrays.boxes[:, 1]
@@ -108,8 +112,8 @@ def around_eye(scene: Scene, arrays: ShapeArrays, is_even: bool) -> str:
 
 
 def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray, size: tuple[int, int]) -> str:
-    """Return why a picture of that size has one colour or no bounded shape, in which the shapes with the indices `seen`
-    are."""
+    """Return why a picture of that size has one colour or shows no bounded shape; `seen` has the indices of the shapes
+    in view."""
     bounded = is_bounded(arrays)
     if bounded[seen].any() or (len(seen) and not bounded.any()):
         return f"what is in view has one colour, or is smaller than a pixel: {names_of(scene, seen.tolist())}"
@@ -122,6 +126,7 @@ def reason_for(scene: Scene, arrays: ShapeArrays, seen: np.ndarray, size: tuple[
         hidden = f", behind which is {names_of(scene, behind)}" if behind else ""
         return f"{others} but the {names} is in view{hidden}"
     eye, forward = np.array(scene.camera.position), np.array(scene.camera.direction)
+    # The depth of the corner of each box that is farthest along the viewing direction.
     depths = np.maximum((arrays.boxes[:, 0] - eye) * forward, (arrays.boxes[:, 1] - eye) * forward).sum(axis=1)
     is_behind = depths.max() < 0 and bounded.all()
     return "nothing is in view: all is behind the eye" if is_behind else "nothing is in view"
@@ -175,22 +180,23 @@ def rectangles(camera: Camera, size: tuple[int, int], boxes: np.ndarray) -> np.n
 
 
 def showing_camera(scene: Scene, size: tuple[int, int], *, straight: bool = False) -> Camera | None:
-    """Return the first camera that shows most of the bounded shapes, if there are any; None where none shows one.
+    """Return the first of the cameras that show the most bounded shapes; None where none shows any. In a scene without
+    bounded shapes all shapes count.
 
-    `size` is the picture's width and height. `straight`: rather one with the direction of the scene's camera, if that
-    shows any.
+    `size` is the picture's width and height. `straight`: a camera with the direction of the scene's camera is preferred
+    if it shows any.
     """
     arrays = arrays_of(scene)
     if not arrays or not len(arrays.shapes):
         return None
     bounded = is_bounded(arrays)
-    wanted = bounded | ~bounded.any()
+    wanted = bounded if bounded.any() else ~bounded
     low, high = arrays.boxes[wanted, 0].min(axis=0), arrays.boxes[wanted, 1].max(axis=0)
     x, y, z = ((low + high) / 2).tolist()
     cameras = candidates(scene.camera, (x, y, z), dist(low, high) / 2 or 1.0, size[1] / size[0], straight)
     cameras = cameras[: max(1, TESTS // (len(MANY) * len(arrays.slots)))]
     shown = [wanted[visible_shapes(arrays, camera, size)].sum() for camera in cameras]
-    if straight and any(shown[:1]):
+    if straight and any(shown[:1]):  # the first one looks as the scene's camera does
         return cameras[0]
     return cameras[np.argmax(shown)] if max(shown, default=0) else None
 
@@ -208,8 +214,8 @@ def candidates(camera: Camera, centre: Triple, radius: float, aspect: float, str
     from_x, _, from_z = (eye - middle for eye, middle in zip(camera.position, centre, strict=True))
     start = atan2(from_x, from_z) if from_x or from_z else pi
     digits = DIGITS - 1 - floor(log10(radius))
-    turns = [(-1) ** i * ceil(i / 2) * 2 * pi / AZIMUTHS for i in range(AZIMUTHS)]
-    ways = [tuple(-part for part in camera.direction)] if straight else []
+    turns = [(-1) ** i * ceil(i / 2) * 2 * pi / AZIMUTHS for i in range(AZIMUTHS)]  # 0, then to both sides in turn
+    ways = [tuple(-part for part in camera.direction)] if straight else []  # from the centre to the eye
     for elevation in map(radians, ELEVATIONS):
         level = ((cos(elevation) * sin(start + turn), cos(elevation) * cos(start + turn)) for turn in turns)
         ways += [(x, sin(elevation), z) for x, z in level]

@@ -72,16 +72,19 @@ class AutoSampler:
         return Outcome(mean, most, sqrt(total / self.numbers), perf_counter() - start)
 
     def refine(self, samples: np.ndarray, goal: float, end: float) -> None:
-        """Draw packets with more samples, first of all as many as `samples` for each class, until the sum of squared
-        errors is at most `goal`, or the time is over."""
+        """Draw packets with more samples until the sum of squared errors is at most `goal`, or until the time `end` of
+        `perf_counter`, which may be infinite.
+
+        `samples` (classes,) are the numbers that were planned after the first probes. Pilots correct them.
+        """
         packets = self.packets
         # Samples of the last probes: one. Where samples have places in a lens or in lights, there is always a pilot.
-        known = np.full(len(samples), 0.0 if self.with_places else 1.0)
+        probed_with = np.full(len(samples), 0.0 if self.with_places else 1.0)
         for _ in range(PILOTS):
-            if (samples <= FAR * known).all():
+            if (samples <= FAR * probed_with).all():
                 break
-            known = packets.plan(goal, self.budget(end)) if end < inf else samples
-            self.draw_pilot(known)
+            probed_with = packets.plan(goal, self.budget(end)) if end < inf else samples
+            self.draw_pilot(probed_with)
             samples = packets.plan(goal, self.budget(end))
         if end == inf:
             self.draw_more(np.arange(packets.count), samples)
@@ -91,7 +94,9 @@ class AutoSampler:
             some, budget = order[number::PORTIONS], self.budget(end) / (PORTIONS - number)
             expected = float(cost(samples, np.bincount(packets.classes[some], minlength=len(samples))))
             factor = max(budget, 0.0) / max(expected, 1.0)
-            self.draw_more(some, np.maximum(samples * (min(factor, 1.0) if is_enough else factor), 1.0))
+            if is_enough:  # no more than planned; else all that the time pays for
+                factor = min(factor, 1.0)
+            self.draw_more(some, np.maximum(samples * factor, 1.0))
 
     def budget(self, end: float) -> float:
         """The samples of packets that the time pays for."""

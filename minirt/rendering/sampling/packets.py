@@ -37,9 +37,11 @@ EDGE = 4  # the class from which on neighbours are taken to differ by an edge: b
 
 
 def contrast_classes(pixels: np.ndarray, packet_width: int, run: Run) -> np.ndarray:
-    """The class of each packet, uint8 (rows, columns), by the greatest difference of a colour from a neighbour above,
-    below, left or right. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs a job on all
-    threads."""
+    """Return the class of each packet, uint8 (rows, columns), by the greatest difference of a channel of its pixels
+    from a neighbour above, below, left or right.
+
+    `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs a job on all threads.
+    """
     below, beside = -pixels.shape[0] % PACKET_HEIGHT, -pixels.shape[1] % packet_width
     if below or beside:
         pixels = np.pad(pixels, ((0, below), (0, beside), (0, 0)), "edge")
@@ -73,12 +75,12 @@ def estimated_error(
     is_wanted: Callable[[], bool] = lambda: True,
     tone: str = PLAIN,
 ) -> float | None:
-    """The RMSE of a picture `after` with `samples`, given the picture `before` with `fewer`.
+    """Return the RMSE of a picture `after` with `samples`, given the picture `before` with `fewer`.
 
-    It is the error of `minirt.rendering.outcome` and that of rounding. Both are uint8 (h, w, 4), equally
-    opaque. Their squared difference is the sum of both squared errors, whose ratio is that of the numbers of
+    It has the error of `minirt.rendering.outcome` and that of rounding. Both pictures are uint8 (h, w, 4), equally
+    opaque. Their squared difference is the sum of their squared errors, whose ratio is that of the numbers of
     samples to the power of -1.5. With another tone than plain the error is that of the light of the levels, clamped to
-    [0, 1]. None as soon as `is_wanted` says no, which is asked a few times a millisecond.
+    [0, 1]. Return None as soon as `is_wanted` says no, which is asked a few times a millisecond.
     """
     total, rounding, light = 0.0, SQUARED_ROUNDING, np.minimum(tone_named(tone).light, 1.0)
     for top in range(0, len(before), LINES):
@@ -111,12 +113,14 @@ SEARCHES, PRICES = 2, 64  # for the price of an error: so many times among so ma
 
 
 def allocate(c: np.ndarray, sizes: np.ndarray, error: float, budget: float, least: float) -> np.ndarray:
-    """The numbers of samples, not whole, for the packets of each class, at least so many, which leave a sum of squared
-    errors; or, if those cost more than the budget, the most that the budget pays for.
+    """Return the numbers of samples for the packets of each class, `least` or more and not whole, that leave `error` as
+    the sum of squared errors; or, if those cost more than the budget, the most that the budget pays for.
 
-    `sizes` count the packets of the classes. All have a sample, so that a class that gets no more costs nothing.
+    `c` of the head of this module and `sizes`, the numbers of packets, are those of the classes, (CLASSES,). `budget`
+    is in samples of packets beyond the first sweep. All packets have a sample, so that a class that gets no more costs
+    nothing.
     """
-    value = c * (sizes > 0)
+    value = np.where(sizes > 0, c, 0.0)
     # At the lowest price the class with the most error gets one sample, at the highest that with the least gets all.
     most = float(np.log2(COUNTS[-1]) * (ERROR_EXPONENT + 1))
     low, high = float(-np.log2(value.max())), most - float(np.log2(np.maximum(value, LEAST * value.max()).min()))
