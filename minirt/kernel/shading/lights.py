@@ -181,8 +181,7 @@ def sampled_position(
 
     Given are those of the centre, which are returned if no light source has a size. `soft` (m, 4) has for each light
     its radius; the tangent of half its angular diameter, for parallel light; and cosine and sine of the angle by which
-    the light turns the disc of samples. The last row of `memory` holds the place of each ray's sample on the unit disc,
-    see `remember_sample`.
+    the light turns the disc of samples. Each ray's place on the unit disc is in `memory`, see `remember_sample`.
     """
     position = splat(position, distance)
     if has_rows(soft):
