@@ -190,7 +190,8 @@ def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
 def opened_by_pillow(path: Path, data: bytes) -> Iterator[Any]:
     """Give the block the Pillow image of the bytes of a file, of which only the header is read, and the size checked.
 
-    FileError where the bytes are no picture, or too large a one, and for all that goes wrong in the block.
+    FileError where the bytes are no picture, or too large a one, and for all that goes wrong in the block, except for
+    TooLargeError.
     """
     from PIL import Image as pillow  # noqa: N813
     from PIL import UnidentifiedImageError

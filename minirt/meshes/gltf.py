@@ -37,7 +37,7 @@ def prepare(data: bytes, files: Files) -> tuple[bytes, dict[str, Look], bool]:
     is beyond a limit, FileError where a file that it names is; any other error where it is damaged.
     """
     text = data
-    if data.startswith(b"glTF"):  # 12 bytes; length and kind, 8 bytes, before the text and before the binary part
+    if data.startswith(b"glTF"):  # a header of 12 bytes; length and kind, 8 bytes, before the text and the binary part
         (length,) = struct.unpack_from("<I", data, 12)
         text, files.contents[BINARY] = data[20 : 20 + length], data[28 + length :]
     if sum(map(text.count, (b"{", b"[", b","))) > MOST_VALUES:

@@ -55,7 +55,7 @@ def split_foreign_line(line: Line) -> tuple[list[str], str, Changes] | None:
 def body_of(line: Line) -> tuple[str, str, Changes]:
     """Return a line without its comment, the comment with its `#`, '' for none, and what was changed.
 
-    `#F00` behind a word is a colour, `//` and `--` between blanks begin a comment.
+    `#F00` behind a word is a colour; `//` behind a blank, and `--` between blanks, begin a comment.
     """
     changes: Changes = []
     text = line.text

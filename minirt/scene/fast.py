@@ -72,8 +72,8 @@ def read(sources: list[str], length: int) -> Sequence[Item | None]:
 
     attributes = attributes_of(sources)
     plain = [*sources, ""]
-    for line, end in attributes.items():
-        plain[line] = sources[line][: -len(end)]
+    for line, ending in attributes.items():
+        plain[line] = sources[line][: -len(ending)]
     text = "\n".join(plain).encode("utf-8", "surrogatepass")
     call = call_for(text, len(sources))
     if length < MANY_LINES and not LIBRARY.has(LIBRARY.identity(call)):
@@ -98,8 +98,8 @@ def read(sources: list[str], length: int) -> Sequence[Item | None]:
     for lines, crowd in found:
         kind: Any = crowd.kind
         for line, element in zip(lines.tolist(), crowd, strict=True):
-            end = attributes.get(line, "").removesuffix("\r").partition("#")[0]
-            values = values_of(kind, end)
+            ending = attributes.get(line, "").removesuffix("\r").partition("#")[0]
+            values = values_of(kind, ending)
             for name, value in (values or {}).items():
                 object.__setattr__(element, name, value)
             items[line] = None if values is None else element

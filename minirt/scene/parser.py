@@ -57,10 +57,10 @@ def load(
 def load_for_window(
     path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False, new: bool = False
 ) -> tuple[Reading, SceneError | None]:
-    """Read a scene file as asked, and return what was read, and None. A file that is wrong, but in a dialect of another
-    program, is read leniently: then the error of the first reading is returned, too.
+    """Return what was read of a scene file; and None, or the error of a first attempt.
 
-    SceneError where no line is in a dialect, or where the file is no scene even so.
+    If the file cannot be read as asked, and has lines in a dialect of another program, it is read leniently. SceneError
+    where no line is in a dialect, or where the file is no scene even so.
     """
     try:
         return load(path, lenient, left_handed, new), None

@@ -53,7 +53,7 @@ class CompileProcess:
         Returns the exit status, the output and the standard error. RenderError where the process cannot be started."""
         try:
             self.process = process = subprocess.Popen(
-                (*COMMAND, *["--patient"] * self.patient),
+                (*COMMAND, *(["--patient"] if self.patient else [])),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
