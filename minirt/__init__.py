@@ -79,14 +79,15 @@ def registered() -> dict[str, type]:
 
 
 def load(path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False) -> Scene:
-    """Read a scene file. SceneError, with all of its problems, if the file is not a valid scene.
+    """Return the scene of a file. SceneError, with all of its problems, if the file is not a valid scene.
 
     `lenient` accepts older spellings (several `L`, blanks around commas, colours with decimals) and translates lines of
-    other programs; `scene.missing` has the lines of shapes that it could not read. A text of words does so, and reads
-    fields in another way. Cones: "base", whose point is the centre of the base; "angle", whose diameter is half the
-    angle at the apex, in degrees. Cameras: "reversed", whose direction points backwards; "angles", whose direction is
-    three angles, by which a camera along +z is turned about x, y and z (shares of 180 degrees; where one is beyond 1
-    radians, beyond 2 pi degrees); "z-up", rolled so that z is up in the picture. ValueError for other words.
+    other programs; `scene.missing` has the lines of shapes that could not be read. Words in place of True, such as
+    "base z-up", do so, too, and read fields in another way. Cones: "base", whose point is the centre of the base;
+    "angle", whose diameter is half the angle at the apex, in degrees. Cameras: "reversed", whose direction points
+    backwards; "angles", whose direction is three angles, by which a camera along +z is turned about x, y and z (shares
+    of 180 degrees; where one is beyond 1 radians, beyond 2 pi degrees); "z-up", rolled so that z is up in the picture.
+    ValueError for other words.
 
     `left_handed` mirrors pictures of the scene, as renderers with left-handed coordinates do.
     """

@@ -94,12 +94,13 @@ class Immutable:
     _other_names: ClassVar[Mapping[str, Iterable[str]]] = {}  # of fields in other programs, by the names here
 
     def __init__(self, *values: Any, **named: Any) -> None:
+        """Set the fields, the first ones from `values`; TypeError for one that is unknown, missing or given twice."""
         positional, defaults = parameters(type(self))
         given = dict(zip(positional, values, strict=False)) | named
         complete = defaults | given
         if (
-            len(given) < len(values) + len(named)
-            or len(complete) > len(defaults)
+            len(given) < len(values) + len(named)  # too many values, or a field twice
+            or len(complete) > len(defaults)  # an unknown name
             or any(value is MISSING for value in complete.values())
         ):
             for name in set(named).difference(defaults):

@@ -67,7 +67,7 @@ class Direction(Three):
 
 
 def unit(vector: Triple) -> Triple:
-    """Scale `vector` to length 1, even if its squares would underflow or overflow.
+    """Return `vector`, which is not 0, scaled to length 1, even if its squares would underflow or overflow.
 
     A vector of length 1 within rounding is returned unchanged, so that saving and loading change nothing, unless a
     component is beyond 1, which no file may have. The quotient below is off by at most 2u in length and `hypot` by 2u
@@ -130,7 +130,7 @@ def plain_decimal(value: float) -> str:
 
 
 def upright(x: float, y: float, z: float) -> tuple[Triple, Triple]:
-    """Right and up, as unit vectors, for a view along the unit vector x, y, z.
+    """Return right and up, as unit vectors, for a view along the unit vector x, y, z.
 
     Right is the cross product of that vector and (0,1,0). For a view straight up or down, where this is zero, right is
     +x, and up is +z or -z.

@@ -9,26 +9,28 @@ from __future__ import annotations
 from typing import Any
 
 from minirt.kernel.rectangles import DROPPED_BITS, BinningArrays, project_chunk, rectangle_at, write_extent
-from minirt.kernel.scene_arrays import LEAST_DISTANCE
+from minirt.kernel.scene_arrays import LEAST_DISTANCE, SHAPE
 
-# Entries sort by the upper bits of distances, digit after digit.
-DIGITS, RADIX = 3, 8  # of the upper bits but the sign, and bits of a digit
-INDEX_BITS = 32  # below these, in the entries that are sorted
+# Entries sort by the upper 24 bits of distances, without the sign, digit after digit.
+DIGITS, RADIX = 3, 8  # digits of a distance, and bits of a digit
+INDEX_BITS = 32  # lower bits of an entry, which hold the row of its rectangle
+INDEX_MASK = (1 << INDEX_BITS) - 1
 
 
 def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digits: Any) -> None:
-    """Write the shapes of all rectangles into the lists of their cells, the nearest first, and the number of `found`
-    members.
+    """Sort the shapes of all rectangles into the lists of the cells that they cover, the nearest first.
 
-    Where `members` has no room for so many they are not written. `starts`, of the cells of all kinds, receives where
-    the lists start. `entries` (2, r) and `digits` (2 ** RADIX,) are overwritten.
+    `members` receives the lists, one behind the other; `starts`, for each cell of each kind and one more behind those
+    of a kind, the index at which its list starts; and `seen.found[0]` the number of all members. Where `members` has
+    no room for so many, it is not written, and `starts` is of no use. `entries` (2, r) and `digits` (2 ** RADIX,) are
+    memory that is overwritten.
     """
-    across, room = seen.grid.across, seen.chunk * seen.grid.frames.shape[0]
+    across, rows_of_chunk = seen.grid.across, seen.chunk * seen.grid.frames.shape[0]
     for cell in range(starts.shape[0]):
         starts[cell] = 0
     count = 0
     for number in range(seen.used.shape[0]):
-        for at in range(number * room, number * room + seen.used[number]):
+        for at in range(number * rows_of_chunk, number * rows_of_chunk + seen.used[number]):
             shape, cell, columns, rows = rectangle_at(seen, at)
             entries[0, count] = (seen.cone_bits[shape, LEAST_DISTANCE] >> DROPPED_BITS << INDEX_BITS) | at
             count += 1
@@ -43,7 +45,7 @@ def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digi
     if total <= members.shape[0]:
         sort_by_depth(entries, count, digits)
         for i in range(count - 1, -1, -1):
-            shape, cell, columns, rows = rectangle_at(seen, entries[DIGITS % 2, i] & ((1 << INDEX_BITS) - 1))
+            shape, cell, columns, rows = rectangle_at(seen, entries[DIGITS % 2, i] & INDEX_MASK)
             for row in range(rows):
                 start = cell + row * across
                 for covered in range(start, start + columns):
@@ -53,7 +55,11 @@ def fill_bins(seen: BinningArrays, starts: Any, members: Any, entries: Any, digi
 
 
 def sort_by_depth(entries: Any, count: int, digits: Any) -> None:
-    """Sort the first `count` entries, (2, r), by their depths, digit after digit; they end in row `DIGITS % 2`."""
+    """Sort the first `count` entries of row 0 of `entries`, (2, r), by depth: a radix sort, from row to row and back.
+
+    The result is in row `DIGITS % 2`. `digits` holds how often each value of a digit occurs, and then the place of the
+    next entry that has it.
+    """
     for digit in range(DIGITS):
         shift, source, target = INDEX_BITS + digit * RADIX, digit % 2, 1 - digit % 2
         for value in range(digits.shape[0]):
@@ -74,24 +80,24 @@ def sort_by_depth(entries: Any, count: int, digits: Any) -> None:
 
 
 def move_shape(shape: int, seen: BinningArrays, starts: Any, members: Any) -> None:
-    """Bin a shape anew that is no plane: the lists become those of `fill_bins`, and `found` their members.
+    """Project one shape anew, which is no plane, and correct the lists: they become those that `fill_bins` writes.
 
-    Where `members` has no room for so many the lists are spoilt.
+    `seen.found[0]` receives the number of all members. Where `members` has no room for so many, the lists are spoilt.
     """
     take_out(seen, shape, starts, members)
     project_chunk(seen, shape // seen.chunk)
-    write_extent(seen, seen.listed[shape, 3])
+    write_extent(seen, seen.listed[shape, SHAPE])
     first, end = rectangles_of(seen, shape)
     more, last = 0, starts.shape[0] - 1
     for at in range(first, end):
-        more += seen.rectangles[at, 2] * seen.rectangles[at, 3]
+        more += seen.rectangles[at, 2] * seen.rectangles[at, 3]  # columns times rows
     seen.found[0] = starts[last] + more
     if seen.found[0] <= members.shape[0]:
         put_in(seen, shape, more, starts, members)
 
 
 def rectangles_of(seen: BinningArrays, shape: int) -> tuple[int, int]:
-    """Return the range of the rectangles of a shape."""
+    """Return the first of the rectangles of a shape, and the one behind its last."""
     number = shape // seen.chunk
     first = number * seen.chunk * seen.grid.frames.shape[0]
     stop = first + seen.used[number]
@@ -104,8 +110,12 @@ def rectangles_of(seen: BinningArrays, shape: int) -> tuple[int, int]:
 
 
 def take_out(seen: BinningArrays, shape: int, starts: Any, members: Any) -> None:
-    """Take a shape out of the lists of the cells of its rectangles, in ascending order."""
+    """Take a shape out of the lists of the cells that its rectangles cover.
+
+    Cells are visited in ascending order, so that each member behind the first one that is taken out moves once.
+    """
     first, end = rectangles_of(seen, shape)
+    # `gone` members were taken out so far, the last one from the cell `before`; `behind` is the place behind that one.
     last, gone, before, behind = starts.shape[0] - 1, 0, 0, 0
     for at in range(first, end):
         _, corner, columns, rows = rectangle_at(seen, at)
@@ -120,7 +130,10 @@ def take_out(seen: BinningArrays, shape: int, starts: Any, members: Any) -> None
 
 
 def put_in(seen: BinningArrays, shape: int, more: int, starts: Any, members: Any) -> None:
-    """Put a shape into the lists of the cells of its rectangles, in descending order: by distance, then by number."""
+    """Put a shape into the lists of the `more` cells that its rectangles cover: by distance, then by number.
+
+    Cells are visited in descending order, so that each member moves once. `members` has room for `more` further ones.
+    """
     first, end = rectangles_of(seen, shape)
     last = starts.shape[0] - 1
     stop = int(starts[last])

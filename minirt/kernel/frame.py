@@ -44,14 +44,18 @@ def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: in
 
 
 def mean_radiance(
-    rows: Any, scene: SceneArrays, memory: Any, tile: int, rays: Any, row: int, x: int, y: int, light: LightSums
+    next_row: Any, scene: SceneArrays, memory: Any, tile: int, rays: Any, row: int, x: int, y: int, light: LightSums
 ) -> Vec:
-    """Trace all samples of a packet, whose rays begin at a row of `rays`, until the counter `rows` cancels the frame;
-    return the mean for each pixel, of the parts of light sources so far."""
+    """Return the mean radiance of each pixel of a packet: of all its samples, and the parts of light sources so far.
+
+    The upper left pixel is x, y. The rays of the samples are in `rays` from `row` on. `light.sums` receives the sums
+    where there is more than one sample or part. The counter `next_row` may cancel the frame: then the result is of no
+    use.
+    """
     zero = splat(0.0, load(rays[0], 0))
     radiance = Vec(zero, zero, zero)
     for turn in range(light.samples):
-        if rarely(rows[0] >= CANCELLED):
+        if rarely(next_row[0] >= CANCELLED):
             break
         radiance = packet_radiance(scene, memory, tile, rays[row + turn], x, y)
         radiance = without_non_finite(radiance, memory)
@@ -82,21 +86,34 @@ def finite_or_zero(channel: Number) -> Number:
 
 
 def frame(
-    rows: Any, pixels: Any, linear: Any, rays: Any, plan: Any, errors: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any,
+    pixels: Any,
+    linear: Any,
+    rays: Any,
+    plan: Any,
+    errors: Any,
+    memory: Any,
+    sums: Any,
+    scene: SceneArrays,
 ) -> None:
-    """Render rows of tiles, or rows of a plan, taking the next ones from the counter `rows` until none is left.
+    """Render rows of tiles, or rows of a plan, taking the next ones from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with its own `memory` (see
-    `minirt.kernel.shadow_rays.unoccluded` and `minirt.kernel.shading.lights`) and its own `sums` of samples of a tile
-    (`SUMS` numbers). `pixels` (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it
-    has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of rays, less the direction through the upper
-    left corner of their packet; where the scene has a lens or light sources with a size it is longer, see
-    `minirt.kernel.shading.lights`. The samples of a pixel follow each other: traced together they meet the same shapes
-    more often than those of neighbours. `plan` (k, 5) has for each packet to draw its column and row among the packets,
-    its first row in `rays`, its number of samples, and the first row of two reference estimates, each of as many
-    samples, 0 for none. Without rows all packets take all rows of `rays`. `errors` (k,) receives the squared errors of
-    packets with references, see `squared_error`. A counter set to `CANCELLED` from outside ends the frame at the next
-    packet.
+    Any number of threads may do so at the same time, each with its own `memory` and `sums`. A counter set to
+    `CANCELLED` from outside ends the frame at the next packet.
+
+    - `pixels` (h, w) receives 0xAARRGGBB.
+    - `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows.
+    - `rays` (rows, 3 * width) has x, y and z of the directions of rays, less the direction through the upper left
+      corner of their packet. Where the scene has a lens or light sources with a size it is longer, see
+      `minirt.kernel.shading.lights`. The samples of a pixel follow each other: traced together they meet the same
+      shapes more often than those of neighbours.
+    - `plan` (k, 5) has for each packet to draw its column and row among the packets, its first row in `rays`, its
+      number of samples, and the first row of two reference estimates, each of as many samples, 0 for none. Without
+      rows all packets take all rows of `rays`.
+    - `errors` (k,) receives the squared errors of packets with references, see `squared_error`.
+    - `memory` (m + 1, ...) caches cells of m light sources, see `minirt.kernel.shadow_rays.unoccluded`; its last row
+      holds numbers of the packet, see `minirt.kernel.shading.lights`.
+    - `sums` (`SUMS`,) is memory for the samples of a tile.
     """
     height, across = pixels.shape
     count = width(rays)
@@ -106,11 +123,11 @@ def frame(
     black = Vec(zero, zero, zero)
     is_planned = rarely(plan.shape[0] > 0)
     parts = parts_of_lights(scene)
-    has_parts = scene.square < TILE
+    has_squares = scene.square < TILE  # in a crowd of shapes: smaller squares of a tile have lists of their own
     end = plan.shape[0] if is_planned else height
-    estimates = 3 if is_planned else 1
+    estimates = 3 if is_planned else 1  # of a packet: its own and those of two references
     while True:
-        top = fetch_add(rows, TILE)
+        top = fetch_add(next_row, TILE)
         if top >= end:
             return
         packets = min(TILE, end - top) if is_planned else columns * TILE // PACKET_HEIGHT
@@ -128,18 +145,20 @@ def frame(
                     row, samples = planned(plan, item, estimate)
                 if y >= height or x >= across or samples == 0:
                     continue
-                if rarely(has_parts or is_planned):
+                if rarely(has_squares or is_planned):
                     tile = tile_at(scene, x, y, across)
                     empty = not has_environment(scene) and is_empty(scene, tile)
                 if empty:
-                    radiance = background_light(scene, zero > 0.0, black, black)
+                    no_hit = zero > 0.0
+                    radiance = background_light(scene, no_hit, black, black)  # alike in all directions
                     store_packet(pixels, linear, sums, LAST, x, y, radiance)
                     continue
                 remember_part(scene, memory, part, parts)
                 remember_spacing(scene, memory, samples, estimate)
-                light = LightSums(sums, (3 * packet + estimate) * 3 * count, samples, part, parts)
-                radiance = mean_radiance(rows, scene, memory, tile, rays, row, x, y, light)
-                if rarely(rows[0] >= CANCELLED):
+                place = (3 * packet + estimate) * 3 * count  # three estimates of a packet, three colours of an estimate
+                light = LightSums(sums, place, samples, part, parts)
+                radiance = mean_radiance(next_row, scene, memory, tile, rays, row, x, y, light)
+                if rarely(next_row[0] >= CANCELLED):
                     return
                 if part == parts - 1:
                     store_estimate(pixels, linear, errors, light, x, y, radiance, item, estimate)

@@ -9,7 +9,7 @@ from minirt.lanes import Number, Vec, lane, minimum, rarely, save_vec, splat, wi
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
 WIDEST = 32  # rays of a packet, at most
-LAST = 3 * 3 * TILE * WIDEST  # behind the light of `TILE` packets, of three estimates each: that of the last rays
+LAST = 3 * 3 * TILE * WIDEST  # place of the last rays' light in sums: behind `TILE` packets of three estimates each
 SUMS = LAST + 3 * WIDEST  # numbers of all these
 OPAQUE = 0xFF000000  # alpha of a pixel
 CHANNELS = 4  # bytes of a pixel
@@ -33,15 +33,19 @@ class LightSums(NamedTuple):
 
 
 def add_to_pixels(radiance: Vec, light: LightSums, turn: int) -> None:
-    """Add the radiance of rays to that of their pixels. Of all samples, those of a pixel one after the other, these are
-    the ones of a `turn`."""
+    """Add the radiance of the rays of one `turn` to the sums of their pixels, in `light.sums`.
+
+    Each turn traces `width` samples of a packet. The samples of the packet are in the order of its pixels, those of a
+    pixel one after the other. The first turn of the first part sets the sums to 0. `light.sums` is overwritten from
+    `LAST` on.
+    """
     sums, place, samples = light.sums, light.place, light.samples
     zero, count = splat(0.0, radiance.x), width(radiance.x)
     if turn == 0 and light.part == 0:
         save_vec(Vec(zero, zero, zero), sums, place)
     save_vec(radiance, sums, LAST)
     pixel = turn * count // samples
-    begin, end = 0, (pixel + 1) * samples - turn * count  # the rays that are that pixel's
+    begin, end = 0, (pixel + 1) * samples - turn * count  # the range of that pixel's rays, up to its last sample
     while begin < count:
         end = min(end, count)
         red, green, blue = sums[place + pixel], sums[place + count + pixel], sums[place + 2 * count + pixel]
@@ -73,9 +77,10 @@ def store_estimate(
 def squared_error(sums: Any, place: int, height: int, across: int, count: int) -> float:
     """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its `count` pixels and channels.
 
-    `sums` has from `place` on the light and two reference estimates. Where the references are independent and have no
-    bias, the product of the differences from each of them has the squared error as its mean, however large their own
-    errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
+    `sums` has from `place` on the light and two reference estimates, each 3 * `count` numbers. Where the references
+    are independent and have no bias, the product of the differences from each of them has the squared error as its
+    mean, however large their own errors are. Of the packet's pixels, those beyond `height` lines or `across` columns
+    are left out.
     """
     packet_width = count // PACKET_HEIGHT
     total = 0.0
@@ -140,17 +145,18 @@ def copy_levels(next_line: Any, pixels: Any, levels: Any) -> None:
                 into[3 * x], into[3 * x + 1], into[3 * x + 2] = line[4 * x + 2], line[4 * x + 1], line[4 * x]
 
 
-def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, classes: Any) -> None:
+def classify(next_row: Any, lines: Any, differences: Any, words: Any, class_of: Any, classes: Any) -> None:
     """Find the contrast classes of rows of packets, taking the next one from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with its own `seen` and `words`. `lines` are the bytes of a
-    picture that consists of whole packets, (lines, bytes). `classes` (rows, columns) receives for each packet the
-    number, by the table `class_of`, that belongs to the greatest difference of a byte from that of a neighbour above,
-    below, left or right. `seen` (2, bytes), in the same memory as the uint64 `words` (2, bytes / 8), is overwritten.
+    Any number of threads may do so at the same time, each with its own `differences` and `words`. `lines` are the bytes
+    of a picture that consists of whole packets, (lines, bytes). `classes` (rows, columns) receives the class of each
+    packet. It belongs to the greatest difference of a byte from that of a neighbour above, below, left or right:
+    `class_of` (256,) has the class for all bits of such differences. `differences` (2, bytes) is overwritten; the
+    uint64 `words` (2, bytes / 8) are the same memory.
     """
     height = lines.shape[0]
     rows, columns = classes.shape
-    each = words.shape[1] // columns
+    packet_words = words.shape[1] // columns  # of a packet: each holds the differences of two pixels
     while True:
         row = fetch_add(next_row, 1)
         if row >= rows:
@@ -158,38 +164,38 @@ def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, cl
         y = row * PACKET_HEIGHT
         above, below = lines[max(y - 1, 0)], lines[min(y + PACKET_HEIGHT, height - 1)]
         packet = lines[y], lines[y + 1], lines[y + 2], lines[y + 3]
-        differences_upright(above, packet, below, seen[0], lines.shape[1])
-        differences_beside(packet, seen[1], lines.shape[1])
+        differences_upright(above, packet, below, differences[0], lines.shape[1])
+        differences_beside(packet, differences[1], lines.shape[1])
         for column in range(columns):
-            # The last pixel of the packet before differs from the first of this one.
-            found = words[1, max(column * each - 1, 0)] >> 32
-            for i in range(column * each, (column + 1) * each):
-                found |= words[0, i] | words[1, i]
-            # The highest bit of all differences is that of the greatest.
-            found |= found >> 32
-            found |= found >> 16
-            found |= found >> 8
-            classes[row, column] = class_of[found & 255]
+            # The upper half: the last pixel of the packet before differs from the first of this one.
+            bits = words[1, max(column * packet_words - 1, 0)] >> 32
+            for i in range(column * packet_words, (column + 1) * packet_words):
+                bits |= words[0, i] | words[1, i]
+            # All bytes of the word into its lowest one. The highest bit of all differences is that of the greatest.
+            bits |= bits >> 32
+            bits |= bits >> 16
+            bits |= bits >> 8
+            classes[row, column] = class_of[bits & 255]
 
 
-def differences_upright(above: Any, packet: tuple[Any, ...], below: Any, seen: Any, size: int) -> None:
-    """Collect the bits of the differences of the four lines of a row of packets from those above and below them."""
+def differences_upright(above: Any, packet: tuple[Any, ...], below: Any, bits: Any, size: int) -> None:
+    """Write into `bits` those of the differences of the four lines of a row of packets from those above and below."""
     a, b, c, d = packet
     for i in range(size):
         inner = difference(a[i], b[i]) | difference(b[i], c[i]) | difference(c[i], d[i])
-        seen[i] = difference(above[i], a[i]) | inner | difference(d[i], below[i])
+        bits[i] = difference(above[i], a[i]) | inner | difference(d[i], below[i])
 
 
-def differences_beside(packet: tuple[Any, ...], seen: Any, size: int) -> None:
-    """Collect the bits of the differences of the pixels of four lines from those to the right of them."""
+def differences_beside(packet: tuple[Any, ...], bits: Any, size: int) -> None:
+    """Write into `bits` those of the differences of the pixels of four lines from those to the right of them."""
     a, b, c, d = packet
     last = size - CHANNELS
     for i in range(last):
         k = i + CHANNELS
         upper = difference(a[i], a[k]) | difference(b[i], b[k])
-        seen[i] = upper | difference(c[i], c[k]) | difference(d[i], d[k])
+        bits[i] = upper | difference(c[i], c[k]) | difference(d[i], d[k])
     for i in range(last, size):
-        seen[i] = 0
+        bits[i] = 0
 
 
 def difference(a: Any, b: Any) -> Any:

@@ -16,18 +16,20 @@ TAB, LINE_FEED, RETURN, BLANK, HASH, COMMA = b"\t\n\r #,"
 def read_lines(text: Any, forms: Any, kinds: Any, numbers: Any, inexact: Any) -> None:
     """Read as many lines of a `text` of bytes, int8, as `kinds` has room for; each ends in a line feed.
 
-    A row of `forms` has a kind's identifier, zeros up to `NAME`, the bits of its numbers, and zeros. `kinds` receives
-    the row of each line, `OTHER` or `NOTHING`; `numbers` receives `MOST` numbers a line, of which a plain line sets
-    those that it has. The caller rounds those whose index, first byte and the byte behind the last `inexact` (n, 3)
-    receives, followed by -1 and the byte behind the last line.
+    - `forms` (k, `NAME` + `MOST`) has a row for each kind of plain line: the bytes of its identifier, zeros up to
+      `NAME`, the bits of its numbers, and zeros.
+    - `kinds` (lines,) receives the row in `forms` of each line, `OTHER` or `NOTHING`.
+    - `numbers` (lines * `MOST`,) receives the numbers of each plain line, as many as it has.
+    - `inexact` (n, 3) receives the numbers that are not rounded correctly, which the caller has to read: index in
+      `numbers`, first byte, and the byte behind the last one. A row with -1 and the byte behind the last line follows.
     """
-    at, guess, count = 0, 0, 0
+    at, guess, count = 0, 0, 0  # `guess`: the form of the line before, which is tried first
     for line in range(kinds.shape[0]):
         at = behind_blanks(text, at)
         kind, end = NOTHING, at
         if text[at] != LINE_FEED and text[at] != RETURN and text[at] != HASH:
             kind = form_at(text, at, forms, guess)
-            guess, end, column = max(kind, 0), at if kind >= 0 else -1, NAME
+            guess, end, column = max(kind, 0), at if kind >= 0 else -1, NAME  # `end` is -1 where the line is not plain
             while end >= 0 and text[end] > BLANK:
                 end += 1
             while end >= 0 and forms[guess, column] != 0:
@@ -43,7 +45,8 @@ def read_lines(text: Any, forms: Any, kinds: Any, numbers: Any, inexact: Any) ->
                 if not is_exact:
                     inexact[count, 0], inexact[count, 1], inexact[count, 2] = index, begin, stop
                     count += 1
-                end, column = stop if end < begin < stop <= begin + LONGEST else -1, column + 1
+                is_separate_number = end < begin < stop <= begin + LONGEST
+                end, column = stop if is_separate_number else -1, column + 1
         end = end_of_line(text, end)
         if end < 0:
             kind, end = OTHER, at

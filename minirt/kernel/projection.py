@@ -16,6 +16,7 @@ from minirt.lanes import Number, Vec, copysign, dot, fabs, maximum
 MARGIN = 1e-12  # relative to the coordinates that a position is computed from, whose rounding is 1e-16
 SINE_MARGIN = 1e-7  # error of a cone's cosine, relative to its sine: roots of differences are wrong by 2e-8
 COSINE_MARGIN = 4e-15  # error of a scalar product of unit vectors
+ALL_DIRECTIONS = -2.0  # the cosine of a cone that takes in all directions
 
 
 class Grid(NamedTuple):
@@ -38,15 +39,18 @@ class Grid(NamedTuple):
 def projected_rectangle(
     origin: Any, grid: Grid, face: int, spheres: Any, start: int, end: int, slack: float
 ) -> tuple[int, int, int, int]:
-    """Project the convex hull of some spheres, grown by `slack`, to a rectangle of a frame's cells.
+    """Project the convex hull of some spheres, grown by `slack`, to a rectangle of cells of the frame number `face`.
 
-    Returns first column, first row, columns and rows; no columns or no rows if the frame cannot see the hull.
+    The spheres are the rows from `start` up to `end` of `spheres`, (n, 4) centre and radius; `origin` is the point that
+    sees them. Returns first column, first row, columns and rows: no columns or rows if the frame cannot see the hull.
     """
     half_x = (grid.middle_x + grid.margin) / grid.scale_x  # slopes at the edges of the grid
     half_y = (grid.middle_y + grid.margin) / grid.scale_y
     slant_x = sqrt(1.0 + half_x * half_x)
     slant_y = sqrt(1.0 + half_y * half_y)
     frames = grid.frames
+    # Whether all spheres so far lie wholly behind the point, or beyond one edge of the grid; and whether one of them
+    # reaches the plane z = 0.
     behind = left = right = above = below = True
     beside = False
     low_x, high_x, low_y, high_y = inf, -inf, inf, -inf
@@ -88,10 +92,11 @@ def margin_around(grid: Grid, low: float, high: float) -> float:
 
 
 def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
-    """Least and greatest slope x / z of a disc that lies at least partly before z = 0.
+    """Return the least and the greatest slope x / z of the disc of `radius` about (x, z), seen from the origin.
 
-    They are the slopes of the tangents from the origin: the direction of the centre, turned by the angle whose sine is
-    radius / distance. A tangent that touches the disc behind z = 0 has an infinite slope.
+    The disc lies at least partly before z = 0. The slopes are those of the tangents from the origin: the direction of
+    the centre, turned by the angle whose sine is radius / distance. A tangent that touches the disc behind z = 0 has an
+    infinite slope; so have both if the origin is in the disc.
     """
     squared = x * x + z * z - radius * radius
     if squared <= 0.0:
@@ -115,16 +120,17 @@ def cell_interval(low: float, high: float, scale: float, middle: float, margin: 
 
 
 def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float, cone: Any) -> None:
-    """Write the bounding cone, as seen from a point, of the convex hull of some spheres, grown by `slack`.
+    """Write into `cone` the bounding cone, as seen from a point, of the convex hull of some spheres, grown by `slack`.
 
-    Its five numbers are the axis, which points to the mean of the centres; the cosine of the half-angle, or -2 if the
-    cone would take in half of all directions or more; and a lower bound of the hull's distance, along the axis.
+    The spheres are the rows from `start` up to `end` of `spheres`, (n, 4) centre and radius. The cone's five numbers
+    are the axis, which points to the mean of the centres; the cosine of the half-angle, or `ALL_DIRECTIONS` if the cone
+    would take in half of them or more; and a lower bound of the hull's distance, along the axis.
     """
     eye, total = vector(origin, 0), Vec(0.0, 0.0, 0.0)
     for i in range(start, end):
         total = total + (vector(spheres[i], 0) - eye)
     length = sqrt(dot(total, total))
-    store_cone(cone, Vec(0.0, 0.0, 0.0), -2.0, 0.0)
+    store_cone(cone, Vec(0.0, 0.0, 0.0), ALL_DIRECTIONS, 0.0)
     if length == 0.0:
         return
     least, cosine, widest = inf, 1.0, 0.0
@@ -136,10 +142,11 @@ def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float,
         least = min(least, along - radius)
         widest = max(widest, radius * radius / squared)
         # Cosine of the sum of two angles: from the axis to the centre, and from there to the rim.
-        cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
+        cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else ALL_DIRECTIONS
     axis = Vec(total.x / length, total.y / length, total.z / length)
     is_narrow = cosine > 0.0
-    store_cone(cone, axis, cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN if is_narrow else -2.0, max(least, 0.0))
+    bound = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN if is_narrow else ALL_DIRECTIONS
+    store_cone(cone, axis, bound, max(least, 0.0))
 
 
 def store_cone(cone: Any, axis: Vec, cosine: float, least_distance: float) -> None:
@@ -162,11 +169,12 @@ def signed_height(plane: Any, point: Vec, slack: float) -> Number:
 
 
 def cells_of_plane(grid: Grid, row: int, towards: Vec, lean: float) -> tuple[int, int]:
-    """First cell and number of cells, in a row of cells, those of all frames counted, in which a plane may be hit.
+    """Return the first column and the number of columns of the cells in a row in which a plane may be hit.
 
-    `towards` is its unit normal that points to it; 0, 0, 0 stands for everywhere. A direction forward + x across + y
-    down hits the plane if its product with the normal, a linear function of the slopes x and y, is positive: the row is
-    tested at the edge at which it is greater. Directions may differ by vectors up to `lean`.
+    Rows are counted through all frames. `towards` is the unit normal of the plane, on the side away from the point;
+    0, 0, 0 stands for a plane that may be hit everywhere. A direction forward + x across + y down hits the plane if its
+    product with the normal, a linear function of the slopes x and y, is positive. The row is tested at its edge, upper
+    or lower, at which the product is greater. Directions may differ by vectors up to `lean`.
     """
     frames, face = grid.frames, row // grid.down
     across = dot(vector(frames[face, 0], 0), towards)
@@ -175,7 +183,7 @@ def cells_of_plane(grid: Grid, row: int, towards: Vec, lean: float) -> tuple[int
     upper, lower = (middle - grid.margin) / grid.scale_y, (middle + 1.0 + grid.margin) / grid.scale_y
     slack = MARGIN * (1.0 + grid.middle_x / grid.scale_x + grid.middle_y / grid.scale_y) + lean
     most = dot(vector(frames[face, 2], 0), towards) + max(down * upper, down * lower) + slack
-    low, high = -inf, inf
+    low, high = -inf, inf  # slopes x between which across * x + most is positive
     if across > 0.0:
         low = -most / across
     elif across < 0.0:

@@ -21,7 +21,8 @@ def trace_rays(
     """Find the closest hits of n rays, claiming chunks of rays from the counter `next_ray` until none is left.
 
     Any number of threads may do so at the same time. Reads `origins` and `directions`, (n, 3), which may have any
-    length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,): NaN, infinity and -1 without a hit.
+    length. Writes `points` of hits and `normals`, (n, 3), `distances`, and `owners`, the indices of the shapes in
+    `tree`, (n,): NaN, infinity and -1 without a hit.
     """
     count = origins.shape[0]
     memory = packet_memory()
@@ -30,7 +31,7 @@ def trace_rays(
         if start >= count:
             return
         for begin in range(start, min(start + CHUNK, count), WIDTH):
-            for ray in range(WIDTH):
+            for ray in range(WIDTH):  # lanes behind the last ray repeat it, and are not active
                 memory[HIT + ray] = begin + ray
                 for axis in range(3):
                     memory[ORIGIN + axis * WIDTH + ray] = origins[min(begin + ray, count - 1), axis]
@@ -41,11 +42,11 @@ def trace_rays(
             save_vec(Vec(t, owner, t), memory, HIT)
             for ray in range(min(WIDTH, count - begin)):
                 index, point = int(memory[HIT + WIDTH + ray]), vec_at(memory, ORIGIN, ray)
-                on, normal = Vec(nan, nan, nan), Vec(nan, nan, nan)
+                surface_point, normal = Vec(nan, nan, nan), Vec(nan, nan, nan)
                 if index >= 0:
-                    on, normal = of_shape(surface, tree.groups, tree.slots[index], (point,), (point, point))
+                    surface_point, normal = of_shape(surface, tree.groups, tree.slots[index], (point,), (point, point))
                 distances[begin + ray], owners[begin + ray] = memory[HIT + ray], index
-                store_vec(points, begin + ray, on)
+                store_vec(points, begin + ray, surface_point)
                 store_vec(normals, begin + ray, normal)
 
 

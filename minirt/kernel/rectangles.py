@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.pixels import fetch_add
 from minirt.kernel.projection import (
+    ALL_DIRECTIONS,
     MARGIN,
     Grid,
     bounding_cone,
@@ -94,25 +95,25 @@ def write_extent(seen: BinningArrays, index: int) -> None:
 
 
 def project_shape(seen: BinningArrays, slack: float, shape: int, at: int) -> int:
-    """Write the rectangles of a shape with bounding spheres, beginning with row `at`, and its bounding cone; return the
-    row behind its last rectangle.
+    """Write the rectangles of a shape into `seen.rectangles`, from row `at` on, and its bounding cone into
+    `seen.cones`; return the row behind its last rectangle.
 
     `shape` counts in the order of lists. The shape lies in the convex hull of its spheres, which are
-    `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`; a plane has none. A shape out of `reach` has no
-    rectangle, and the cone of a shape without one is 0.
+    `balls[first_ball[shape]:first_ball[shape + 1]]`, grown by `slack`. For a plane, which has none, nothing is written.
+    A shape out of `reach` has no rectangle, and the cone of a shape without one is 0.
     """
     grid, start, end, before = seen.grid, seen.first_ball[shape], seen.first_ball[shape + 1], at
     if start == end:
         return at
-    if seen.reach < inf:
+    if seen.reach < inf:  # for the distance of the shape
         bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
     is_near = seen.cones[shape, LEAST_DISTANCE] <= seen.reach
     for face in range(grid.frames.shape[0] if is_near else 0):
         column, row, columns, rows = projected_rectangle(seen.origin, grid, face, seen.balls, start, end, slack)
         if columns > 0 and rows > 0:
             at = write_rectangle(seen, at, shape, face * grid.down + row, column, columns, rows)
-    for i in range(5):
-        seen.cones[shape, i] = 0.0
+    for column_of_cone in range(5):
+        seen.cones[shape, column_of_cone] = 0.0
     if at > before:
         bounding_cone(seen.origin, seen.balls, start, end, slack, seen.cones[shape])
     quantise_distance(seen, shape)
@@ -145,15 +146,23 @@ def quantise_distance(seen: BinningArrays, shape: int) -> None:
 
 
 def project_planes(seen: BinningArrays, slack: float, at: int) -> int:
-    """Project all planes to rectangles of one row of cells, from number `at` on; return the number behind the last."""
+    """Project all planes to rectangles of one row of cells, from row `at` of `seen.rectangles` on.
+
+    Returns the row behind the last rectangle. The cones and sides of the planes are written, too, and `seen.found[1]`
+    is increased by the number of planes whose side has changed.
+    """
     for number in range(seen.planes.shape[0]):
         plane, shape = seen.planes[number], seen.plane_places[number]
         height = signed_height(plane, vector(seen.origin, 0), slack)
-        side = int(height > 0.0) - int(height < 0.0)
-        seen.found[1] += int(seen.sides[number] != side)
+        side = 0
+        if height > 0.0:
+            side = 1
+        elif height < 0.0:
+            side = -1
+        if seen.sides[number] != side:
+            seen.found[1] += 1
         seen.sides[number] = side
-        cone = seen.cones[shape]
-        store_cone(cone, Vec(0.0, 0.0, 0.0), -2.0, abs(height))
+        store_cone(seen.cones[shape], Vec(0.0, 0.0, 0.0), ALL_DIRECTIONS, abs(height))
         quantise_distance(seen, shape)
         if seen.shown[number] and abs(height) <= seen.reach:
             for row in range(seen.grid.frames.shape[0] * seen.grid.down):

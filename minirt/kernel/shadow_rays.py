@@ -31,13 +31,15 @@ from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, unit, where, width
 
 CIRCLE = 1.1 * 2.0**0.5  # in half edges of a cell: with 16 of them or more on an edge it takes in all corners
-CACHED = 5  # numbers that `remember_cell` writes
+CACHED = 5  # numbers that `remember_cell` writes: a direction,
+CELL, SQUARED_RADIUS = 3, 4  # and in these columns a cell, and the square of the radius of its circle
+PARALLEL = 6  # column of `SceneArrays.spots`: 1 for parallel light
 
 
 def is_close(cached: Any, direction: Vec) -> Mask:
     """Whether directions are in the circle around the cached cell."""
     difference = direction - vector(cached, 0)
-    return dot(difference, difference) <= cached[4]
+    return dot(difference, difference) <= cached[SQUARED_RADIUS]
 
 
 def remember_cell(cached: Any, cells: int, direction: Vec, ray: int) -> None:
@@ -45,13 +47,14 @@ def remember_cell(cached: Any, cells: int, direction: Vec, ray: int) -> None:
     square of the radius of the circle around it."""
     cell, middle = light_buffer_cell(-vec_of(direction, ray), cells)
     towards, radius = -unit(middle), CIRCLE / cells
-    cached[0], cached[1], cached[2], cached[3] = towards.x, towards.y, towards.z, cell
-    cached[4] = radius * radius / dot(middle, middle)  # a face shrinks towards its edges as the light sees it
+    cached[0], cached[1], cached[2], cached[CELL] = towards.x, towards.y, towards.z, cell
+    # As the light sees it, a face shrinks towards its edges.
+    cached[SQUARED_RADIUS] = radius * radius / dot(middle, middle)
 
 
 def light_buffer_cell(direction: Vec, cells: int) -> tuple[Number, Vec]:
     """Return the cell that a direction from the light falls into, (face * cells + row) * cells + column, and its middle
-    on the cube from -1 to 1.
+    on the cube from -1 to 1. There are `cells` cells along an edge.
 
     Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along
     the one after it, both from -1 to 1.
@@ -86,15 +89,15 @@ class ShadowRays(NamedTuple):
 
 
 def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, glass: bool) -> Mask:
-    """Trace shadow rays: the `active` rays that hit nothing nearer than their end.
+    """Trace shadow rays, and return those of the `active` ones that hit nothing nearer than their end.
 
-    Only opaque shapes count, or with `glass` only transparent ones; in kernels without glass all shapes.
+    Only opaque shapes count, or with `glass` only transparent ones; in kernels without glass all shapes count.
     Only shapes in the light-buffer cell of a ray are tested (Haines and Greenberg 1986). `memory` (m, `CACHED`) caches
     for each light the cell that was last looked up: most rays of a packet, and of the next packet, are in the circle
-    around it and need no other lookup. Cells and cones are those of the directions `towards` the centre of the light
-    source.
+    around that cell and need no other lookup. Cells and cones are those of the directions `towards` the centre of the
+    light source.
     """
-    if scene.light_buffer_cells == 1:
+    if scene.light_buffer_cells == 1:  # no light buffers: cell 0 has all shapes
         return for_each_kind(unoccluded_by_kind, scene.groups, active, (scene, rays, 0, active, glass))
     visible = active
     remaining = active
@@ -105,7 +108,7 @@ def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, 
         if rarely(not any(in_cell)):
             remember_cell(memory[rays.light], scene.light_buffer_cells, rays.towards, first(remaining))
             in_cell = remaining & is_close(memory[rays.light], rays.towards)
-        arguments = (scene, rays, int(memory[rays.light, 3]), in_cell, glass)
+        arguments = (scene, rays, int(memory[rays.light, CELL]), in_cell, glass)
         visible = for_each_kind(unoccluded_by_kind, scene.groups, visible, arguments)
         remaining = remaining & ~in_cell
     return visible
@@ -115,7 +118,10 @@ Arguments = tuple[SceneArrays, ShadowRays, int, Mask, bool]  # and the rays' cel
 
 
 def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mask:
-    """Remove the shadow rays that a shape of one kind occludes from `visible`; only rays `in_cell` are tested."""
+    """Return the mask `visible` without the shadow rays that shapes of one kind occlude; rays `in_cell` are tested.
+
+    The shapes of a cell are in order of distance: behind the first one that is too far there is nothing to test.
+    """
     scene, rays, cell, in_cell, glass = arguments
     start, end = range_in_cell(group, rays.light, cell)
     for i in range(start, end):
@@ -166,7 +172,7 @@ def reach_of(visible: Mask, arguments: Arguments) -> Number:
 
 def is_parallel(scene: SceneArrays, light: int) -> bool:
     """Whether a light source is parallel light."""
-    return has_rows(scene.spots) and scene.spots[light, 6] > 0.5
+    return has_rows(scene.spots) and scene.spots[light, PARALLEL] > 0.5
 
 
 def counts(scene: SceneArrays, index: int, glass: bool) -> bool:

@@ -87,7 +87,10 @@ Arguments = tuple[SceneArrays, int, Vec, Vec]  # and the tile, the eye and the d
 
 
 def closest_of_kind(group: Group, state: ClosestHit, arguments: Arguments) -> ClosestHit:
-    """Continue `closest_hit` over the shapes of one kind; `state` has the closest hits of the kinds before."""
+    """Continue `closest_hit` over the shapes of one kind; `state` has the closest hits of the kinds before.
+
+    The shapes of a tile are in order of distance: behind the first one that is too far there is nothing to test.
+    """
     scene, tile, origin, direction = arguments
     start, end = range_in_tile(group, tile)
     for i in range(start, end):
@@ -100,7 +103,7 @@ def closest_of_kind(group: Group, state: ClosestHit, arguments: Arguments) -> Cl
             if group.trees is None:
                 state = closest_of_shape(group, row, index, nearer, state, arguments)
             else:
-                rays = splat(origin, direction.x), direction, splat(-1.0, direction.x)  # which start on no shape
+                rays = splat(origin, direction.x), direction, splat(-1.0, direction.x)  # -1: they start on no shape
                 state = fold_over_mesh(closest_of_shape, search_limit, group, row, rays, nearer, state, arguments)
     return state
 
@@ -133,9 +136,10 @@ def search_limit(state: ClosestHit, arguments: Arguments) -> Number:
 def closer_hit(
     shape: Any, index: int, shape_extent: float, hit: Mask, t: Number, origin: Vec, direction: Vec, state: ClosestHit
 ) -> ClosestHit:
-    """Update the closest hits, `state`, by the hits of one shape at distance t.
+    """Return the closest hits, which were `state`, after the hits of shape `index` at distances t.
 
-    The nearer hit wins. Where both lie within rounding of each other, the shape with the lower index wins.
+    The nearer hit wins. Where both lie within rounding of each other, the shape with the lower index wins, and the
+    larger extent counts.
     """
     best, owner, extent, last = state
     new_extent = splat(shape_extent, best)
@@ -149,7 +153,7 @@ def closer_hit(
         gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
         rounding = ROUNDING * unit_roundoff(best) * (max_norm(point) + max_norm(origin) + new_extent)
         same = contested & (gap <= 4.0 * rounding)
-        order = where(same, where(index < owner, -inf, inf), t)
+        order = where(same, where(index < owner, -inf, inf), t)  # the distance by which the hits are compared
         closer = hit & (order < best)
         new_extent = where(same, maximum(new_extent, extent), new_extent)
         extent = where(same, new_extent, extent)

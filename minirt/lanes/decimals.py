@@ -10,6 +10,8 @@ from typing import Any
 PLUS, MINUS, POINT, ZERO, NINE, LOWER_E, UPPER_E = b"+-.09eE"
 LARGEST = 10**17  # of whole numbers: larger ones become it
 LONGEST = 300  # bytes of a number that a file may have, as in `minirt.fields.scalars`
+MOST_DIGITS = 18  # of a number of 63 bits, whatever they are
+GREATEST_POWER = 22  # of ten that a float64 holds exactly
 
 
 def is_digit(byte: int) -> bool:
@@ -33,18 +35,22 @@ def read_whole(text: Any, start: int) -> tuple[int, int]:
 
 
 def read_decimal(text: Any, start: int) -> tuple[float, int, bool]:
-    """Return the number at a place of a text, the place behind it, which is `start` where there is none, and whether
-    it is rounded correctly, as those of at most 18 digits and without large exponents are (after Clinger, How to Read
-    Floating Point Numbers Accurately, 1990)."""
+    """Return the number at a place of a text, the place behind it, and whether it is rounded correctly.
+
+    The place is `start` where there is no number. Numbers of at most 18 digits and without large exponents are rounded
+    correctly (after Clinger, How to Read Floating Point Numbers Accurately, 1990); other values are of no use.
+    """
     at = skip_sign(text, start)
-    mantissa, digits, significant, decimals, step = 0, 0, 0, 0, 0
-    while is_digit(text[at]) or (text[at] == POINT and step == 0):
+    mantissa, digits, significant, decimals, is_behind_point = 0, 0, 0, 0, False
+    while is_digit(text[at]) or (text[at] == POINT and not is_behind_point):
         if text[at] == POINT:
-            step = 1
+            is_behind_point = True
         else:
             mantissa = 10 * mantissa + (int(text[at]) - ZERO)
-            significant += mantissa > 0 or significant > 0
-            decimals += step
+            if mantissa > 0 or significant > 0:  # many digits overflow a mantissa of 64 bits
+                significant += 1
+            if is_behind_point:
+                decimals += 1
             digits += 1
         at += 1
     if digits == 0:
@@ -52,19 +58,23 @@ def read_decimal(text: Any, start: int) -> tuple[float, int, bool]:
     exponent, end = 0, at
     if text[at] == LOWER_E or text[at] == UPPER_E:
         exponent, end = read_whole(text, at + 1)
-        if end > at + 1:
+        if end > at + 1:  # else the e is no part of the number
             at = end
     exponent -= decimals
-    value, is_exact = scaled(mantissa, exponent) if significant <= 18 and -22 <= exponent <= 22 else (0.0, False)
+    is_short = significant <= MOST_DIGITS and -GREATEST_POWER <= exponent <= GREATEST_POWER
+    value, is_exact = scaled(mantissa, exponent) if is_short else (0.0, False)
     return -value if text[start] == MINUS else value, at, is_exact
 
 
 def scaled(mantissa: int, exponent: int) -> tuple[float, bool]:
-    """Return `mantissa` times 10 to the power of `exponent`, from -22 to 22, and whether it is rounded correctly."""
-    power, five = 1.0, 1
+    """Return `mantissa` times 10 to the power of `exponent`, from -22 to 22, and whether it is rounded correctly.
+
+    The number is of no use where it is not.
+    """
+    power, power_of_5 = 1.0, 1
     for _ in range(abs(exponent)):
         power *= 10.0
-        five *= 5
+        power_of_5 *= 5
     if mantissa <= 2**53:
         return mantissa / power if exponent < 0 else mantissa * power, True
     # A quotient of 53 bits, and its remainder, which is small, and so known from its lower 64 bits.
@@ -74,6 +84,6 @@ def scaled(mantissa: int, exponent: int) -> tuple[float, bool]:
     if shift < 0 or exponent > 0:
         return 0.0, False
     whole = int(quotient)
-    twice = 2 * ((mantissa << shift) - whole * five)
-    whole += (twice + five) // (2 * five)
+    twice_remainder = 2 * ((mantissa << shift) - whole * power_of_5)
+    whole += (twice_remainder + power_of_5) // (2 * power_of_5)
     return whole / scale, 2**52 < whole <= 2**53

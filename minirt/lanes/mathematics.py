@@ -69,7 +69,7 @@ def log2(x: Number) -> Number:
     series = splat(1.0 / 23.0, z)
     for n in range(21, 0, -2):
         series = series * z + 1.0 / n
-    return whole + 2.885390081777926815 * s * series
+    return whole + 2.885390081777926815 * s * series  # 2 / ln 2
 
 
 def exp2(y: Number) -> Number:
@@ -96,7 +96,11 @@ GREATEST = 1.0363538  # bound of the noise: the largest blend of the corners' st
 
 
 def noise_and_gradient(p: Vec) -> tuple[Number, Vec]:
-    """Return the noise at p, from -`GREATEST` to `GREATEST` and 0 on average, and its gradient."""
+    """Return the noise at p, from -`GREATEST` to `GREATEST` and 0 on average, and its gradient.
+
+    The cube of p has the corner x, y, z; f is the place in the cube. Of the four edges along x, with noise n and
+    gradient g, the first digit tells whether their y is greater by 1, the second whether their z is.
+    """
     x, y, z = floor(p.x), floor(p.y), floor(p.z)
     x0, y0, z0 = remainder(x + START), remainder(y + START), remainder(z + START)
     x1, y1 = remainder(x + (START + 1.0)), remainder(y + (START + 1.0))

@@ -60,6 +60,7 @@ class Compound(Field):
         return not any(field.required for field in fields_of(self.record)[1:])
 
     def parse(self, text: str) -> Material:
+        """Return the material with the values of a text; FieldError has the index of the word that is wrong."""
         words, start, values = text.split(","), 0, {}
         for field in fields_of(self.record):
             own_words = words[start : start + field.width]

@@ -41,10 +41,13 @@ Read = Callable[[Path], np.ndarray]
 
 
 def cached(read: Read) -> Callable[[str | os.PathLike[str]], np.ndarray]:
-    """Decorate a reader of a picture file: its array is read-only, and read again only if the file has changed."""
+    """Decorate a reader of a picture file: its array is read-only, and read again only if the file has changed.
+
+    FileError where the array would take too much memory.
+    """
 
     @wraps(read)
-    def checked(path: Path) -> np.ndarray:
+    def read_and_check(path: Path) -> np.ndarray:
         try:
             array = read(path)
             check_textures([array])
@@ -53,7 +56,7 @@ def cached(read: Read) -> Callable[[str | os.PathLike[str]], np.ndarray]:
         array.flags.writeable = False
         return array
 
-    return file_io.read_once(checked)
+    return file_io.read_once(read_and_check)
 
 
 @cached
@@ -185,8 +188,11 @@ def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
 
 @contextmanager
 def opened_by_pillow(path: Path, data: bytes) -> Iterator[Any]:
-    """Open the bytes of a file, of which Pillow reads the header alone, and check the size; FileError for that and for
-    what goes wrong in the block."""
+    """Give the block the Pillow image of the bytes of a file, of which only the header is read, and the size checked.
+
+    FileError where the bytes are no picture, or too large a one, and for all that goes wrong in the block, except for
+    TooLargeError.
+    """
     from PIL import Image as pillow  # noqa: N813
     from PIL import UnidentifiedImageError
 

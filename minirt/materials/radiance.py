@@ -37,7 +37,7 @@ class RadianceHeader(NamedTuple):
 
 
 def read_header(data: bytes) -> RadianceHeader:
-    """Read the header of a file; RadianceError where it is not one."""
+    """Return the header of a file; RadianceError where it begins with none, or with one of another format."""
     file, number, exposure = BytesIO(data[:LONGEST_HEADER]), 1, 1.0
     while (text := file.readline()).strip():
         key, _, value = text.partition(b"=")
@@ -54,7 +54,7 @@ def read_header(data: bytes) -> RadianceHeader:
     if not text:
         raise RadianceError(f"line {number - 1}: the header has no end")
     match = RESOLUTION.fullmatch(file.readline().strip())
-    if not match or match[1][1:] == match[3][1:]:
+    if not match or match[1][1:] == match[3][1:]:  # both sizes along one axis
         raise RadianceError(f"line {number + 1}: expected a size such as -Y 512 +X 1024")
     sizes = {match[1][1:]: int(match[2]), match[3][1:]: int(match[4])}
     return RadianceHeader(sizes[b"X"], sizes[b"Y"], (match[1], match[3]), exposure, file.tell())
@@ -97,9 +97,10 @@ def read_scanline(data: bytes, at: int, pixels: np.ndarray) -> int:
 
 
 def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
-    """Read a scanline in the new encoding: all red, green, blue, exponents; a byte above 128 begins a run.
+    """Read a scanline in the new encoding from byte `at` of a file on, and return the byte behind it.
 
-    It begins at byte `at`, and fills `pixels`, uint8 (length, 4). Returns the byte behind it. RadianceError.
+    It fills `pixels`, uint8 (length, 4). All red comes first, then green, blue and exponents; a byte above 128 begins a
+    run. RadianceError where the scanline is damaged.
     """
     length = len(pixels)
     for component in range(4):
@@ -121,13 +122,14 @@ def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
 
 
 def read_whole_pixels(data: bytes, at: int, pixels: np.ndarray) -> int:
-    """Read a scanline of whole pixels; 1, 1, 1, n repeats the last one n times, the next one 256 n times, and so on.
+    """Read a scanline of whole pixels from byte `at` of a file on, and return the byte behind it.
 
-    It begins at byte `at`, and fills `pixels`, uint8 (length, 4). Returns the byte behind it. RadianceError.
+    It fills `pixels`, uint8 (length, 4). 1, 1, 1, n repeats the last pixel n times; the next one in a row repeats it
+    256 n times, and so on. RadianceError where the scanline is damaged.
     """
     size = pixels.nbytes
     line, end = bytearray(data[at : at + size]), at + size
-    if len(line) < size or REPEAT in line:  # which few files have
+    if len(line) < size or REPEAT in line:  # few files have repeats
         line, end, repeats = bytearray(), at, 0
         while len(line) < size:
             pixel, count, missing = data[end : end + 4], 1, (size - len(line)) // 4

@@ -35,9 +35,10 @@ logging.getLogger("trimesh").addHandler(logging.NullHandler())  # without one, i
 
 
 def read(path: Path) -> Triangles:
-    """Return the triangles of a file, by way of an .obj file that trimesh writes; FileError, ObjError.
+    """Return the triangles of a file, by way of an .obj file that trimesh writes.
 
-    Parts of glTF files are flat unless they have normals, as glTF 2.0 asks for; other files have none.
+    Parts of glTF files are flat unless they have normals, as glTF 2.0 asks for; other files have none. FileError where
+    trimesh is missing or cannot read the file, ObjError where the file is beyond a limit or has no triangle.
     """
     try:
         import trimesh
@@ -45,20 +46,14 @@ def read(path: Path) -> Triangles:
     except ImportError:
         raise FileError(path, "needs trimesh, which is not installed: pip install 'minirt[meshes]'") from None
     files, kind = Files(path), path.suffix.lower().removeprefix(".")
-    data, is_gltf = file_io.read(path, file_io.LARGEST_ASSET), kind in ("gltf", "glb")
-    looks: dict[str, Look] = {}
-    has_normals = False
+    data = file_io.read(path, file_io.LARGEST_ASSET)
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # about oddities of a file that is read
-            if is_gltf:
-                kind, (data, looks, has_normals) = "gltf", gltf.prepare(data, files)
-            elif kind == "ply":
-                data = prepare_ply(data, files)
-            else:
-                check_lines(data)
+            data, kind, looks, has_normals = prepare(data, kind, files)
+            is_gltf = kind == "gltf"
             files.check_pictures()
-            usual = Look(picture=PLY_PICTURE * (PLY_PICTURE in files.pictures))
+            usual = Look(picture=PLY_PICTURE if PLY_PICTURE in files.pictures else "")
             scene = trimesh.load_scene(io.BytesIO(data), kind, files, process=False, skip_materials=kind == "ply")
             parts = [part for part in scene.geometry.values() if hasattr(part, "faces")]
             is_finite = all(np.isfinite(part.vertices).all() for part in parts)
@@ -82,6 +77,19 @@ def read(path: Path) -> Triangles:
     except ObjError as error:
         raise ObjError(error.message) from None  # without its place in a file that nobody has
     return mesh if is_finite or is_gltf else replace(mesh, notices=(NOT_FINITE, *mesh.notices))
+
+
+def prepare(data: bytes, kind: str, files: Files) -> tuple[bytes, str, dict[str, Look], bool]:
+    """Return a file of a kind, "glb" for one, as trimesh gets it: its bytes, its kind, looks of its materials by their
+    names, and whether its normals count. FileError or ObjError where the file, or one that it names, is beyond a limit.
+    """
+    if kind in ("gltf", "glb"):
+        data, looks, has_normals = gltf.prepare(data, files)
+        return data, "gltf", looks, has_normals
+    if kind == "ply":
+        return prepare_ply(data, files), kind, {}, False
+    check_lines(data)
+    return data, kind, {}, False
 
 
 def give_looks(parts: list[Any], looks: dict[str, Look], usual: Look) -> None:

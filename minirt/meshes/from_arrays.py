@@ -16,23 +16,23 @@ from minirt.meshes.triangles import Triangles, non_degenerate, used_points
 
 
 def triangles_of(vertices: Any, faces: Any, normals: Any = None, uvs: Any = None) -> Triangles:
-    """Return the triangles of arrays, which `minirt.Mesh.from_arrays` describes; ElementError where they are none."""
+    """Return the triangles of arrays, which `minirt.Mesh.from_arrays` describes; ElementError where it says so."""
     points = numbers_of("vertices", vertices, 3)
     corners, sizes = corners_of(faces, len(points))
     try:
         cut = triangulate(points, corners, sizes, lambda _: 0)
     except ObjError as error:
         raise ElementError(f"mesh faces: {error}") from None
-    cut = corners[cut]
-    cut = cut[non_degenerate(points, cut)]
-    if not len(cut):
+    triangles = corners[cut]
+    triangles = triangles[non_degenerate(points, triangles)]
+    if not len(triangles):
         raise ElementError("mesh faces have no triangle that is more than a line")
     if normals is not None:
-        flat = Triangles(points, cut).flat_normals
-        normals = corner_normals(numbers_of("normals", normals, 3, len(points)), cut, flat)
+        flat = Triangles(points, triangles).flat_normals
+        normals = corner_normals(numbers_of("normals", normals, 3, len(points)), triangles, flat)
     if uvs is not None:
-        uvs = numbers_of("uvs", uvs, 2, len(points))[cut]
-    return Triangles(*used_points(points, cut), normals, uvs)
+        uvs = numbers_of("uvs", uvs, 2, len(points))[triangles]
+    return Triangles(*used_points(points, triangles), normals, uvs)
 
 
 def numbers_of(name: str, values: Any, width: int, count: int | None = None) -> np.ndarray:
@@ -50,7 +50,10 @@ def numbers_of(name: str, values: Any, width: int, count: int | None = None) -> 
 
 
 def corners_of(faces: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices of the corners of all faces, (c,), and how many each face has, (m,). ElementError."""
+    """Return the vertices of the corners of all faces, (c,), and how many corners each face has, (m,).
+
+    ElementError for anything but faces of three or more indices of `count` vertices, and for too many faces.
+    """
     try:
         rows = faces if isinstance(faces, np.ndarray) else [np.asarray(face) for face in faces]
         sizes = np.array([len(row) for row in rows], np.int64)

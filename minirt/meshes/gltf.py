@@ -31,11 +31,13 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "M
 
 
 def prepare(data: bytes, files: Files) -> tuple[bytes, dict[str, Look], bool]:
-    """Return a .gltf file for trimesh, how its materials look, by their names in it, and whether it has normals;
-    ObjError where the file is beyond a limit, FileError where it names one that is, another error where it is damaged.
+    """Return a .gltf file for trimesh, how its materials look, by their names in it, and whether it has normals.
+
+    `data` is a .gltf or .glb file. `files` gets the binary part of a .glb file, and pictures. ObjError where the file
+    is beyond a limit, FileError where a file that it names is; any other error where it is damaged.
     """
     text = data
-    if data.startswith(b"glTF"):
+    if data.startswith(b"glTF"):  # a header of 12 bytes; length and kind, 8 bytes, before the text and the binary part
         (length,) = struct.unpack_from("<I", data, 12)
         text, files.contents[BINARY] = data[20 : 20 + length], data[28 + length :]
     if sum(map(text.count, (b"{", b"[", b","))) > MOST_VALUES:
@@ -59,10 +61,11 @@ def add_normals(tree: Mapping[str, Any]) -> bool:
     whether it has."""
     parts = [part["attributes"] for mesh in tree["meshes"] for part in mesh["primitives"]]
     flat = [part for part in parts if "NORMAL" not in part]
-    for part in flat * (len(flat) < len(parts)):
+    has_some = len(flat) < len(parts)
+    for part in flat if has_some else []:
         points, part["NORMAL"] = tree["accessors"][part["POSITION"]], len(tree["accessors"])
         tree["accessors"].append({"componentType": 5126, "count": points["count"], "type": "VEC3"})
-    return len(flat) < len(parts)
+    return has_some
 
 
 def encoded(light: Any) -> np.ndarray:
@@ -72,18 +75,19 @@ def encoded(light: Any) -> np.ndarray:
 
 
 def check(tree: Mapping[str, Any]) -> None:
-    """Check the sizes of the arrays, and how much the nodes of the scene show; ObjError."""
+    """Raise ObjError if the arrays of a file are too large, or if the nodes of its scene show too many triangles or
+    parts. Any other error tells that the file is damaged."""
     counts = [abs(index(each["count"])) for each in tree["accessors"]]
     widths = [SIZES[each["componentType"]] * WIDTHS[each["type"]] for each in tree["accessors"]]
     views = sum(abs(index(view["byteLength"])) for view in tree["bufferViews"])
     if max(views, sum(map(mul, counts, widths))) > file_io.LARGEST_ASSET:
         raise ObjError(f"has arrays of more than {file_io.LARGEST_ASSET // 2**20} MiB")
-    corners, parts = [], [len(mesh["primitives"]) for mesh in tree["meshes"]]
+    corners, parts = [], [len(mesh["primitives"]) for mesh in tree["meshes"]]  # of each mesh
     for mesh in tree["meshes"]:
         points = [each["attributes"]["POSITION"] for each in mesh["primitives"]]
         order = [each.get("indices", point) for each, point in zip(mesh["primitives"], points, strict=True)]
         corners.append(sum(max(counts[one], counts[other]) for one, other in zip(points, order, strict=True)))
-    shown, placed, seen = sum(corners), sum(parts), set()
+    shown, placed, seen = sum(corners), sum(parts), set()  # trimesh makes each mesh once, and once for each node
     waiting = [*tree["scenes"][tree.get("scene", 0)].get("nodes", ())]
     while waiting:
         number = waiting.pop()
@@ -100,7 +104,7 @@ def check(tree: Mapping[str, Any]) -> None:
 
 
 def look_of(material: Mapping[str, Any], tree: Mapping[str, Any], files: Files) -> Look:
-    """Return how a material looks, whose picture becomes a file of its own; FileError where that is beyond a limit."""
+    """Return how a material looks; its picture becomes one of `files`. FileError where that is beyond a limit."""
     look = material.get("pbrMetallicRoughness", {})
     colour = tuple(encoded([clamp(share, 0, 1) for share in look.get("baseColorFactor", WHITE)[:3]]).tolist())
     if "baseColorTexture" not in look:

@@ -46,11 +46,14 @@ def library_paths(names: Iterable[str], folder: Path) -> tuple[Path, ...]:
 
 
 def read_libraries(paths: Iterable[Path], folder: Path) -> tuple[dict[str, MeshMaterial], set[str]]:
-    """Return the materials of files beside a mesh, by their names, and words for what is not used of them."""
+    """Return the materials of the files `paths`, by their names, and words for what is not used of them.
+
+    Pictures are looked for in `folder`. Where a name is given twice, later statements of one key count.
+    """
     found: dict[str, dict[str, str]] = {}
     unused: set[str] = set()
     for path in paths:
-        said: dict[str, str] = {}
+        said: dict[str, str] = {}  # statements of the present material; those before the first one are dropped
         try:
             lines = file_io.read(path, file_io.LARGEST_ASSET).decode("utf-8", "replace").splitlines()
         except FileError:
@@ -66,7 +69,10 @@ def read_libraries(paths: Iterable[Path], folder: Path) -> tuple[dict[str, MeshM
 
 
 def material_of(said: dict[str, str], folder: Path, unused: set[str]) -> MeshMaterial:
-    """Return the material that some statements mean; words for what is not used of them are added to `unused`."""
+    """Return the material that the statements `said` mean, values by their keys; add to `unused` what is not used.
+
+    Pictures are looked for in `folder`.
+    """
     values: dict[str, Any] = {"colour": tuple(round(255 * clamp(each, 0, 1)) for each in three(said.get("Kd"), 1.0))}
     share = clamp(sum(three(said.get("Ks"), 0.0)) / 3, 0, 1)
     exponent, illum = three(said.get("Ns"), 0.0)[0], three(said.get("illum"), 2.0)[0]
@@ -83,8 +89,10 @@ def material_of(said: dict[str, str], folder: Path, unused: set[str]) -> MeshMat
                 values |= map_of(key, value, folder)
             except (FileError, FieldError):
                 unused.add("pictures that cannot be read")
-        elif UNUSED.fullmatch(key) and any(each != (key == "Tf") for each in three(value, 2.0)):
-            unused.add(key)
+        elif UNUSED.fullmatch(key):
+            neutral = 1.0 if key == "Tf" else 0.0  # the value without an effect; 2 stands for what is no number
+            if any(each != neutral for each in three(value, 2.0)):
+                unused.add(key)
     if "texture" in values and not any(values["colour"]):
         del values["colour"]
         unused.add("a black Kd beside map_Kd")

@@ -33,13 +33,15 @@ NOT_FINITE = "has points that no face names with a coordinate that is no number:
 
 
 def parse(data: bytes, folder: Path | None = None) -> Triangles:
-    """Parse a file; degenerate triangles are dropped. Materials are read beside it, in `folder`. ObjError when it is
-    not a mesh."""
+    """Return the triangles of the bytes of a file, without degenerate ones; ObjError when it is not a mesh.
+
+    Materials are read beside the file, in `folder`; without one there are none.
+    """
     check_lines(data)
     if is_utf16(data[:BEGINNING]):
         raise ObjError("is UTF-16: save it as UTF-8")
     data, blocks = data.removeprefix(b"\xef\xbb\xbf"), []
-    start, before, triangles = 0, [0, 0, 0], 0
+    start, before, triangles = 0, [0, 0, 0], 0  # `before`: points, uvs and normals of the blocks so far
     while start < len(data):
         end = end_of_block(data, start)
         block = obj_lines.read(data, start, end, before)
@@ -79,7 +81,10 @@ def end_of_block(data: bytes, start: int) -> int:
 
 
 def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles:
-    """Assemble the blocks of a file into triangles; ObjError."""
+    """Assemble the blocks of a file, `data`, into triangles, with the materials of files in `folder`.
+
+    ObjError where the file has no triangle, names points that are not there, or has faces that cannot be cut.
+    """
     if not any(len(block.sizes) for block in blocks):
         raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
@@ -91,7 +96,7 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
         first = line_of(data, whole.unknown[0])
         notices.append(f"has lines that begin with no word of .obj: they are skipped (the first is {first})")
     cut = triangulate(whole.points, whole.corners[:, 0], whole.sizes, lambda face: line_of(data, whole.starts[face]))
-    cut = cut[non_degenerate(whole.points, whole.corners[cut, 0])]
+    cut = cut[non_degenerate(whole.points, whole.corners[cut, 0])]  # (m, 3) indices of corners
     if not len(cut):
         is_tiny = np.abs(whole.points[whole.corners[:, 0]]).max() < TINY
         what = f"a line, or larger than {TINY:g}" if is_tiny else "a line"
@@ -117,8 +122,11 @@ def assemble(blocks: list[Block], data: bytes, folder: Path | None) -> Triangles
 def materials_of(
     whole: Block, firsts: np.ndarray, folder: Path, notices: list[str]
 ) -> tuple[np.ndarray, tuple[Any, ...], tuple[Path, ...]]:
-    """Return the index of the material of each triangle, given its first corner, the materials, and their files; add
-    what is not used of them to the notices. The first material is that of the mesh, without a file."""
+    """Return the index of the material of each triangle, (m,), the materials, and their files; add what is not used of
+    them to the notices.
+
+    `firsts` (m,) are the indices of the triangles' first corners. The first material is that of faces without one.
+    """
     from minirt.meshes import mtl
 
     libraries = mtl.library_paths(whole.libraries, folder)
@@ -130,6 +138,7 @@ def materials_of(
     if unused:
         notices.append(f"has materials of which this is not used: {', '.join(sorted(unused))}")
     faces = np.searchsorted(np.cumsum(whole.sizes), firsts, side="right")
+    # How many lines `usemtl` precede each face: the number of its name in `names`.
     uses = np.searchsorted(whole.uses, whole.starts[faces])
     own = mtl.MeshMaterial()
     return np.array([index[name] for name in names])[uses], tuple(found.get(name, own) for name in index), libraries

@@ -30,7 +30,10 @@ class Lines(NamedTuple):
 
 
 def read(lines: Lines) -> None:
-    """Read lines until one is wrong."""
+    """Read lines until one is wrong, and write what is in them into the arrays of `lines`.
+
+    `lines.counts[WRONG]` becomes 1 where the last row is of a wrong line.
+    """
     text, counts, rows, at = lines.text, lines.counts, lines.rows, 0
     while at < lines.size and counts[WRONG] == 0:
         start, at = at, next_word(text, at)
@@ -39,10 +42,12 @@ def read(lines: Lines) -> None:
             at = next_word(text, at + FIRST_WORDS[kind])
             while kind != OTHER and counts[WRONG] == 0 and text[at] != NEWLINE and text[at] != HASH:
                 end = read_corner(lines, at) if kind == FACE else read_value(lines, start, at)
-                counts[WRONG] = end == at or not ends_word(text, end)
+                if end == at or not ends_word(text, end):
+                    counts[WRONG] = 1
                 at, size = next_word(text, end), size + 1
             if kind != OTHER:
-                counts[WRONG] |= size < FEWEST[kind] or size > MOST[kind]
+                if size < FEWEST[kind] or size > MOST[kind]:
+                    counts[WRONG] = 1
                 counts[kind] += 1
             rows[row, 0], rows[row, 1], rows[row, 2] = kind, start, size
             counts[ROWS] += 1
@@ -104,14 +109,16 @@ def read_value(lines: Lines, start: int, at: int) -> int:
         end = letters_end(lines.text, at)
         is_exact = end == at
     lines.inexact[inexact, 0], lines.inexact[inexact, 1], lines.inexact[inexact, 2] = place, at, start
-    counts[INEXACT] += not is_exact
+    if not is_exact:  # else the next number takes this place
+        counts[INEXACT] += 1
     lines.values[place] = value
     counts[VALUES] += 1
     return end if abs(value) <= FARTHEST and end - at <= LONGEST else at
 
 
 def read_corner(lines: Lines, at: int) -> int:
-    """Read a corner, and return the place behind it, the same one where it is wrong."""
+    """Read a corner of a face, from byte `at` on, into `lines.corners`; return the place behind it, `at` where it is
+    wrong. A point that is counted back beyond the first one is wrong, a vt or vn is `NOWHERE`."""
     text, counts, corner, part, end = lines.text, lines.counts, lines.corners, 0, at - 1
     row = counts[CORNERS]
     corner[row, 0], corner[row, 1], corner[row, 2] = ABSENT, ABSENT, ABSENT

@@ -61,13 +61,16 @@ class Block(NamedTuple):
 
 
 def read(data: bytes, start: int = 0, end: int | None = None, before: Sequence[int] = (0, 0, 0)) -> Block:
-    """Parse the lines of a part of a file, after so many points, uvs and normals; ObjError for the first wrong line."""
+    """Parse the lines of a file from byte `start` up to `end`; ObjError for the first wrong line.
+
+    `before` counts the points, uvs and normals of the lines before them.
+    """
     text = data[start:end]
     lines = call_for(text, before)
     read_bytes(lines)
     *_, row_count, corner_count, inexact, is_wrong = lines.counts.tolist()
     kinds, firsts, sizes = lines.rows[:row_count].T.copy()
-    for place, at, line in lines.inexact[:inexact].tolist():
+    for place, at, line in lines.inexact[:inexact].tolist():  # words that the interpreter has to read
         not_finite, decimal = NUMBER.match(text, at).groups()  # type: ignore[union-attr]
         lines.values[place] = value = nan if not_finite else float(decimal or inf)
         if abs(value) > FARTHEST or (not_finite and not is_coordinate(text[line:at])):
@@ -75,12 +78,13 @@ def read(data: bytes, start: int = 0, end: int | None = None, before: Sequence[i
     if is_wrong:
         explain(data, start + int(firsts[-1]), int(lines.counts[0]))
     ends = np.cumsum(np.where(kinds < FACE, sizes, 0))
+    starts = ends - sizes  # of the numbers of each line v, vt and vn
     points, uvs, normals = (
-        lines.values[(ends - sizes)[kinds == kind][:, None] + np.arange(width)] for kind, width in enumerate(WIDTHS)
+        lines.values[starts[kinds == kind][:, None] + np.arange(width)] for kind, width in enumerate(WIDTHS)
     )
-    uvs[sizes[kinds == 1] == 1, 1] = 0.0
+    uvs[sizes[kinds == 1] == 1, 1] = 0.0  # v of a line `vt u`
     are_coloured = (kinds == 0) & (sizes >= COLOURED)
-    colours = lines.values[(ends - sizes)[are_coloured][:, None] + np.arange(3, COLOURED)]
+    colours = lines.values[starts[are_coloured][:, None] + np.arange(3, COLOURED)]
     said: dict[bytes, list[tuple[int, str]]] = defaultdict(list)  # by first word
     for at in firsts[kinds == OTHER].tolist():
         word, *words = logical_line(text, at).split()
@@ -163,7 +167,10 @@ def expected(error: FieldError) -> str:
 
 
 def check_corner(word: re.Match[str], count: int, line: int) -> None:
-    """Check the numbers of a corner's point, uv and normal; `count` points precede it."""
+    """Raise ObjError if the numbers of a corner's point, uv and normal are wrong; `count` points precede it.
+
+    `line` is the number of its line.
+    """
     parts, column = word[0].split("/"), word.start() + 1
     if len(parts) > 3 or not parts[0]:
         raise ObjError("a corner is v, v/vt, v//vn or v/vt/vn", line, column)

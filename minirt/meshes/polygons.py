@@ -31,10 +31,10 @@ def triangulate(
 ) -> np.ndarray:
     """Cut faces of `sizes` corners into triangles: indices of the triangles' corners among all corners, (m, 3).
 
-    `corners` (c,) are the points of all corners. The triangles of a face go round as the face does. They are a fan
-    around its first corner where that covers the polygon and nothing else, as it does every convex one. Other polygons
-    are cut into ears. A polygon that crosses itself may leave no ear to cut; it becomes a fan. ObjError,
-    with the line of the face, for one that takes too long.
+    `points` is (n, 3), and `corners` (c,) are the indices of the points of all corners. The triangles of a face go
+    round as the face does. They are a fan around its first corner where that covers the polygon and nothing else, as it
+    does every convex one. Other polygons are cut into ears. A polygon that crosses itself may leave no ear to cut; it
+    becomes a fan. ObjError, with the line of the face that `line_of` returns, if the faces take too long together.
     """
     triangles, looks = fan_triangulation(sizes), MOST_LOOKS
     many, first = np.flatnonzero(sizes > 3), np.cumsum(sizes) - sizes
@@ -42,7 +42,9 @@ def triangulate(
         some = many[start : start + BLOCK]
         *plane, are_fans = planes_of(points, corners, first[some], sizes[some])
         for face, axis, is_turned in np.stack([some, *plane], axis=1)[~are_fans].tolist():
-            u, v = ((axis + 2) % 3, (axis + 1) % 3) if is_turned else ((axis + 1) % 3, (axis + 2) % 3)
+            u, v = (axis + 1) % 3, (axis + 2) % 3  # the axes beside that along which the polygon is seen
+            if is_turned:
+                u, v = v, u
             flat = [(point[u], point[v]) for point in points[corners[first[face] :][: sizes[face]]].tolist()]
             if is_covered_by_fan(flat):
                 continue
@@ -52,7 +54,7 @@ def triangulate(
                 message = f"a face of {sizes[face]:,} corners takes too long to cut into triangles"
                 raise ObjError(message, line_of(face))
             if ears:
-                place = first[face] - 2 * face
+                place = first[face] - 2 * face  # each face before it has two triangles less than corners
                 triangles[place : place + len(ears)] = first[face] + np.array(ears)
     return triangles
 
@@ -70,10 +72,11 @@ def planes_of(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the axis along which polygons are seen, whether it points away from them, and whether a fan covers them.
 
-    A fan covers polygons that are convex for certain: seen from the first corner each corner lies to the left of the
-    corner before. Polygons without an area count as covered, too.
+    All three are (m,). `first` (m,) are the places of the polygons' first corners in `corners`, `sizes` (m,) how many
+    corners they have. A fan covers polygons that are convex for certain: seen from the first corner each corner lies to
+    the left of the corner before. Polygons without an area count as covered, too.
     """
-    starts = np.cumsum(sizes) - sizes
+    starts = np.cumsum(sizes) - sizes  # of the polygons in the arrays below
     spokes = points[corners[np.repeat(first - starts, sizes) + np.arange(sizes.sum())]].T.copy()
     spokes -= np.repeat(spokes[:, starts], sizes, axis=1)
     following = np.roll(spokes, -1, axis=1)
@@ -135,7 +138,10 @@ class Polygon:
         self.reflex = sorted((*points[corner], corner) for corner in range(count) if self.turn(corner) <= 0)
 
     def cut(self) -> Ears | None:
-        """Cut all ears: indices of the corners of triangles; None where no ear is left to cut."""
+        """Cut all ears, and return the indices of the corners of the triangles; None where no ear is left to cut.
+
+        It is done once: the polygon is used up, and `looks` has become less.
+        """
         triangles: Ears = []
         waiting, remaining = deque(range(len(self.points))), len(self.points)
         refused = 0  # times that no corner in the queue could be cut

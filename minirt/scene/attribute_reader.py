@@ -33,13 +33,14 @@ def split_key(word: str) -> tuple[str, int]:
 def attribute_slots(
     kind: type[Element], keyed: Mapping[str, Field], attributes: list[Word], line: Line, log: Log
 ) -> list[Slot]:
-    """Return the fields that attributes give, each with its word; wrong words are reported and left out.
+    """Return the fields that the words `attributes` give, each with its word; errors go into the log.
 
-    `keyed` are the attributes of the element by their keys: its `fields_by_key`.
+    Wrong words are left out. An old name of an attribute gets a notice. `keyed` are the attributes of the element by
+    their keys: its `fields_by_key`.
     """
     slots: dict[str, Slot] = {}
-    values = dict(pairwise(attributes))
-    detached = {word: value for word, value in values.items() if is_detached(word, value, keyed)}
+    # Words such as `texture:`, and the next word, which a blank parts from its key: one error is enough for both.
+    detached = {word: value for word, value in pairwise(attributes) if is_detached(word, value, keyed)}
     for word in attributes:
         if word in detached.values():
             continue

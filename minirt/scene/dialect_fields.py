@@ -53,7 +53,10 @@ def split_foreign_line(line: Line) -> tuple[list[str], str, Changes] | None:
 
 
 def body_of(line: Line) -> tuple[str, str, Changes]:
-    """Return a line without its comment, the comment, and what was changed: `#F00` behind a word is a colour."""
+    """Return a line without its comment, the comment with its `#`, '' for none, and what was changed.
+
+    `#F00` behind a word is a colour; `//` behind a blank, and `--` between blanks, begin a comment.
+    """
     changes: Changes = []
     text = line.text
     hex_colour = HEX_COLOUR.match(text, line.end)
@@ -83,23 +86,25 @@ def with_words_joined(text: str) -> tuple[str, Changes]:
 def fields_of_words(
     kind: type[Element], words: list[str], colours: Mapping[str, str], changes: Changes
 ) -> tuple[list[str], list[str]] | None:
-    """Spell the fields of an element by the first words, and return their texts and the other words.
+    """Return the texts of the fields of an element that the first words spell, and the other words.
 
-    `colours` are those of named materials; `changes` gets what is not as the words say. None where a field is missing,
-    or something else stands in its place; FieldError for a malformed word.
+    `colours` are the R,G,B of named materials; `changes` gets what is not as the words say. A colour that is absent is
+    white. None where a field is missing, or a number, a triple or an attribute stands in its place; RangeError for a
+    value that no field can take, FieldError for a malformed word.
     """
     fields = []
     for field in positional_fields(kind):
         words = colour_first(words, colours) if isinstance(field, Colour) else words
         spelled = next(spellings(field, words, colours), None)
-        is_absent = not (words and NUMERIC.match(words[0]) and "," in words[0])
-        if spelled is None and isinstance(field, Colour) and field.required and is_absent:
+        has_triple = words and NUMERIC.match(words[0]) and "," in words[0]
+        is_colour_absent = isinstance(field, Colour) and field.required and not has_triple
+        if spelled is None and is_colour_absent:
             spelled = Spelling("255,255,255", 0, tables.WHITE)
         if spelled is None and field.required:
-            other = NUMBER if isinstance(field, Three) else TRIPLE.pattern  # and attributes
+            of_other_field = NUMBER if isinstance(field, Three) else TRIPLE.pattern
             if words and is_well_spelled(field, words[0]):
                 raise RangeError(f"its {field.title} cannot be {words[0]}")
-            if words and not re.fullmatch(rf"{other}|[A-Za-z]\w*[:=].*", words[0]):
+            if words and not re.fullmatch(rf"{of_other_field}|[A-Za-z]\w*[:=].*", words[0]):
                 raise FieldError(f"cannot be {quoted(words[0])}")
             return None
         if spelled is None:
@@ -141,7 +146,10 @@ def spellings(field: Field, words: list[str], colours: Mapping[str, str]) -> Ite
 
 
 def readings(field: Field, words: list[str], colours: Mapping[str, str]) -> Iterator[Spelling]:
-    """Yield texts that may spell the value of a field, not yet parsed, each from one or three of the first words."""
+    """Yield texts that may spell the value of a field, the most likely first; they are not parsed yet.
+
+    Each stands for one or three of the first words. `colours` are the R,G,B of named materials.
+    """
     if not words:
         return
     word = words[0].strip("()[]{};,") if isinstance(field, Three) else words[0].removesuffix(",")

@@ -23,11 +23,12 @@ def unread_lines(log: Log) -> int:
 
 
 def complete(items: list[Any], seen: dict[str, int], log: Log) -> None:
-    """Change `items`, the lines of a file, as only a look at all of them allows: choose its camera, apply conventions,
-    add an ambient light. If lines were not understood and no shape is left, an error goes into the log.
+    """Choose the camera of a file, apply conventions and add a missing ambient light: change its lines, `items`.
 
-    `seen` has a line for each identifier of the file. It gets one for a camera that is chosen here, and 0 for an
-    ambient light that is added here.
+    `seen` has the number of a line for each identifier of the file. It gets that of a camera which is chosen here, and
+    0 for an ambient light which is added here; a file without a camera gets none, as that is an error. If lines of
+    shapes were not understood and no shape is left, an error goes into the log. ValueError as from
+    `apply_conventions`.
     """
     promote_camera(items, seen, log)
     apply_conventions(items, log)

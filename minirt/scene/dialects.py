@@ -53,10 +53,10 @@ def colours_of_materials(sources: list[str]) -> dict[str, str]:
 def translated(
     line: Line, colours: Mapping[str, str], folder: Path | None, seen: Mapping[str, int] | None = None
 ) -> Translation | None:
-    """Translate a line: to '' where it is no element, or one that is not known; None where it stays an error.
+    """Return the translation of a line; its text is '' where the line is no element that is known here.
 
-    `colours` are those of named materials, and pictures are looked for in `folder`. `seen` has the identifiers of
-    earlier lines.
+    None where the line stays an error. `colours` are the R,G,B of named materials, and pictures are looked for in
+    `folder`. `seen` has the identifiers of earlier lines.
     """
     split = split_foreign_line(line)
     if split is None:
@@ -69,7 +69,8 @@ def translated(
     if kind is None:
         is_setting = SETTING.fullmatch(code) or len(values) < 2 or not any(map(TRIPLE.fullmatch, values))
         unread = tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
-        unread = tables.SETTINGS if is_setting and code != tables.FACE else unread
+        if is_setting and code != tables.FACE:
+            unread = tables.SETTINGS
         return Translation("", [(unread, code)])
     is_second = kind.code in (seen or ())
     kind = FURTHER.get(kind, kind) if is_second else kind
@@ -113,9 +114,13 @@ def kind_of(code: str) -> type[Element] | None:
 
 
 def in_order(code: str, words: list[str]) -> list[str]:
-    """Return the words of an element in the order of its fields here: where they have a known order of their own, or
-    are as many numbers and triples as the fields of a shape, or of what has one number, each of which then takes the
-    next one."""
+    """Return the words of an element in the order of its fields here.
+
+    The words are in a known order of another program, or they are as many numbers and triples as the fields, in another
+    order: then each field takes the next number or triple. The latter holds for shapes, and for elements with one
+    number. Other words stay as they are.
+    """
+    # A letter for each word: v for a triple, n for a number, w for another word.
     letters = "".join("v" if TRIPLE.fullmatch(word) else "n" if re.fullmatch(NUMBER, word) else "w" for word in words)
     fitting = (means for kind, pattern, means in tables.LAYOUTS if kind == code and re.match(pattern, letters))
     known = next((means(*words) for means in fitting), words)
@@ -123,7 +128,8 @@ def in_order(code: str, words: list[str]) -> list[str]:
     wanted = "".join("v" if isinstance(field, Three) else "n" for field in positional_fields(kind))
     given = letters[: len(wanted)]
     is_clear = kind in SHAPES or wanted.count("n") == 1
-    if known is not words or not is_clear or given == wanted or sorted(given) != sorted(wanted):
+    has_known_order, has_same_words = known is not words, sorted(given) == sorted(wanted)
+    if has_known_order or not is_clear or given == wanted or not has_same_words:
         return known
     triples, numbers = (iter([word for word, of in zip(words, given, strict=False) if of == sort]) for sort in "vn")
     return [*(next(triples if sort == "v" else numbers) for sort in wanted), *words[len(wanted) :]]
@@ -132,7 +138,7 @@ def in_order(code: str, words: list[str]) -> list[str]:
 def meanings(kind: type[Element], words: list[str], folder: Path | None, changes: Changes) -> list[str]:
     """Return the attributes that words behind the fields mean; `changes` gets each word that is not one as it stands.
 
-    The files that attributes name are tried, from the folder of the scene, if it has one.
+    The files that attributes name are tried, from `folder`, that of the scene; without one they are not tried.
     """
     keyed = fields_by_key(kind)
     has_colour = tables.WHITE not in dict(changes)  # without one a number names a material
@@ -140,7 +146,7 @@ def meanings(kind: type[Element], words: list[str], folder: Path | None, changes
     found: dict[str, str] = {}
 
     def add(attribute: str) -> str:
-        """Add a word to the attributes that were `found`; return '' or, where it is none, why: a sort of change."""
+        """Add an attribute to those that were `found`, and return ''; or return why it is none, a sort of change."""
         key, start = split_key(attribute)
         try:
             if (field := keyed.get(key)) is None or key in found:
@@ -182,11 +188,12 @@ def meaning(words: list[str], are_guessed: bool) -> tuple[int, str, str]:
 
 
 def read_leniently(line: Line, seen: dict[str, int], log: Log, colours: Mapping[str, str]) -> Item | None:
-    """Read any line, in a dialect of another program where it cannot be read as it stands; None after an error.
+    """Return the item of any line, translated from another program where it cannot be read as it stands.
 
-    A line without a meaning here becomes a comment. `colours` are those of named materials.
+    None after an error. A line without a meaning here becomes a comment. `seen` gets its identifier, if it is read;
+    `colours` are the R,G,B of named materials. What was changed goes into the log.
     """
-    known, before, notices = dict(seen), len(log.errors), len(log.notices)
+    known, before, notices = dict(seen), len(log.errors), len(log.notices)  # to go back to before a second attempt
     item = read_line(line, seen, log)
     translation = None if item is not None else translated(line, colours, log.folder, known)
     if translation is None:

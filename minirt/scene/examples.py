@@ -40,7 +40,8 @@ def example(name: str = "opening") -> Scene:
     """Return an example scene by its name.
 
     The scene belongs to no file, and names its textures and meshes by their absolute paths, so that it can be saved
-    anywhere. FileError for an unknown name, with the names that are like it.
+    anywhere. (Where no line can hold these paths it belongs to the example's file.) FileError for an unknown name, with
+    the names that are like it.
 
         minirt.render(minirt.example("gallery-chess"), 640, 480).save("chess.png")
     """

@@ -43,7 +43,10 @@ def forms() -> tuple[list[type[Element]], np.ndarray]:
         fields = positional_fields(kind)
         if not kind.once and kind is not FurtherCamera and all(field.number for field in fields):
             parts = [(field.number is int, part > 0) for field in fields for part in range(field.width)]
-            bits = [NUMBER + WHOLE * is_whole + BEHIND_COMMA * is_behind for is_whole, is_behind in parts]
+            bits = [
+                NUMBER | (WHOLE if is_whole else 0) | (BEHIND_COMMA if is_behind else 0)
+                for is_whole, is_behind in parts
+            ]
             table[len(kinds), : NAME + len(bits)] = [*name.encode().ljust(NAME, b"\0"), *bits]
             kinds.append(kind)
     return kinds, table[: len(kinds)]
@@ -57,7 +60,11 @@ def call_for(text: bytes, lines: int) -> tuple[str, tuple[np.ndarray, ...]]:
 
 
 def read(sources: list[str], length: int) -> Sequence[Item | None]:
-    """Parse lines as they stand in a file of `length` lines; None for each that is left to the diagnosing reader."""
+    """Return the items of lines of a file that has `length` lines; None for each that is left to the diagnosing reader.
+
+    If all lines are elements of one kind, the items are a `Crowd`. A short file is left to the diagnosing reader, and
+    so is one of less than `MANY_LINES` lines where there is no compiled code.
+    """
     items: list[Item | None] = [None] * len(sources)
     if length <= FEW_LINES:
         return items
@@ -65,31 +72,34 @@ def read(sources: list[str], length: int) -> Sequence[Item | None]:
 
     attributes = attributes_of(sources)
     plain = [*sources, ""]
-    for line, each in attributes.items():
-        plain[line] = sources[line][: -len(each)]
+    for line, ending in attributes.items():
+        plain[line] = sources[line][: -len(ending)]
     text = "\n".join(plain).encode("utf-8", "surrogatepass")
     call = call_for(text, len(sources))
     if length < MANY_LINES and not LIBRARY.has(LIBRARY.identity(call)):
         return items
-    LIBRARY.get(call)(*call[1])
-    _, _, of_lines, numbers, inexact = call[1]
+    _, arguments = call
+    LIBRARY.get(call)(*arguments)
+    _, _, of_lines, numbers, inexact = arguments  # `of_lines`: the index of each line's form
     count = int(np.argmax(inexact[:, 0] < 0))
-    if inexact[count, 1] < len(text):  # one of the sources has a line feed
+    end_of_lines = inexact[count, 1]
+    if end_of_lines < len(text):  # one of the sources has a line feed
         return items
     for index, first, end in inexact[:count].tolist():
         numbers[index] = float(text[first:end]) + 0.0  # -0 becomes 0
     numbers, (kinds, _) = numbers.reshape(-1, MOST), forms()
     present = set(of_lines.tolist()) - {OTHER, NOTHING}
     found = [read_kind(kinds[form], sources, numbers, np.flatnonzero(of_lines == form)) for form in present]
-    if found and len(found[0][1]) == len(sources) and not attributes:
-        return found[0][1]
+    for _, crowd in found:
+        if len(crowd) == len(sources) and not attributes:
+            return crowd
     for line in {*np.flatnonzero(of_lines == NOTHING).tolist()} - attributes.keys():
         items[line] = sources[line]
     for lines, crowd in found:
         kind: Any = crowd.kind
         for line, element in zip(lines.tolist(), crowd, strict=True):
-            end = attributes.get(line, "").removesuffix("\r").partition("#")[0]
-            values = values_of(kind, end)
+            ending = attributes.get(line, "").removesuffix("\r").partition("#")[0]
+            values = values_of(kind, ending)
             for name, value in (values or {}).items():
                 object.__setattr__(element, name, value)
             items[line] = None if values is None else element
@@ -123,7 +133,7 @@ def values_of(kind: type[Element], attributes: str) -> dict[str, Any] | None:
 def read_kind(
     kind: type[Element], sources: list[str], numbers: np.ndarray, lines: np.ndarray
 ) -> tuple[np.ndarray, Crowd]:
-    """Return the lines that are elements of a kind, (k,), and these elements.
+    """Return the indices of the lines that are elements of a kind, (k,), and these elements.
 
     `lines` are the indices in `sources` of the lines that begin as this kind does; `numbers` (n, `MOST`) has a row for
     each of all sources. Elements whose fields are out of range or in conflict are left out.

@@ -71,7 +71,10 @@ class Meanings:
                 self.first.setdefault(code, at)
 
     def meant(self, line: Line) -> str:
-        """Return what a line may mean, '' where that is uncertain or the line itself."""
+        """Return the line that a wrong line may mean: with words mended, or translated from another program.
+
+        '' where that is uncertain, or where it is the same line.
+        """
         if len(line.text) > LONGEST or not line.text[: line.end].split():
             return ""
         words = line.text.split()
@@ -143,9 +146,12 @@ def is_certain(change: tuple[str, str]) -> bool:
 
 
 def nearest_value(field: Field, text: str) -> str:
-    """Return the text of an attribute's value with its numbers in range; FieldError where that is uncertain."""
+    """Return the text of an attribute's value with its numbers in range and its words spelled right.
+
+    FieldError where that is uncertain.
+    """
     parts = text.split(",")
-    for _ in parts:
+    for _ in parts:  # each turn mends the first wrong part
         try:
             field.check(field.parse(",".join(parts)))
             break
@@ -157,7 +163,8 @@ def nearest_value(field: Field, text: str) -> str:
                 continue
             value = number(parts[part])
             fitted, sort = fit(component, value)
-            if sort != tables.NEAREST or 0 < value < component.low == 1:  # glass:0.5 rather means a share
+            # A number below 1, where the least value is 1, rather means a share, as in glass:0.5.
+            if sort != tables.NEAREST or 0 < value < component.low == 1:
                 raise
             parts[part] = component.format(fitted)
     return ",".join(parts)

@@ -38,7 +38,10 @@ def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
 
 
 def read_element(kind: type[Element], words: list[Word], first: int, line: Line, log: Log) -> Element | None:
-    """Read the element of a line; None after an error. `first` is the first line with the same identifier."""
+    """Return the element of a line, of this kind; None after an error, which goes into the log.
+
+    `words` are those of the line, `first` is the number of the first line with the same identifier.
+    """
     errors = len(log.errors)
     if kind.once and first != line.number:
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
@@ -60,7 +63,8 @@ def read_element(kind: type[Element], words: list[Word], first: int, line: Line,
 def read_values(kind: type[Element], words: list[Word], line: Line, log: Log) -> tuple[list[Slot], dict[str, Any]]:
     """Return the fields that a line gives, each with its word, and their values by name; errors go into the log.
 
-    Positional fields come first, attributes follow. There are neither where '#' seems to begin a colour.
+    Positional fields come first, attributes follow. Where '#' seems to begin a colour, that is the only error, and
+    there are neither.
     """
     positional, keyed = positional_fields(kind), fields_by_key(kind)
     are_attributes = [is_attribute(word.text, keyed) for word in words[1:]]
@@ -78,7 +82,7 @@ def read_values(kind: type[Element], words: list[Word], line: Line, log: Log) ->
         names = f"{kind.title} {' and '.join(each.title for each in missing)} {'is' if len(missing) == 1 else 'are'}"
         before = words[positional.index(missing[0])]
         log.error(line, f"{names} missing: expected '{pattern(kind)}'", before.end)
-        attributes = [*compress(words[1:], are_attributes)]
+        attributes = [*compress(words[1:], are_attributes)]  # also those between positional words
     slots = [Slot(kind, field, word) for field, word in zip(fields, given, strict=False)]
     further = attribute_slots(kind, keyed, attributes, line, log)
     errors = len(log.errors)

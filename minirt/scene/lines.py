@@ -113,10 +113,10 @@ class Log:
         self.changes.setdefault(sort, []).append((line, words))
 
     def tell_changes(self) -> None:
-        """Make notices of one line each: of each sort of change, and for a lenient reader of each message.
+        """Add one notice for each sort of change; for a lenient reader, leave one notice of each message.
 
-        A notice about changes stands at the first of them, and names the words that they are about. The first notice
-        with a message stays, and tells in how many places it holds.
+        A notice about changes stands at the first of them, and names the words that they are about. Of the notices with
+        one message the first stays, and tells in how many places it holds.
         """
         if self.lenient:
             first: dict[str, Problem] = {}
@@ -140,7 +140,7 @@ def told(message: str, places: int) -> str:
 
 
 def split_line(line: Line, log: Log) -> list[Word] | None:
-    """Return the words of a line, none for a comment or a blank line; None after an error."""
+    """Return the words of a line, [] for a comment or a blank line; None after an error, which goes into the log."""
     hidden = first_unprintable(line)
     if hidden >= 0:
         message = "a carriage return ends a line only together with a line feed"
@@ -151,6 +151,7 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
     body = line.text[: line.end]
     slashes = SLASHES.search(body) if "//" in body else None
     words = words_of(body)
+    # The column, from 1, of the first blank beside a comma; 0 for none.
     blank = next((word.column - 1 for word in words[2:] if word.text.startswith(",")), 0)
     blank = blank or next((word.end - 1 for word in words[1:-1] if word.text.endswith(",")), 0)
     if slashes:

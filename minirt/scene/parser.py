@@ -57,9 +57,10 @@ def load(
 def load_for_window(
     path: str | os.PathLike[str], lenient: bool | str = False, left_handed: bool = False, new: bool = False
 ) -> tuple[Reading, SceneError | None]:
-    """Read a scene file as asked. If that fails on a dialect, read it leniently, and return the first error, too.
+    """Return what was read of a scene file; and None, or the error of a first attempt.
 
-    SceneError where no line is in a dialect, or where the file is no scene even so.
+    If the file cannot be read as asked, and has lines in a dialect of another program, it is read leniently. SceneError
+    where no line is in a dialect, or where the file is no scene even so.
     """
     try:
         return load(path, lenient, left_handed, new), None
@@ -77,12 +78,13 @@ def load_for_window(
 def parse(
     text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool | str = False, folder: Path | None = None
 ) -> Reading:
-    """Parse the text of a scene; SceneError with all of its errors. `file` is the name that they show.
+    """Return the scene of a text, with notices; SceneError with all errors of the text. `file` is the name they show.
 
     Textures and meshes are looked for in `folder`, by default that of the file.
 
     `lenient` translates lines of older scenes (several `L`, blanks around commas) and of other programs, with notices
-    (`minirt.scene.dialects`). A text of words does so, too, and reads fields as the words say, see `minirt.load`.
+    (`minirt.scene.dialects`). Words in place of True, such as "base z-up", do so, too, and read fields as the words
+    say, see `minirt.load`.
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):
@@ -126,10 +128,11 @@ def dumps(scene: Scene) -> str:
 def read_lines(sources: list[str], log: Log) -> list[Sequence[Item]]:
     """Return all lines of a file, run by run: elements, comments and blank lines.
 
-    Errors go into the log; SceneError for a file that has no element at all.
+    Errors go into the log, and lines with errors are left out; SceneError for a file that has no element at all. With
+    too many errors the rest of the file is not read.
     """
     runs: list[Sequence[Item]] = []
-    # Identifier: a line that has it, or seems to mean it; the first one, of kinds that may stand once.
+    # Identifier: the number of a line that has it, or seems to mean it; the first one, of kinds that may stand once.
     seen: dict[str, int] = {}
     if log.lenient:
         from minirt.scene import dialect_files, dialects

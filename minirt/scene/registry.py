@@ -55,7 +55,7 @@ def nearest_element(word: str) -> str:
 
 
 def identify(word: Word, line: Line, log: Log) -> type[Element] | None:
-    """Return the element whose identifier `word` is; None, with an error and a hint, for none."""
+    """Return the kind of element whose identifier `word` is; None for no identifier: an error goes into the log."""
     code = word.text
     if code in SPELLINGS:
         return SPELLINGS[code]

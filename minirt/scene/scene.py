@@ -224,15 +224,19 @@ class Scene(Immutable, ElementLists):
         return self._edited(range(sum(len(page.of(Element)) for page in self.pages))[index], Element, *new)
 
     def _edited(self, index: int, sort: type[Any], *new: Item) -> Scene:
-        """Return the scene with entry `index` of a sort, as of all items, replaced by any number of items."""
-        number = 0
-        while index >= (length := len(self.pages[number].of(sort))):
-            index, number = index - length, number + 1
+        """Return the scene with one item replaced by any number of `new` items.
+
+        `index` counts the items of the class `sort`. The scene is seen by the same camera, or by that which replaces
+        it, or by the first one.
+        """
+        number, rest = 0, index  # of the page, and of the item in it
+        while rest >= (length := len(self.pages[number].of(sort))):
+            rest, number = rest - length, number + 1
         page = self.pages[number]
-        index = [place for place, item in enumerate(page.items) if isinstance(item, sort)][index]
-        pages = *self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]
+        place = [place for place, item in enumerate(page.items) if isinstance(item, sort)][rest]
+        pages = *self.pages[:number], *replace_item(page, place, new), *self.pages[number + 1 :]
         scene = Scene.of_pages(pages, self.file)
-        if self.shown:  # the same camera, or what replaces it, or the first one
+        if self.shown:
             kept = [number for number, camera in enumerate(scene.cameras, 1) if camera is self.camera]
             replaced = self.shown + 1 if len(scene.cameras) == len(self.cameras) else 1
             scene = scene.seen_by(kept[0] if kept else replaced)

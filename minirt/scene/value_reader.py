@@ -50,7 +50,10 @@ def parse_slots(slots: list[Slot], line: Line, log: Log) -> dict[str, Any]:
 
 
 def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
-    """Parse the value of a field; None, with an error, when it is wrong."""
+    """Return the value of a field, with the file that it names; None when it is wrong, and errors go into the log.
+
+    A wrong value that the field can repair is used so, with a notice.
+    """
     field, text = slot.field, slot.text
     try:
         value = field.parse(text)
@@ -92,9 +95,9 @@ def with_files(slot: Slot, value: Any, folder: Path) -> tuple[Any, list[Notice]]
 
 
 def load_file(read: Callable[[Path], Any], file: PictureFile, slot: Slot, folder: Path) -> tuple[Any, list[Notice]]:
-    """Return what `read` finds in a file that a value names, and notices about it; FieldError when it cannot be used.
+    """Return what `read` returns for the path of a file that a value names, and notices about the file.
 
-    The file is looked for in the folder of the scene.
+    The file is looked for in `folder`, that of the scene. FieldError when it cannot be used.
     """
     path, notices = file_io.located(folder, file.name), list[Notice]()
     try:

@@ -34,7 +34,10 @@ def field_text(field: Field, element: Element) -> str:
 
 
 def line_of(element: Element) -> str:
-    """Return the element's source line with its changed fields rewritten; a new line when the source does not fit."""
+    """Return the element's source line with its changed fields rewritten.
+
+    The line is a new one where the source has errors, or is that of another kind.
+    """
     kind = type(element)
     line = line_from(1, element.source)
     log = Log("", lenient=False)
@@ -50,12 +53,15 @@ def line_of(element: Element) -> str:
 
 
 def rewrite(text: str, element: Element, words: list[Word], slots: list[Slot], values: dict[str, Any]) -> str:
-    """Rewrite the line `text`, whose `slots` hold `values`, with the values of the element."""
+    """Return the line `text` with the values of the element in place of `values`, those of the line by field name.
+
+    `words` are those of the line, `slots` its fields with the words that give them.
+    """
     absent = [field for field in fields_of(type(element)) if field.name not in values]
     added = [field for field in absent if getattr(element, field.name) != field.default]
     # Columns at which a part begins and ends, and what takes its place: nothing for None.
     edits: list[tuple[int, int, str | None]] = []
-    for keyed in (True, False):
+    for keyed in (True, False):  # new attributes go to the end, positional fields behind the last one
         if any(field.keyed == keyed for field in added):
             new = [field_text(field, element) for field in (added if keyed else absent) if field.keyed == keyed]
             end = words[-1].end if keyed else max(slot.word.end for slot in slots if not slot.field.keyed)

@@ -64,7 +64,9 @@ class PackedBox(NamedTuple):
 
 
 def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the box. A face on which it starts, within rounding, is not met there again.
+    """Whether a ray meets the box, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
+
+    A face on which the ray starts, within rounding, is not met there again.
 
     Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
     and Kajiya, Ray Tracing Complex Scenes, 1986). For a ray exactly in the plane of a face 0 times infinity is NaN: in
@@ -82,7 +84,7 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec, limit: Number | None 
         over = maximum(maximum(fabs(p.x) - box.half.x, fabs(p.y) - box.half.y), fabs(p.z) - box.half.z)
         close = fabs(over) <= error
         if rarely(close):
-            error = where(close, error, -1.0)
+            error = where(close, error, -1.0)  # -1: such a ray starts on no face
             enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
             enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
             enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)

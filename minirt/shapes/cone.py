@@ -63,6 +63,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
     the base.
     """
     p, d = own_point(cone, origin), own_direction(cone, direction)
+    # On the side a t^2 + 2 b t + c = 0: with b for t from the origin, with b_q and c for t from `start`, where q is.
     rise = cone.slope * d.z
     steepness = rise * rise
     a = d.x * d.x + d.y * d.y - steepness
@@ -74,11 +75,11 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec, limit: Number | Non
     start = where(steep, -p.z * (1.0 / d.z), quadrics.clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = cone.slope * q.z
-    half_b = q.x * d.x + q.y * d.y - reach_q * rise
+    b_q = q.x * d.x + q.y * d.y - reach_q * rise
     c = q.x * q.x + q.y * q.y - reach_q * reach_q
     pace = fabs(d.z) + 1.0 / (1.0 + cone.slope)
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
-    if limit is None:
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, b_q, c, start), first, last, pace)
+    if limit is None:  # the ray may start on the surface
         squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height

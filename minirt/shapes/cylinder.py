@@ -52,12 +52,13 @@ class PackedCylinder(NamedTuple):
 
 
 def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the cylinder.
+    """Whether a ray meets the cylinder, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
     The ray is inside the infinite tube for one interval of t and between the planes of the caps for another; it is
     inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
     """
     p, d = own_point(cylinder, origin), own_direction(cylinder, direction)
+    # On the side a t^2 + 2 b t + c = 0: with b for t from the origin, with b_q and c for t from `start`, where q is.
     a = d.x * d.x + d.y * d.y
     b = p.x * d.x + p.y * d.y
     squared = cylinder.radius * cylinder.radius
@@ -65,10 +66,10 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec, limit: Numb
     first, last = quadrics.slab(p.z, d.z, -cylinder.half, cylinder.half)
     start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
-    half_b = q.x * d.x + q.y * d.y
+    b_q = q.x * d.x + q.y * d.y
     c = q.x * q.x + q.y * q.y - squared
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
-    if limit is None:
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, b_q, c, start), first, last, fabs(d.z) + 1.0)
+    if limit is None:  # the ray may start on the surface
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - cylinder.half
         size = cylinder.radius + cylinder.half

@@ -79,11 +79,12 @@ class PackedEllipsoid(NamedTuple):
 
 
 def intersect(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the ellipsoid.
+    """Whether a ray meets the ellipsoid, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
-    In its own frame, divided by its semi-axes, it is the unit sphere, and t along the scaled ray is the same. As for a
-    sphere t is counted from the ray's closest approach to the centre, which keeps full precision for small ellipsoids
-    that are far away.
+    In its own frame, divided by its semi-axes, the ellipsoid is the unit sphere, and t along the scaled ray is the
+    same. As for a sphere the roots are found from the ray's closest approach to the centre, q, which keeps full
+    precision for small ellipsoids that are far away. A ray that starts close to the surface, inside or towards the
+    centre, is solved exactly.
     """
     p = scaled(own_point(ellipsoid, origin), ellipsoid.scale)
     d = scaled(own_direction(ellipsoid, direction), ellipsoid.scale)
@@ -92,12 +93,13 @@ def intersect(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, limit: Nu
     b = dot(p, d)
     approach = -b * per_a
     q = p + approach * d
-    half_b = dot(q, d)
-    below, above = negative_interval(a, per_a, half_b, dot(q, q) - 1.0, approach)
-    if limit is None:
-        level = dot(p, p) - 1.0
+    b_q = dot(q, d)
+    below, above = negative_interval(a, per_a, b_q, dot(q, q) - 1.0, approach)
+    if limit is None:  # the ray may start on the surface
+        level = dot(p, p) - 1.0  # of the start: 0 on the surface
         if rarely(fabs(level) <= CLOSE):
-            close = (fabs(level) <= CLOSE) & ((b < 0.0) | (level <= ROUNDING * unit_roundoff(a)))
+            may_hit = (b < 0.0) | (level <= ROUNDING * unit_roundoff(a))
+            close = (fabs(level) <= CLOSE) & may_hit
             if any(close):
                 exact_below, exact_above = exact_interval(ellipsoid, origin, direction, a)
                 below, above = where(close, exact_below, below), where(close, exact_above, above)

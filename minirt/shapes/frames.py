@@ -94,21 +94,22 @@ def longitude(p: Vec) -> tuple[Number, Vec]:
 
 
 def revolved_mapping(u: Vec, v: Vec, w: Vec, p: Vec, side: Mask, height: Number, rise: Vec, radius: Number) -> Mapped:
-    """`mapping` of a solid of revolution with the frame u, v, w, for a point p on its side or on a cap.
+    """`mapping` of a solid of revolution with the frame u, v, w, for a point p on its `side` or on a cap.
 
-    On the side v is `height` and its tangent `rise`. On a cap, which has this radius, a picture fills the square around
-    it once; where the axis points up it lies as on a floor or a ceiling.
+    p is in the frame. On the side the second texture coordinate is `height`, and its tangent `rise`, in the frame, too.
+    On a cap, which has this radius, a picture fills the square around it once; where the axis points up it lies as on
+    a floor or a ceiling.
     """
     flat = splat(0.0, p.x)
-    across = 2.0 * radius
-    per_diameter = 1.0 / across
+    diameter = 2.0 * radius
+    per_diameter = 1.0 / diameter
     up = -copysign(1.0, p.z)  # of the picture on a cap, along u
     turn, way = longitude(p)
     return (
         where(side, turn, 0.5 + p.y * per_diameter),
         where(side, height, 0.5 + up * p.x * per_diameter),
-        from_basis(u, v, w, where(side, way, Vec(flat, across, flat))),
-        from_basis(u, v, w, where(side, rise, Vec(up * across, flat, flat))),
+        from_basis(u, v, w, where(side, way, Vec(flat, diameter, flat))),
+        from_basis(u, v, w, where(side, rise, Vec(up * diameter, flat, flat))),
     )
 
 

@@ -65,18 +65,19 @@ class PackedHyperboloid(NamedTuple):
 
 
 def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the hyperboloid.
+    """Whether a ray meets the hyperboloid, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
     x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t if the ray is flatter than the asymptotic cone, and
     outside of an interval, perhaps empty, if it is steeper. Cut to the heights between the caps that leaves up to two
-    intervals in the solid; the first end of one with t > 0 is the hit.
+    intervals in the solid; the first end of one with t > 0 is the hit. On the side a t^2 + 2 b t + c = 0: with b for t
+    from the origin, with b_q and c for t from `start`, where q is.
     """
     p, d = own_point(hyperboloid, origin), own_direction(hyperboloid, direction)
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
     reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
-    waist = hyperboloid.waist * hyperboloid.waist
+    squared_waist = hyperboloid.waist * hyperboloid.waist
     per_a = 1.0 / a
     first, last = quadrics.slab(p.z, d.z, -hyperboloid.half, hyperboloid.half)
     # From here on t is counted from the plane of the waist or, for a flat ray, from the deepest point in the solid.
@@ -84,11 +85,11 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, limit
     start = where(steep, -p.z * (1.0 / d.z), quadrics.clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = hyperboloid.slope * q.z
-    half_b = q.x * d.x + q.y * d.y - reach_q * rise
-    c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, fabs(d.z) + 1.0)
-    if limit is None:
-        squared = reach * reach + waist
+    b_q = q.x * d.x + q.y * d.y - reach_q * rise
+    c = q.x * q.x + q.y * q.y - reach_q * reach_q - squared_waist
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, b_q, c, start), first, last, fabs(d.z) + 1.0)
+    if limit is None:  # the ray may start on the surface
+        squared = reach * reach + squared_waist
         level = p.x * p.x + p.y * p.y - squared
         over = fabs(p.z) - hyperboloid.half
         size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
@@ -113,10 +114,10 @@ def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
     p = own_point(hyperboloid, point)
     rho = sqrt(p.x * p.x + p.y * p.y)
     reach = hyperboloid.slope * p.z
-    down = hyperboloid.slope * reach  # rho and -down: gradient of the side's function, across and along the axis
-    steep = rho >= fabs(down)
+    fall = hyperboloid.slope * reach  # rho and -fall: gradient of the side's function, across and along the axis
+    steep = rho >= fabs(fall)
     radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
-    above = 0.5 * (rho - radius) * (rho + radius) * inverse_root(rho * rho + down * down)  # to first order
+    above = 0.5 * (rho - radius) * (rho + radius) * inverse_root(rho * rho + fall * fall)  # to first order
     over = fabs(p.z) - hyperboloid.half
     side = above >= over
     out = where(steep, radius / rho, 1.0)

@@ -32,6 +32,8 @@ from minirt.shapes.smooth_triangle import BARYCENTRIC, PackedMeshTriangle
 
 BLOCK = 16384  # triangles that are packed at a time, and stay in the cache of a core
 ATTRIBUTES = tuple(field.name for field in fields_of(Attributes))
+# Columns of `Mesh.rows`: three corners, the normal of the plane, a normal at each corner, u and v at each corner.
+CORNERS, NORMAL, NORMALS, UVS = slice(0, 9), slice(9, 12), slice(12, 21), slice(21, 27)
 
 
 @record()
@@ -56,10 +58,11 @@ class Mesh(Turnable):
         position: Triple = (0.0, 0.0, 0.0), scale: float = 1.0, colour: Triple = (255, 255, 255), **attributes: Any,
     ) -> Mesh:  # fmt: skip
         """Return a mesh of `vertices` (n, 3) and `faces` (m, 3), indices of vertices that run counter-clockwise as seen
-        from outside; or of a list of faces of any numbers of corners, which are cut into triangles.
+        from outside. A list of faces of any numbers of corners will do, too: they are cut into triangles.
 
-        `normals` (n, 3) of the vertices let it look smooth, `uvs` (n, 2) place pictures. Saving a scene writes the mesh
-        beside it, into `file`, which is named after the contents where it is left out. ElementError for other arrays.
+        `normals` (n, 3) of the vertices let the mesh look smooth, `uvs` (n, 2) place pictures. `position` is where the
+        origin of the vertices is, `scale` the length of what is 1 there. Saving a scene writes the mesh beside the
+        scene, into `file`, which is named after the contents where it is left out. ElementError for other arrays.
 
             mesh = minirt.Mesh.from_arrays(data.points, data.regular_faces)  # a PolyData of pyvista
         """
@@ -108,15 +111,18 @@ class Mesh(Turnable):
 
     @cached_property
     def looks(self) -> tuple[Mesh, ...]:
-        """One of its triangles for each material of its file, with the attributes of that and the mesh's own, which
-        count more; the mesh itself where the file has none. The colours are multiplied."""
+        """A mesh of one triangle for each material of the file, which has all attributes of triangles of that material.
+
+        They are those of the material, but where the mesh has its own; the colours of both are multiplied. For a file
+        without materials it is the mesh itself.
+        """
         if self.triangles.material_of is None:
             return (self,)
         triangle = replace(self.triangles.some(np.arange(1)), material_of=None)
         own = {name: value for name in ATTRIBUTES if (value := getattr(self, name)) is not None}
         return tuple(
             self.replace(
-                file=MeshFile(self.file.name, replace(triangle, materials=(material,) * (self.texture is None))),
+                file=MeshFile(self.file.name, replace(triangle, materials=(material,) if self.texture is None else ())),
                 **{name: getattr(material, name) for name in ATTRIBUTES} | own,
                 colour=tuple(round(a * b / 255) for a, b in zip(self.colour, material.colour, strict=True)),
             )
@@ -169,20 +175,23 @@ class Mesh(Turnable):
         return np.stack([columns.min(axis=1), columns.max(axis=1)])
 
     def rows(self) -> np.ndarray:
-        """All packed triangles, (m, 27), the numbers of one `PackedMeshTriangle` a row."""
+        """All packed triangles, (m, 27): a row has the numbers of one `PackedMeshTriangle`, in the scene.
+
+        A file without normals gets those of the planes, one without texture coordinates `BARYCENTRIC` ones.
+        """
         triangles = self.triangles
         packed = np.empty((len(triangles), 27))
         points, flat = self.placed(triangles.points), self.turned(triangles.flat_normals)
         for start in range(0, len(triangles), BLOCK):
             which = slice(start, start + BLOCK)
             rows = packed[which]
-            rows[:, :9] = points[triangles.corners[which]].reshape(-1, 9)
-            rows[:, 9:12] = plane_normals(rows[:, :9], flat[which])
+            rows[:, CORNERS] = points[triangles.corners[which]].reshape(-1, 9)
+            rows[:, NORMAL] = plane_normals(rows[:, CORNERS], flat[which])
             if triangles.normals is None:
-                rows[:, 12:21].reshape(-1, 3, 3)[...] = rows[:, None, 9:12]
+                rows[:, NORMALS].reshape(-1, 3, 3)[...] = rows[:, None, NORMAL]
             else:
-                rows[:, 12:21] = self.turned(triangles.normals[which].reshape(-1, 3)).reshape(-1, 9)
-            rows[:, 21:] = BARYCENTRIC if triangles.uvs is None else triangles.uvs[which].reshape(-1, 6)
+                rows[:, NORMALS] = self.turned(triangles.normals[which].reshape(-1, 3)).reshape(-1, 9)
+            rows[:, UVS] = BARYCENTRIC if triangles.uvs is None else triangles.uvs[which].reshape(-1, 6)
         return packed
 
     def pack(self) -> PackedMeshTriangle:

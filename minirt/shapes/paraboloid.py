@@ -69,10 +69,11 @@ class PackedParaboloid(NamedTuple):
 
 
 def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the paraboloid.
+    """Whether a ray meets the paraboloid, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
     As with the cylinder the ray is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
-    below the cap. For a ray along the axis one end of the interval is infinite, and the other is exact.
+    below the cap. For a ray along the axis one end of the interval is infinite, and the other is exact. On the side
+    a t^2 + 2 b t + c = 0: with b for t from the origin, with b_q and c for t from `start`, where q is.
     """
     p, d = own_point(paraboloid, origin), own_direction(paraboloid, direction)
     a = d.x * d.x + d.y * d.y
@@ -82,14 +83,14 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, limit: 
     first, last = quadrics.slab(p.z, d.z, 0.0, paraboloid.height)
     start = quadrics.clamped_minimum(per_a, b, first, last)
     q = p + start * d
-    half_b = q.x * d.x + q.y * d.y - slant
+    b_q = q.x * d.x + q.y * d.y - slant
     c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
     pace = fabs(d.z) + paraboloid.radius / (paraboloid.radius + paraboloid.focal)
-    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, half_b, c, start), first, last, pace)
-    if limit is None:
-        across = p.x * p.x + p.y * p.y
-        squared = across + paraboloid.focal * paraboloid.focal
-        level = across - 2.0 * paraboloid.focal * p.z
+    span = quadrics.Span(a, *quadrics.negative_interval(a, per_a, b_q, c, start), first, last, pace)
+    if limit is None:  # the ray may start on the surface
+        squared_rho = p.x * p.x + p.y * p.y
+        squared = squared_rho + paraboloid.focal * paraboloid.focal
+        level = squared_rho - 2.0 * paraboloid.focal * p.z
         half = 0.5 * paraboloid.height
         over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
         close = quadrics.starts_close(a, b, level, squared, over, size, (p.z - half) * d.z, position_error(origin, p))

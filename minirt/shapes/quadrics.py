@@ -69,11 +69,11 @@ class Span(NamedTuple):
 
 
 def negative_interval(a: Number, per_a: Number, b: Number, c: Number, start: Number) -> tuple[Number, Number]:
-    """Solve a x^2 + 2 b x + c = 0, x counted from `start`: where the parabola falls below 0 and where it rises above.
+    """Solve a x^2 + 2 b x + c = 0: return the t at which the parabola falls below 0, and that at which it rises above.
 
-    For a > 0 the roots are in ascending order, for a < 0 in descending order; NaN where there are none. `per_a` is
-    1 / a. q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al.,
-    Numerical Recipes, 5.6).
+    x is counted from `start`, and t = start + x. For a > 0 the roots are in ascending order, for a < 0 in descending
+    order; NaN where there are none. `per_a` is 1 / a. q adds two numbers of the same sign, so q / a and c / q are both
+    exact to a few roundings (Press et al., Numerical Recipes, 5.6).
     """
     D = b * b - a * c
     below = splat(nan, D)
@@ -145,12 +145,16 @@ def first_overlap_of_steep(span: Span) -> tuple[Mask, Number]:
 def starts_close(
     a: Number, b: Number, level: Number, squared: Number, over: Number, size: Number, outwards: Number, off: Number
 ) -> Mask:
-    """Whether a ray starts in a solid of revolution or close above it, close to the surface, and may hit it there.
+    """Whether a ray starts close to the surface of a solid of revolution, in it or above it, and may hit it there.
 
-    `level` is by how much the square of its start's distance from the axis exceeds that of the side there, which is
-    about `squared`; `over` is its height above the nearer cap. `a` and `b` are those of its quadratic equation; it goes
-    away from the middle between the caps if `outwards` > 0. It may hit nothing if it starts clearly above the side or a
-    cap and goes away from it, as most mirrored rays do. The start may be `off` by the rounding of its coordinates.
+    A ray hits nothing if it starts clearly above the side or a cap and goes away from it, as most mirrored rays do.
+
+    - `a` and `b` are those of the ray's quadratic equation, with t from the start.
+    - `level` is by how much the square of the start's distance from the axis exceeds that of the side at its height.
+    - `squared` is about that square of the side. `size` is that of the solid.
+    - `over` is the height of the start above the plane of the nearer cap.
+    - The ray goes away from the middle between the caps if `outwards` > 0.
+    - The start may be `off` by the rounding of its coordinates.
     """
     squared = squared + (SHELL * off) * (SHELL * off)
     within = (level <= CLOSE * squared) & (over <= CLOSE * size)
@@ -159,16 +163,17 @@ def starts_close(
         near = (level >= -CLOSE * squared) | (over >= -CLOSE * size)
         inwards = (a < 0.0) | (b < 0.0) | (level * fabs(level) <= error * error * squared)
         return within & near & inwards & ((outwards < 0.0) | (over <= error))
-    return a > inf  # no ray
+    return a > inf  # true for no ray
 
 
 @outlined
 def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs, bottom: Number, top: Number) -> Span:
-    """Compute the span of a line through a packed solid of revolution, without any cancellation.
+    """Return the span of a line through a packed solid of revolution, computed without any cancellation.
 
-    The `direction` has unit length. On its `side` x^2 + y^2 = waist + 2 focal z + slope z^2 in its own frame; the solid
-    lies between the heights `bottom` and `top`. All numbers become lanes as those of the pairs are, so that kernels
-    compile these operations once.
+    t is counted from `origin`; `direction` has unit length. In its own frame, about `centre` and along `axis`, the
+    solid's side is x^2 + y^2 = waist + 2 focal z + slope z^2, and `side` has waist, focal and slope. The solid lies
+    between the heights `bottom` and `top`. All numbers become lanes as those of the pairs are, so that kernels compile
+    these operations once.
     """
     waist, focal, slope = side
     like = waist[0]
@@ -183,16 +188,17 @@ def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs,
     a = where(parallel, 0.0, a[0]), where(parallel, 0.0, a[1])
     b = minus(scalar_product(f, d), times(rise, plus(height, growth)))
     c = minus(minus(across, waist), times(height, plus(focal, growth)))
-    level, bend, turn = value(c), value(growth), value(rise)
-    steepness = value(across) + bend * bend  # square of half of the gradient of the level
+    level, half_slope, rise_value = value(c), value(growth), value(rise)
+    steepness = value(across) + half_slope * half_slope  # square of half of the gradient of the level
     over = maximum(bottom - value(height), value(height) - top)
     error = position_error(splat(origin, like), rounded(f))
     within = error * error * (4.0 * steepness + error * error)  # square of the level at this distance from the side
     slack = where(((level <= 0.0) | (level * level <= within)) & (over <= error), error, 0.0)  # 0 off the surface
     on = (slack > 0.0) & (level * level <= within)
-    turning = 1.0 - turn * turn + value(spread) * value(spread)  # square of the derivative of b by the start's place
+    # The square of the derivative of b by the place of the start.
+    turning = 1.0 - rise_value * rise_value + value(spread) * value(spread)
     below, above, near = exact_ends(a, b, c, on, slack * slack * turning)
-    low, high, per_rise = (bottom - height[0]) - height[1], (top - height[0]) - height[1], 1.0 / turn
+    low, high, per_rise = (bottom - height[0]) - height[1], (top - height[0]) - height[1], 1.0 / rise_value
     first, last = minimum(low * per_rise, high * per_rise), maximum(low * per_rise, high * per_rise)
     # A line that starts above a side or an end, if only by rounding, and gets beyond its rim stays outside.
     below = where(on & (near > last), near, below)
@@ -205,16 +211,17 @@ def exact_span(centre: Vec, axis: Vec, origin: Vec, direction: Vec, side: Pairs,
 
 
 def exact_ends(a: Pair, b: Pair, c: Pair, on: Mask, error: Number) -> tuple[Number, Number, Number]:
-    """Solve as `negative_interval` does. Where a line starts `on` the surface the nearer end is exactly 0.
+    """Solve a t^2 + 2 b t + c = 0 as `negative_interval` does; if a line starts `on` the surface, the nearer end is 0.
 
-    The third number is that end without this. If b is 0 to rounding, the start lies midway between both ends, and both
-    are 0 unless the line is steep: `error` is the square of that of b.
+    Returns the t at which the line falls below the surface, that at which it rises above, and the nearer end as it
+    comes out of the equation, not set to 0. If b is 0 to rounding, the start lies midway between both ends, and both
+    are 0 unless the line is steep: `error` is the square of the error of b.
     """
-    square, half = value(a), value(b)
-    both = on & (half * half <= error) & (square >= 0.0)
+    a_value, b_value = value(a), value(b)
+    both = on & (b_value * b_value <= error) & (a_value >= 0.0)
     b = where(both, 0.0, b[0]), where(both, 0.0, b[1])
     c = where(both, 0.0, c[0]), where(both, 0.0, c[1])
     D = value(minus(times(b, b), times(a, c)))
     q = -(value(b) + copysign(sqrt(D), value(b)))
     constant = where(both, 1.0, value(c))  # a line along the surface stays above it
-    return *in_order(q, q / square, where(on, 0.0, value(c)) / q, square, constant), value(c) / q
+    return *in_order(q, q / a_value, where(on, 0.0, value(c)) / q, a_value, constant), value(c) / q

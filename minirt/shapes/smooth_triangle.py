@@ -57,7 +57,7 @@ def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
 
 
 def smooth_point(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
-    """Move a point of the triangle onto the smooth surface that the normals at its corners suggest.
+    """Return a point of the triangle, moved onto the smooth surface that the normals at its corners suggest.
 
     At each corner its normal defines a tangent plane. The point is projected onto each of those that it lies below, and
     the mean of the projections is weighted by the barycentric coordinates (Hanika, Hacking the Shadow Terminator, Ray
@@ -73,9 +73,10 @@ def smooth_point(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
 
 
 def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Texture coordinates of the file, or one picture a triangle as on `tr`; tangents perpendicular to `normal`.
+    """Return u and v, those of the file or one picture a triangle as on `tr`, and tangents perpendicular to `normal`.
 
-    `normal` is the interpolated one, so that bumps rise from the smooth surface.
+    The tangents are 0 where the triangle has no area in the picture. `normal` is the interpolated one, so that bumps
+    rise from the smooth surface.
     """
     of_a, of_b, of_c = barycentric_coordinates(mesh, point)
     ab, ac = mesh.b - mesh.a, mesh.c - mesh.a

@@ -59,7 +59,7 @@ class PackedSphere(NamedTuple):
 
 
 def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the sphere.
+    """Whether a ray meets the sphere, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
     Both hits lie half a chord from the ray's closest approach to the centre, by Pythagoras. Counting t from there
     instead of the origin keeps full precision for small spheres that are far away. For an origin close to the surface,
@@ -68,29 +68,29 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec, limit: Number |
     such as a shadow ray from its surface, never meets it again.
     """
     f = origin - sphere.centre
-    squared = sphere.radius * sphere.radius
-    height = dot(f, f) - squared  # power of the origin: its height above the surface times a length
+    squared_radius = sphere.radius * sphere.radius
+    height = dot(f, f) - squared_radius  # power of the origin: its height above the surface times a length
     approach = -dot(f, direction)
     g = f + approach * direction  # from the centre to the closest approach
-    chord = squared - dot(g, g)  # the square of half of it
-    leaving = (approach <= 0.0) & (height > ROUNDING * unit_roundoff(height) * squared)
-    close = fabs(height) <= CLOSE * squared
-    hit = ((chord >= 0.0) | close) & ~leaving
+    squared_half = squared_radius - dot(g, g)  # of half of the chord
+    leaving = (approach <= 0.0) & (height > ROUNDING * unit_roundoff(height) * squared_radius)
+    close = fabs(height) <= CLOSE * squared_radius
+    hit = ((squared_half >= 0.0) | close) & ~leaving
     t = approach
     if any(hit):
         close = hit & close
-        product = chord
+        product = squared_half  # of the distances to both hits, for close origins; without a use for others
         if rarely(close):
             power, product = exact_power(splat(sphere.centre, t), splat(sphere.radius, t), splat(origin, t))
-            chord = where(close, approach * approach - power, chord)
-        half = sqrt(chord)
+            squared_half = where(close, approach * approach - power, squared_half)
+        half = sqrt(squared_half)
         near = approach - half
         far = approach + half
         if rarely(close):
             near = where(close & (approach > 0.0), product / far, near)
             far = where(close & (approach <= 0.0), product / near, far)
         least = splat(0.0, t)
-        if limit is None:  # what is nearer than the start is known is the start, also on spheres that are hardly larger
+        if limit is None:  # a hit that is nearer than the start is known is the start, also on tiny spheres
             least = position_error(origin, f)
         t = where(near > least, near, far)
         hit = hit & (t > least)  # NaN where there is no chord

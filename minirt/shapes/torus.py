@@ -69,7 +69,7 @@ class PackedTorus(NamedTuple):
 
 
 def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the torus.
+    """Whether a ray meets the torus, and the least t > 0 at which it does; `limit` as in `minirt.shapes.shape`.
 
     Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides
     of it, and not at all if they lie on the same side. So a root is searched only where there is one, and until it is
@@ -84,8 +84,8 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | N
     g = f + approach * direction
     pad = PAD * unit_roundoff(approach) * (torus.ring + torus.tube)
     rim = torus.ring + torus.tube + pad
-    chord = rim * rim - dot(g, g)
-    hit = chord >= 0.0
+    squared_half = rim * rim - dot(g, g)  # of half of the chord in the ball
+    hit = squared_half >= 0.0
     t = approach
     if any(hit):
         p = own_direction(torus, g)
@@ -93,7 +93,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | N
         per_height = 1.0 / d.z
         level = torus.tube + pad
         bottom, top = (-level - p.z) * per_height, (level - p.z) * per_height
-        half = sqrt(chord)
+        half = sqrt(squared_half)
         enter = maximum(maximum(-half, minimum(bottom, top)), -approach)  # not before the ray's origin
         leave = minimum(half, maximum(bottom, top))
         hit = hit & (enter <= leave) & comes_near(torus, p, d, enter, leave, pad)
@@ -112,7 +112,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | N
             side_0, side_1, side_2, side_3 = side(start), side(height_1), side(height_2), side(height_3)
             error = position_error(origin, f) + pad
             on = fabs(start) <= error
-            if rarely(on):
+            if rarely(on):  # from the last turning point back: a point on the surface takes the side of the next one
                 side_3 = where(on & (fabs(height_3) <= error), 1.0, side_3)
                 side_2 = where(on & (fabs(height_2) <= error), side_3, side_2)
                 side_1 = where(on & (fabs(height_1) <= error), side_2, side_1)
@@ -125,7 +125,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec, limit: Number | N
             hit = hit & (by_1 | by_2 | by_3 | (side_3 < 0.0))
             t = approach + high
             unclear = hit
-            if limit is not None:
+            if limit is not None:  # only a crossing between the same two points as the limit has to be found
                 unclear = hit & (approach + low < limit) & ~(t < limit)
             if any(unclear):
                 t = where(unclear, approach + crossing(torus, p, d, low, high, side_0, unclear), t)
@@ -151,7 +151,7 @@ def side(above: Number) -> Number:
 
 
 def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Number, Number, Number]:
-    """Extrema of (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) along q = p + t d, in ascending order.
+    """The t of the extrema of (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2), q = p + t d, in ascending order.
 
     With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). Halley's method from beyond
     ends at its root of largest magnitude; a quadratic is left for the other two. Where these are not real two other

@@ -92,7 +92,8 @@ class PackedTriangle(NamedTuple):
 
 
 def intersect(triangle: Any, origin: Vec, direction: Vec, limit: Number | None = None) -> Hit:
-    """Whether and where a ray meets the triangle, or one of a mesh, without gaps between neighbours.
+    """Whether a ray meets the triangle, or one of a mesh, and the t > 0 at which it does; `limit` as in
+    `minirt.shapes.shape`. There are no gaps between neighbours.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
     side of all three edges. The side depends on the two ends of an edge alone, transformed alike for all triangles that
@@ -213,10 +214,11 @@ def boundary(triangle: Any, point: Vec) -> Boundary:
 
 
 def may_meet(triangle: Any, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
-    """Cull the `active` rays that cannot hit the triangle, whatever the rounding: a mask of the others.
+    """Return the mask of the `active` rays without those that cannot hit the triangle, whatever the rounding.
 
     Without a `start` rays leave the apex. With one they lead to the apex, and those that start in front of the
-    triangle, as seen from the apex, cannot hit it.
+    triangle, as seen from the apex, cannot hit it. A ray may hit if it lies on the same side of all three planes
+    through the apex and an edge, within a margin.
     """
     a, b, c = triangle.a - apex, triangle.b - apex, triangle.c - apex
     ab, bc, ca = triangle.b - triangle.a, triangle.c - triangle.b, triangle.a - triangle.c

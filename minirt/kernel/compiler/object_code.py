@@ -77,13 +77,16 @@ def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
 
 
 def compiled_entry(called: FunctionType, signatures: list[Signature]) -> Any:
-    """Compile a function, which returns nothing, for arguments of these signatures; return numba's C function that
-    calls it. It takes tuples and arrays by reference, see `minirt.kernel.compiler.by_reference`."""
+    """Compile a function, which returns nothing, for arguments of these signatures; return numba's C function for it.
+
+    The C function takes the address of the words of all arguments, and calls `called` with tuples and arrays by
+    reference, see `minirt.kernel.compiler.by_reference`.
+    """
     inline_functions_of(import_module(called.__module__))
     kinds = types.Tuple([type_of(each) for each in signatures])
 
     @intrinsic  # type: ignore[untyped-decorator]
-    def arguments_at(_typing: Any, address: Any) -> Any:
+    def arguments_at(_typing: Any, address: Any) -> Any:  # the tuple of all arguments
         whole = Reference(kinds)
 
         def load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:

@@ -140,13 +140,14 @@ def no_result(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
 
 @register(store_block, no_result)
 def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    """Emit the stores of a packet, one for each row; `args` are pixels, x, y, and levels of red, green and blue."""
     pixels = first_of(context, builder, sig.args[0], args[0])
     x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
     width = length(context, builder, sig.args[0], args[0], 1)
     count = sig.args[3].count
     step = count // PACKET_HEIGHT
     words = splat(builder, ir.Constant(PIXEL, OPAQUE), count)
-    for level, shift in zip(args[3:], (16, 8, 0), strict=True):
+    for level, shift in zip(args[3:], (16, 8, 0), strict=True):  # to 0xAARRGGBB
         byte = builder.fptosi(level, words.type)
         words = builder.or_(words, builder.shl(byte, constant(words, shift)))
     for line in range(PACKET_HEIGHT):

@@ -25,7 +25,10 @@ def words_of(value: Any) -> bytes:
 
 
 def append_words(words: list[int], value: Any) -> None:
-    """Append the words of an argument."""
+    """Append to `words` those of an argument: None, an array, a tuple of arguments, or a number.
+
+    ValueError for an array that is not C-contiguous.
+    """
     if value is None:
         words.append(0)
     elif isinstance(value, np.ndarray):

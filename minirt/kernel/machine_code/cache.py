@@ -77,9 +77,9 @@ class CodeCache:
 
     @contextmanager
     def compiling_once(self, identity: str) -> Iterator[None]:
-        """Let other processes that need a kernel wait during this block. The system ends it when this process ends.
+        """Let other processes that need the kernel `identity` wait during this block, or till this process ends.
 
-        Nobody waits where there are no locks, as on Windows, nor for more than `PATIENCE` seconds: the process that
+        Nobody waits where no file can be locked, as on Windows, nor for more than `PATIENCE` seconds: the process that
         holds a lock may have been suspended.
         """
         with ExitStack() as stack:
@@ -117,7 +117,8 @@ def checksum(identity: str, content: bytes) -> bytes:
 def folder() -> Path | None:
     """Return the user's folder for kernels of these sources, made if need be.
 
-    None, with a notice, if it cannot be used, or if others could have written to it."""
+    None, with a notice, if it cannot be used, or if others could have written to it. Old folders of other sources are
+    deleted, see `OTHER_VERSIONS`."""
     try:
         path = user_folder() / "minirt" / f"kernels-{fingerprint_of(processor())}"
         path.parents[1].mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)

@@ -28,13 +28,15 @@ class CompileProcess:
         self.stopped = False  # whether `stop` has been called since compiling began
 
     def compile(self, requests: list[str], target: str | None = None) -> list[ObjectCode]:
-        """Return the object code of kernels, by their identities, for a processor, by default this one.
+        """Return the object code of the kernels whose identities are `requests`, in their order.
 
-        A process that something else than `stop` kills, such as a lack of memory, is started once more. RenderError
-        with the reason where compiling fails, or where `stop` ended it."""
+        `target` is the name of a processor, by default this one. A process that something else than `stop` kills, such
+        as a lack of memory, is started once more. What the compiler writes to its standard error becomes notices.
+        RenderError with the reason where compiling fails, or where `stop` ended it."""
         self.stopped = False
         status, output, errors = self.run(requests, target)
-        if status < 0 and not self.stopped:
+        was_killed = status < 0
+        if was_killed and not self.stopped:
             status, output, errors = self.run(requests, target)
         messages = errors.decode(errors="replace").strip().splitlines()
         if status:
@@ -46,11 +48,12 @@ class CompileProcess:
         return compiled
 
     def run(self, requests: list[str], target: str | None) -> tuple[int, bytes, bytes]:
-        """Run the process; return its exit status, its output and its standard error. RenderError where it cannot be
-        started."""
+        """Run the compiler in a process, `self.process`, which others may stop; arguments are those of `compile`.
+
+        Returns the exit status, the output and the standard error. RenderError where the process cannot be started."""
         try:
             self.process = process = subprocess.Popen(
-                (*COMMAND, *["--patient"] * self.patient),
+                (*COMMAND, *(["--patient"] if self.patient else [])),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -59,7 +62,7 @@ class CompileProcess:
             )
         except OSError as error:
             raise RenderError(f"the compiler cannot be started: {error}") from error
-        requests_pipe, process.stdin = process.stdin, None  # `communicate` would close it, which ends the process
+        requests_pipe, process.stdin = process.stdin, None  # `communicate` would close it, at which the compiler ends
         assert requests_pipe
         with process, requests_pipe:
             with suppress(BrokenPipeError):

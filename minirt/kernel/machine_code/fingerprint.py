@@ -27,7 +27,7 @@ SOURCES = ("kernel", "lanes", "meshes", "shapes")  # folders of all sources of a
 
 @cache
 def fingerprint_of(target: str) -> str:
-    """Return a hash of the sources and of the processor of a name, as `processor` returns it.
+    """Return a hash of the sources and of the processor `target`, a name such as `processor` returns: 16 digits.
 
     A package without sources has modules of bytecode beside its folders; one in a zip file stands for the whole file.
     """
@@ -36,7 +36,7 @@ def fingerprint_of(target: str) -> str:
         digest.update(next(parent for parent in PACKAGE.parents if parent.is_file()).read_bytes())
     for folder in SOURCES:
         for parent, folders, names in os.walk(PACKAGE / folder):  # `Path.rglob` takes 8 ms of each start
-            folders[:] = sorted(name for name in folders if name != "__pycache__")
+            folders[:] = sorted(name for name in folders if name != "__pycache__")  # those that `os.walk` enters
             for name in sorted(name for name in names if name.endswith((".py", ".pyc"))):
                 digest.update(name.encode() + b"\0" + Path(parent, name).read_bytes())
     return digest.hexdigest()[:16]

@@ -120,8 +120,12 @@ class Library:
                 del self.entries[each]
 
     def compile(self, identities: Iterable[str], process: CompileProcess) -> None:
-        """Compile those of some kernels that are missing, in one process. RenderError where that fails."""
-        # Each once and in one order: programs that wait for each other's locks would wait for ever.
+        """Compile those of the kernels `identities` that are not to be found, load them, and keep them in the cache.
+
+        One `process` compiles all. A kernel that another program compiles meanwhile is waited for, and not compiled.
+        RenderError where compiling fails.
+        """
+        # Each kernel once, and all in one order: programs that wait for each other's locks would wait for ever.
         missing = sorted({each for each in identities if not self.find(each)})
         with ExitStack() as stack:
             if self.cache:

@@ -6,7 +6,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows, vector
-from minirt.kernel.shadow_rays import ShadowRays, is_parallel
+from minirt.kernel.shadow_rays import PARALLEL, ShadowRays, is_parallel
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import (
     Mask,
@@ -31,14 +31,16 @@ from minirt.lanes import (
 )
 from minirt.lanes.mathematics import power
 
+EDGE, PER_RISE, PER_REACH = 3, 4, 5  # columns of `SceneArrays.spots`, see `incident_light`; and `PARALLEL`
+
 
 def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[Vec, Number, Number]:
-    """Return the direction from a point towards a light source, the source's distance, and its relative strength there.
+    """Return the unit direction from a point towards a light source, its distance, and its relative strength there.
 
     `spots` (m, 7) has for each light: the direction in which it shines; the cosine of the angle from there to the edge
     of a spot's cone; one over the further increase of the cosine up to where the spot has its full strength; one over
-    the distance at which the light has faded to nothing (0: never); and 1 for parallel light. None or no rows: all
-    lights shine in all directions and do not fade.
+    the distance at which the light has faded to nothing (0: never); and 1 for parallel light, whose distance is
+    infinite. None or no rows: all lights shine in all directions and do not fade.
     """
     offset = position - point
     squared = dot(offset, offset)
@@ -48,11 +50,11 @@ def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[V
     if not has_rows(spots):
         return to_light, distance, splat(1.0, distance)
     axis = vector(spots[light], 0)
-    parallel = spots[light, 6] > 0.5
+    parallel = spots[light, PARALLEL] > 0.5
     to_light = where(parallel, -axis, to_light)
     distance = where(parallel, inf, distance)
-    rim = clamp_to_unit((-dot(to_light, axis) - spots[light, 3]) * spots[light, 4])
-    strength = where(parallel, 1.0, smoothstep(rim) * maximum(1.0 - distance * spots[light, 5], 0.0))
+    inside = clamp_to_unit((-dot(to_light, axis) - spots[light, EDGE]) * spots[light, PER_RISE])  # 0 beside the cone
+    strength = where(parallel, 1.0, smoothstep(inside) * maximum(1.0 - distance * spots[light, PER_REACH], 0.0))
     return to_light, distance, strength
 
 
@@ -72,18 +74,24 @@ class LightGrid(NamedTuple):
 
 
 def sources_in_reach(grid: LightGrid, point: Vec, rounding: Number, hit: Mask) -> tuple[int, int]:
-    """Return the range in `LightGrid.sources` of all that reach some of the points of `hit`, known up to `rounding`."""
+    """Return the range in `LightGrid.sources` of the light sources that may reach the points of the rays `hit`.
+
+    The points are known up to `rounding`. The list is that of a cell of the finest grid in which all of them have one
+    cell; it is the last list, of all light sources, where no grid has such a cell.
+    """
     cell, number = -1, grid.starts.shape[0] - 2
     low_x, low_y, low_z = least(point.x, hit), least(point.y, hit), least(point.z, hit)
     high_x, high_y, high_z = -least(-point.x, hit), -least(-point.y, hit), -least(-point.z, hit)
     inexact = -least(-rounding, hit)
     for level in range(grid.grids.shape[0]):
         box = grid.grids[level]
-        x = cell_along(low_x, high_x, box[0], box[3], box[4])
-        y = cell_along(low_y, high_y, box[1], box[3], box[5])
-        z = cell_along(low_z, high_z, box[2], box[3], box[6])
-        if cell < 0 and min(x, y, z) >= 0.0 and 4.0 * inexact * box[3] < FARTHER:
-            cell = int((z * box[5] + y) * box[4] + x)
+        per_unit, columns, rows, layers = box[3], box[4], box[5], box[6]
+        x = cell_along(low_x, high_x, box[0], per_unit, columns)
+        y = cell_along(low_y, high_y, box[1], per_unit, rows)
+        z = cell_along(low_z, high_z, box[2], per_unit, layers)
+        has_cell, is_exact = min(x, y, z) >= 0.0, 4.0 * inexact * per_unit < FARTHER
+        if cell < 0 and has_cell and is_exact:
+            cell = int((z * rows + y) * columns + x)
             number = int(box[7]) + cell
     return int(grid.starts[number]), int(grid.starts[number + 1])
 
@@ -169,24 +177,23 @@ def remember_sample(scene: SceneArrays, memory: Any, rays: Any) -> None:
 def sampled_position(
     soft: Any, memory: Any, light: int, position: Vec, to_light: Vec, distance: Number
 ) -> tuple[Vec, Vec, Number]:
-    """Return for each ray the position of its sample of a light source, the direction towards it, and its distance; of
-    a scene without light sources that have a size those of the centre, which are given.
+    """Return for each ray the position of its sample of a light source, the direction towards it, and its distance.
 
-    `soft` (m, 4) has for each light its radius; the tangent of half its angular diameter, for parallel light; and
-    cosine and sine of the angle by which the light turns the disc of samples. The last row of `memory` holds the place
-    of each ray's sample on the unit disc, see `remember_sample`.
+    Given are those of the centre, which are returned if no light source has a size. `soft` (m, 4) has for each light
+    its radius; the tangent of half its angular diameter, for parallel light; and cosine and sine of the angle by which
+    the light turns the disc of samples. Each ray's place on the unit disc is in `memory`, see `remember_sample`.
     """
     position = splat(position, distance)
     if has_rows(soft):
         row = memory[memory.shape[0] - 1]
         x, y = load(row, KEPT), load(row, KEPT + width(distance))
         across, down = perpendicular(to_light)
-        cosine, sine = soft[light, 2], soft[light, 3]
+        radius, tangent, cosine, sine = soft[light, 0], soft[light, 1], soft[light, 2], soft[light, 3]
         offset = (cosine * x - sine * y) * across + (sine * x + cosine * y) * down
-        towards = to_light + (soft[light, 0] / distance + soft[light, 1]) * offset
+        towards = to_light + (radius / distance + tangent) * offset
         squared = dot(towards, towards)
         per_length = inverse_root(squared)
-        position = position + soft[light, 0] * offset
+        position = position + radius * offset
         to_light = towards * per_length
         distance = distance * (squared * per_length)
     return position, to_light, distance
@@ -195,12 +202,11 @@ def sampled_position(
 def aim(
     scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number, owner: Number, normal: Vec
 ) -> tuple[ShadowRays, Number]:
-    """Return the rays from some points to a light source, and the share of the light's intensity that arrives at the
-    points: 1 but for spot lights and for lights that fade.
+    """Return the shadow rays from some points to a light source, and the strength of the light there without shadows.
 
-    The points lie on the shapes `owner`, whose `normal` is towards the ray that hit them, and are known up to
-    `rounding`. Rays end a little before the light source: no surface on which it lies occludes it. `memory` is that of
-    `sampled_position`.
+    The strength is a share of the light's intensity: 1 but for spot lights and for lights that fade. The points lie on
+    the shapes `owner`, whose `normal` is towards the ray that hit them, and are known up to `rounding`. Rays end a
+    little before the light source: no surface on which it lies occludes it. `memory` is that of `sampled_position`.
     """
     position = vector(scene.lights[light], 0)
     to_centre, distance, strength = incident_light(scene.spots, light, position, point)
@@ -228,7 +234,7 @@ def perpendicular(axis: Vec) -> tuple[Vec, Vec]:
 
 
 def specular(material: Vec, normal: Vec, to_light: Vec, direction: Vec, lit: Mask) -> Number:
-    """Return the share of a light source's intensity that is reflected as a highlight, for the rays that are `lit`.
+    """Return the share of a light source's intensity that a surface reflects as a highlight; 0 for rays not `lit`.
 
     `direction` is that of the viewing ray. `material` is a row of `SceneArrays.specular`: coefficient k, exponent n and
     1 for Blinn's form. Phong 1975: k (r.v)^n with the mirrored direction r of the light and the direction v of the

@@ -58,14 +58,14 @@ class Fractal(NamedTuple):
 
 
 def fractal_noise(p: Vec, footprint: Number, octaves: int, frequency: float, stretch: float, fold: float) -> Fractal:
-    """Sum octaves of noise at p. A cell of the first one is 1 / `frequency` wide, and along z `stretch` times as long.
+    """Sum octaves of noise at p. A cell of the first octave is 1 / `frequency` wide, and `stretch` times as long in z.
 
-    With a `fold` of 1 it is turbulence: the sum of absolute values, less their mean. `footprint` is the distance of
-    samples.
+    With a `fold` of 1 the sum is turbulence: that of absolute values, less their mean; with 0 it is that of the noise.
+    `footprint` is the distance of samples, in the unit of p: octaves that are too fine for it fade.
     """
     zero = splat(0.0, p.x)
     total, fine, slope, fine_slope = zero, zero, Vec(zero, zero, zero), Vec(zero, zero, zero)
-    along, amplitude = frequency / stretch, 1.0
+    along, amplitude = frequency / stretch, 1.0  # `along`: the frequency along z
     for octave in range(octaves):
         kept = 1.0 - faded(footprint * frequency)
         if not any(kept > 0.0):
@@ -103,7 +103,10 @@ def marble(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
 
 
 def wood(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
-    """Rings one size apart around z: each slowly becomes dark and then light again; and grain along z."""
+    """Return the share of the dark colour of wood at p, and its gradient.
+
+    Rings one size apart lie around the z axis. Each slowly becomes dark and then light again. Grain runs along z.
+    """
     radius = sqrt(p.x * p.x + p.y * p.y)
     phase = radius + WARP * noise.total
     part = phase - floor(phase)
@@ -112,6 +115,7 @@ def wood(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
     early, late = smoothstep(growth), 1.0 - smoothstep(end)
     kept = 1.0 - faded(2.0 * footprint)
     share = LIGHT + RING * (MEAN_RING + kept * (early * early * late - MEAN_RING)) + GRAIN * noise.fine
+    # Derivatives of early * early * late by the phase, where the ring becomes dark and where it becomes light.
     rise = 12.0 / EARLY * early * late * growth * (1.0 - growth)
     fall = 6.0 / (1.0 - EARLY) * early * early * end * (1.0 - end)
     per_radius = 1.0 / where(radius == 0.0, 1.0, radius)
@@ -191,7 +195,10 @@ def pattern_at(row: Any, point: Vec, footprint: Number) -> tuple[Number, Vec]:
 
 
 def share_and_slope(kind: float, octaves: int, p: Vec, footprint: Number) -> tuple[Number, Vec]:
-    """Return the share at p, in the frame of the shape and in sizes of the pattern, and its gradient there."""
+    """Return the share of a pattern of this `kind` at p, from 0 to 1, and its gradient there.
+
+    p and `footprint`, the distance of samples, are in sizes of the pattern; p is in the frame of the shape.
+    """
     if kind == MARBLE:
         frequency, stretch, fold = MARBLE_NOISE
     elif kind == WOOD:

@@ -43,10 +43,11 @@ MOST_SURFACES = 256  # that a shadow ray may cross; beyond them it counts as occ
 def direct_light(
     scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, surface: Surface, hit: Mask
 ) -> tuple[Vec, Vec]:
-    """Compute the light that falls onto the surfaces at the hits of rays, and the highlights that they reflect back.
+    """Return the light that falls onto the surfaces at the hits of rays, and the highlights that they reflect back.
 
     The light is ambient light and, by Lambert's cosine law, that of every light source that is not occluded. It reaches
     the side from which the ray comes; cosines are those of the shading normal. Rays that do not hit get ambient light.
+    `memory` is that of `minirt.kernel.frame.frame`.
     """
     normal, shading_normal = surface.normal, surface.shading_normal
     owner, rounding = found[OWNER], clearance(surface.point, found[EXTENT])
@@ -58,11 +59,11 @@ def direct_light(
     if scene.light_grid is not None and has_rows(scene.light_grid.grids):
         first_source, end = sources_in_reach(scene.light_grid, surface.point, rounding, hit)
     for number in range(first_source, end):
-        i = number
+        source = number
         if scene.light_grid is not None and has_rows(scene.light_grid.grids):
-            i = int(scene.light_grid.sources[number])
-        intensity = brightness * vector(scene.lights[i], 3)
-        rays, strength = aim(scene, memory, i, start, rounding, owner, normal)
+            source = int(scene.light_grid.sources[number])
+        intensity = brightness * vector(scene.lights[source], 3)
+        rays, strength = aim(scene, memory, source, start, rounding, owner, normal)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):
             strength = strength * bump_fading(surface.base_normal, shading_normal, to_light)
@@ -73,19 +74,19 @@ def direct_light(
                 turned_away = lit & (dot(normal, to_light) <= 0.0)
                 if rarely(turned_away):
                     smooth = smooth_points(scene, owner, surface.point, normal, turned_away)
-                    start_of = where(turned_away, smooth + rounding * normal, start)
-                    rays, _ = aim(scene, memory, i, start_of, rounding, owner, normal)
-            share, light = zero, intensity
-            if scene.transparent is None:
+                    smooth_start = where(turned_away, smooth + rounding * normal, start)
+                    rays, _ = aim(scene, memory, source, smooth_start, rounding, owner, normal)
+            shine, light = zero, intensity
+            if scene.transparent is None:  # else `shares_of_light` traces the rays
                 lit = trace_shadow_rays(scene, memory, rays, lit, False)
             if has_rows(scene.specular):
-                share = specular(surface.specular, shading_normal, to_light, ray.direction, lit)
+                shine = specular(surface.specular, shading_normal, to_light, ray.direction, lit)
             if scene.transparent is not None:
-                seen = (own_share(surface) > MIN_WEIGHT) | (share > MIN_WEIGHT)
-                light = tint(shares_of_light(scene, memory, rays, ray.medium, lit, seen), intensity)
+                matters = (own_share(surface) > MIN_WEIGHT) | (shine > MIN_WEIGHT)
+                light = tint(shares_of_light(scene, memory, rays, ray.medium, lit, matters), intensity)
             total = total + where(lit, cosine, 0.0) * light
             if has_rows(scene.specular):
-                highlight = highlight + share * strength * light
+                highlight = highlight + shine * strength * light
     return total, highlight
 
 
@@ -111,22 +112,23 @@ def traverse_bvh(scene: SceneArrays, rays: ShadowRays) -> bool:
     return has_rows(scene.bvh.nodes) and is_spread(scene, rays.light)
 
 
-def shares_of_light(scene: SceneArrays, memory: Any, rays: ShadowRays, medium: Vec, lit: Mask, seen: Mask) -> Vec:
+def shares_of_light(scene: SceneArrays, memory: Any, rays: ShadowRays, medium: Vec, lit: Mask, matters: Mask) -> Vec:
     """Return the shares of red, green and blue of a light source that reach the origin of `lit` shadow rays.
 
-    Most rays meet nothing, or something opaque, and need not be followed through glass; nor need those whose light is
-    not `seen`. Where rays traverse the BVH, to follow them takes no longer than to find out which need it.
+    Most rays meet nothing, or something opaque, and need not be followed through glass; nor need those whose light
+    hardly `matters` to the pixel: glass is opaque to them. `medium` is the absorption at the origin. Where rays
+    traverse the BVH, to follow them takes no longer than to find out which need it.
     """
     clear = lit
     if has_rows(scene.transparent) and traverse_bvh(scene, rays):
-        clear = lit & ~lit
+        clear = lit & ~lit  # none is known to be clear
     else:
-        for phase in range(2 if has_rows(scene.transparent) else 1):
+        for phase in range(2 if has_rows(scene.transparent) else 1):  # against opaque shapes, and then against glass
             clear = trace_shadow_rays(scene, memory, rays, clear, phase == 1)
             if phase == 0:
                 lit = clear
-        lit = lit & (clear | seen)
-    return light_through_glass(scene, rays, medium, lit, seen, clear)
+        lit = lit & (clear | matters)
+    return light_through_glass(scene, rays, medium, lit, matters, clear)
 
 
 def smooth_points(scene: SceneArrays, owner: Number, point: Vec, normal: Vec, rays: Mask) -> Vec:
@@ -147,18 +149,19 @@ def smooth_points(scene: SceneArrays, owner: Number, point: Vec, normal: Vec, ra
 
 
 def bump_fading(base: Vec, bumped: Vec, to_light: Vec) -> Number:
-    """Return the share of light that bumps let through; 1 where the bumped normal is that of the surface, `base`.
+    """Return the share of light that bumps let through: 1 where the normal `bumped` is that of the surface, `base`.
 
-    The microfacet shadowing of a surface so rough that its facets have the bumped normal (Estevez, Lecocq and Stein, A
-    Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem, Ray Tracing Gems, 2019, chapter 12). With
-    the cosine c of the light over the base and the roughness a it is 2 c / (c + sqrt(c^2 + a^2 (1 - c^2))).
+    It is 0 for light from behind the surface. The formula is the microfacet shadowing of a surface so rough that its
+    facets have the bumped normal (Estevez, Lecocq and Stein, A Microfacet-Based Shadowing Function to Solve the Bump
+    Terminator Problem, Ray Tracing Gems, 2019, chapter 12). With the cosine c of the light over the base and the
+    roughness a it is 2 c / (c + sqrt(c^2 + a^2 (1 - c^2))).
     """
     apart = bumped - base
-    chord = dot(apart, apart)  # exactly 0 for a flat bump, unlike the sine of the angle
-    leaning = maximum(1.0 - 0.5 * chord, LEAST_COSINE)  # cosine between the normals
-    squared = minimum(ROUGHNESS * chord * (1.0 - 0.25 * chord) / (leaning * leaning), 1.0)
+    squared_chord = dot(apart, apart)  # exactly 0 for a flat bump, unlike the sine of the angle
+    leaning = maximum(1.0 - 0.5 * squared_chord, LEAST_COSINE)  # cosine between the normals
+    squared_roughness = minimum(ROUGHNESS * squared_chord * (1.0 - 0.25 * squared_chord) / (leaning * leaning), 1.0)
     cosine = maximum(dot(base, to_light), 0.0)
-    root = sqrt(cosine * cosine + squared * maximum(1.0 - cosine * cosine, 0.0))
+    root = sqrt(cosine * cosine + squared_roughness * maximum(1.0 - cosine * cosine, 0.0))
     total = cosine + root
     return where(total > 0.0, 2.0 * cosine / where(total > 0.0, total, 1.0), 0.0)
 
@@ -172,39 +175,42 @@ def has_bumps(scene: SceneArrays) -> bool:
     return has_rows(scene.surface_maps.bumps) or has_rows(scene.surface_maps.normals)
 
 
-def light_through_glass(scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: Mask, seen: Mask, clear: Mask) -> Vec:
+def light_through_glass(
+    scene: SceneArrays, rays: ShadowRays, medium: Vec, lit: Mask, matters: Mask, clear: Mask
+) -> Vec:
     """Return the shares of red, green and blue of a light source that reach the origin of shadow rays.
 
-    Of the `lit` rays those that are `clear` meet nothing; glass is opaque to those that are not `seen`. Rays start in a
-    `medium`.
+    The `clear` rays are known to meet nothing. Of the others those that are `lit` are followed through glass, which is
+    opaque to rays whose light hardly `matters`; the rest get no light. `medium` is the absorption where rays start.
     """
     share = where(clear, splat(1.0, rays.distance), 0.0)
     light = Vec(share, share, share)
     reach = rays.distance
-    occluded = lit & ~clear
-    if has_rows(scene.transparent) and any(occluded):
-        light, medium, reach = follow_shadow_rays(scene, rays, medium, light, occluded, seen)
+    followed = lit & ~clear
+    if has_rows(scene.transparent) and any(followed):
+        light, medium, reach = follow_shadow_rays(scene, rays, medium, light, followed, matters)
     if has_rows(scene.media):
         light = absorbed(light, medium, reach)
     return light
 
 
 def follow_shadow_rays(
-    scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, occluded: Mask, seen: Mask
+    scene: SceneArrays, rays: ShadowRays, medium: Vec, light: Vec, followed: Mask, matters: Mask
 ) -> tuple[Vec, Vec, Number]:
-    """Follow `occluded` shadow rays from surface to surface; to rays that are not `seen` all surfaces are opaque.
+    """Follow the shadow rays of the mask `followed` from surface to surface, and return what is left at the end.
 
-    Returns the shares of the light that are left at the end, and there the medium and the distance that remains to the
-    light source. Rays still on their way after `MOST_SURFACES` end dark.
+    Results are the shares of the light, which for other rays are those of `light`; and, behind the last surface, the
+    medium and the distance that remains to the light source. All surfaces are opaque to rays whose light hardly
+    `matters`. Rays still on their way after `MOST_SURFACES` end dark.
     """
     start, to_light, reach = rays.origin, rays.direction, rays.distance
-    light = where(occluded, Vec(1.0, 1.0, 1.0), light)
-    active = occluded
+    light = where(followed, Vec(1.0, 1.0, 1.0), light)
+    active = followed
     for _ in range(MOST_SURFACES):
         t, owner, extent, _ = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
         active = active & (t < reach)
-        light = where(active & ~seen, Vec(0.0, 0.0, 0.0), light)
-        active = active & seen
+        light = where(active & ~matters, Vec(0.0, 0.0, 0.0), light)
+        active = active & matters
         if not any(active):
             break
         if has_rows(scene.media):
@@ -215,10 +221,10 @@ def follow_shadow_rays(
         while rarely(remaining):
             index = int(lane(owner, first(remaining)))
             crossing = remaining & (owner == index)
-            behind = behind_surface(scene, index, point, to_light, extent, light, medium)
-            start = where(crossing, behind[0], start)
-            light = where(crossing, behind[1], light)
-            medium = where(crossing, behind[2], medium)
+            onward, light_there, medium_there = behind_surface(scene, index, point, to_light, extent, light, medium)
+            start = where(crossing, onward, start)
+            light = where(crossing, light_there, light)
+            medium = where(crossing, medium_there, medium)
             remaining = remaining & ~crossing
         active = active & (brightest(light) > 0.0)
     ended = where(active, 0.0, 1.0)
@@ -228,7 +234,8 @@ def follow_shadow_rays(
 def behind_surface(
     scene: SceneArrays, index: int, point: Vec, direction: Vec, extent: Number, light: Vec, medium: Vec
 ) -> tuple[Vec, Vec, Vec]:
-    """Return where rays go on that cross the surface of a shape, and the light and the medium behind it."""
+    """Return where shadow rays go on that cross the surface of shape `index` at `point`, which is known within
+    rounding, and the light and the medium behind the surface; `light` and `medium` are those before it."""
     on, normal, shading_normal = surface_of(scene, index, point)
     cosine = fabs(dot(shading_normal, direction))
     reflective, fresnel = row_of(scene.transparent, index, extent), splat(scene.transparent[index, 3], extent)

@@ -129,7 +129,10 @@ def surfaces(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, hit: 
 
 
 def surface_at(scene: SceneArrays, memory: Any, index: int, point: Vec, t: Number, direction: Vec) -> Surface:
-    """Compute the surface of one shape for all rays of the packet, which come in a `direction` from a distance t."""
+    """Compute the surface of shape `index` for all rays of the packet, which come in a `direction` from a distance t.
+
+    `point` is where they meet it, within rounding; `memory` has the spacing of samples, see `remember_spacing`.
+    """
     on, normal, base_normal = surface_of(scene, index, point)
     colour = row_of(scene.colours_and_extents, index, point.x)
     shading_normal = base_normal

@@ -130,7 +130,7 @@ def own_axes(placements: Any, index: int) -> tuple[Vec, Vec, Vec]:
 
 
 def placed(placements: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec) -> Mapped:
-    """Shift, turn and scale u and v, and give the tangents along the new ones, in the scene's axes."""
+    """Return u and v, shifted, turned and scaled, and the tangents along the new ones, in the scene's axes."""
     if not has_rows(placements) or placements[index, 0] == 0.0:
         return u, v, along_u, along_v
     scale_u, scale_v = placements[index, 0], placements[index, 1]

@@ -98,7 +98,7 @@ def shade(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit, hit: Mas
 
 
 def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit) -> Vec:
-    """Return the radiance along rays with known hits, following reflected and refracted rays depth first."""
+    """Return the radiance along rays with known hits, `found`, following reflected and refracted rays depth first."""
     stack = ray_stack()
     zero = splat(0.0, ray.weight)
     level, waiting = 0, 0  # the latter counts packets on the stack
@@ -120,21 +120,21 @@ def whitted(scene: SceneArrays, memory: Any, ray: Ray, found: ClosestHit) -> Vec
                 cosine = -dot(mirror_normal, direction)
                 # Snell's law, with the ratio of the indices of refraction in front of the surface and behind it.
                 ratio = where(leaves, reflective.z, 1.0 / reflective.z)
-                squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine)
-                total = squared < 0.0  # total internal reflection
-                refracted = where(hit & ~total, weight * reflective.y, 0.0)
-                reflected = where(hit, weight * reflective.x + where(total, weight * reflective.y, 0.0), 0.0)
+                squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine)  # of the cosine of the refracted ray
+                is_total = squared < 0.0  # total internal reflection
+                refracted = where(hit & ~is_total, weight * reflective.y, 0.0)
+                reflected = where(hit, weight * reflective.x + where(is_total, weight * reflective.y, 0.0), 0.0)
                 kept = worth_tracing(scene, reflected, colour)
                 if any(kept > 0.0):
                     onward = unit(direction + 2.0 * cosine * mirror_normal)
-                    fade = where(total, surface.fades.y, surface.fades.x)
+                    fade = where(is_total, surface.fades.y, surface.fades.x)
                     mirrored = Ray(point + rounding * facing, onward, kept, fade, colour, ray.medium)
                     waiting = push_rays(scene, stack, waiting, mirrored, level)
-                left, inside = behind_surface(scene, surface, colour, ray.medium, leaves)
-                kept = worth_tracing(scene, refracted, left)
+                colour_behind, medium = colour_and_medium_behind(scene, surface, colour, ray.medium, leaves)
+                kept = worth_tracing(scene, refracted, colour_behind)
                 if any(kept > 0.0):
                     onward = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirror_normal)
-                    through = Ray(point - rounding * facing, onward, kept, surface.fades.y, left, inside)
+                    through = Ray(point - rounding * facing, onward, kept, surface.fades.y, colour_behind, medium)
                     waiting = push_rays(scene, stack, waiting, through, level)
         beyond = weighted_background(scene, where(active & ~hit, weight, 0.0), direction)
         radiance = radiance + coloured(scene, beyond, colour)
@@ -181,7 +181,9 @@ def worth_tracing(scene: SceneArrays, weight: Number, colour: Vec) -> Number:
     return where(weight * brightest(colour) > MIN_WEIGHT, weight, 0.0)
 
 
-def behind_surface(scene: SceneArrays, surface: Surface, colour: Vec, medium: Vec, leaves: Mask) -> tuple[Vec, Vec]:
+def colour_and_medium_behind(
+    scene: SceneArrays, surface: Surface, colour: Vec, medium: Vec, leaves: Mask
+) -> tuple[Vec, Vec]:
     """Return colour and medium of rays that are refracted by a surface of tinted glass."""
     if has_rows(scene.media):
         colour = tint(colour, surface.filter)

@@ -67,7 +67,7 @@ def inverse_root(builder: ir.IRBuilder, x: Any) -> Any:
 
 
 def estimate(builder: ir.IRBuilder, x: Any) -> Any:
-    """Return 1 / sqrt(x) with a relative error below 2^-14, one register after the other."""
+    """Return 1 / sqrt(x) with a relative error below 2^-14, for lanes of whole registers of AVX-512, one by one."""
     number = x.type.element
     double = number == ir.DoubleType()
     lanes = 8 if double else 16

@@ -142,10 +142,11 @@ def vec_of(context: Any, builder: ir.IRBuilder, kind: VecType, parts: list[Any])
 def register(
     function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]] = ANYTHING
 ) -> Callable[..., Any]:
-    """Decorator of what emits the code of `function` for arguments whose types match one of `patterns`.
+    """Return a decorator of a function that emits the code of `function`, and enter `function` into `REGISTERED`.
 
-    What is decorated is `generate(context, builder, signature, values)`, as numba's `lower_builtin` takes it; `result`
-    gives the type of the result for those of the arguments, None where there is none.
+    The code is for arguments whose types match one of `patterns`. What is decorated is `generate(context, builder,
+    signature, values)`, as numba's `lower_builtin` takes it. `result` is called with the types of the arguments and
+    returns that of the result, or None where the operation does not take them.
     """
 
     def generic(self: Any, args: Any, kws: Any) -> Any:
@@ -183,7 +184,8 @@ def elementwise_type(*kinds: types.Type) -> types.Type | None:
 def on_each(context: Any, builder: ir.IRBuilder, kind: types.Type, kinds: Any, values: Any, emit: Any) -> Any:
     """Return the number or the Vec, of the type `kind`, whose components `emit` computes from those of some values.
 
-    All are converted to the type of the result; a number beside a Vec counts for each component.
+    `kinds` are the types of the `values`. `emit` gets one LLVM value of each, converted to the type of the result: once
+    for a number, three times for a Vec. A number beside a Vec counts for each component.
     """
     is_vec = isinstance(kind, VecType)
     number = kind.number if is_vec else kind
