@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from math import atan2, copysign, degrees, hypot
+from math import atan2, copysign, degrees, hypot, remainder
 from typing import NamedTuple
 
 from minirt.element import Element
@@ -119,9 +119,9 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
     if handle.kind == TURN:
         middle_x, middle_y = view.pixel(centre) or (0.0, 0.0)
         first, last = (degrees(atan2(y - middle_y, x - middle_x)) for x, y in ends)
-        facing = copysign(motion.handedness(start.camera), dot(axis, subtract(view.eye, centre)))
+        facing = motion.handedness(start.camera) * copysign(1.0, dot(axis, subtract(view.eye, centre)))
         smallest = FINE if start.fine else 1.0
-        angle = snapped((first - last) * facing, SNAP_ANGLE if start.snaps else smallest)
+        angle = snapped(remainder(first - last, 360.0) * facing, SNAP_ANGLE if start.snaps else smallest)
         turned = motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
         said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
         return turned.with_message(GAP.join(said))

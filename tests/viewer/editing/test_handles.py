@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from math import degrees, dist, hypot
 
@@ -11,6 +12,7 @@ import pytest
 from minirt.scene import Camera
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.marks import AXIS_COLOURS, arrow_tip, arrows, bgra
+from minirt.viewer.editing.dragging import DragStart, pull
 from minirt.viewer.editing.handles import MOVE, SIZE, SLIDE, TURN, Handle, handles_of
 from minirt.viewer.editing.projection import Projection, projection_of, subtract
 from minirt.viewer.editing.state import State
@@ -111,6 +113,25 @@ def test_a_ring_turns_about_its_axis_as_the_pointer_goes_around(axis: int) -> No
     rotation = vectors[1] @ vectors[0].T
     skew = (rotation - rotation.T)[(axis + 2) % 3, (axis + 1) % 3]  # positive: counter-clockwise, as the corners go
     assert skew > 0
+
+
+@pytest.mark.parametrize("is_mirrored", [False, True])
+@pytest.mark.parametrize("axis", range(3))
+def test_a_ring_follows_the_pointer_all_around_in_mirrored_pictures_too(axis: int, is_mirrored: bool) -> None:
+    scene = opened().scene.mirrored() if is_mirrored else opened().scene
+    state, box = replace(opened(), scene=scene), opened().element
+    projection = projection_of(scene.camera, WIDTH, HEIGHT)
+    (ring,) = [each for each in handles_of(box, projection, 1.0) if (each.kind, each.axis) == (TURN, axis)]
+    before = np.array([(v.x, v.y, v.z) for v in box.frame()]).T
+    for begin, end in zip(ring.points, [*ring.points[3:], *ring.points[:3]], strict=True):
+        x, y = round(begin[0]), round(begin[1])
+        reach = end[0] - x, end[1] - y
+        turned = pull(state, DragStart(projection, x, y, box, scene.camera, None, handle=ring, reach=reach), x, y)
+        rotation = np.array([(v.x, v.y, v.z) for v in turned.element.frame()]).T @ before.T
+        sine = (rotation - rotation.T)[(axis + 2) % 3, (axis + 1) % 3] / 2
+        angle = degrees(np.arctan2(sine, (np.trace(rotation) - 1) / 2))
+        assert 5 <= angle <= 75, f"22.5 degrees counter-clockwise, seen at an angle: {angle}"
+        assert turned.message.startswith(f"turned by {angle:.3g} degrees")
 
 
 @pytest.mark.parametrize(("axis", "old"), [(0, 2.0), (1, 1.0), (2, 1.5)])
