@@ -124,7 +124,7 @@ def bent(scene: Scene, power: float) -> Bytes:
 
 
 WRONG = [
-    (0, from_behind, 0.3),
+    (7, from_behind, 0.3),
     (1, from_behind, 1.0),
     (7, bent, 1.1),
     (2, bent, 0.93),
