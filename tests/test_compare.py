@@ -39,65 +39,69 @@ def test_the_formulas_are_those_of_the_kernel(seed: int) -> None:
     assert (pictures.distance(ours, theirs) > 1).mean() < 1e-4
 
 
-# Changes of scene or pixels that the kernel draws, by the cause and its value.
-def wider(scene: Scene) -> Bytes:
+# Changes of a scene, by the cause and its value.
+def wider(scene: Scene) -> Scene:
     vertical = degrees(2 * atan(tan(radians(scene.camera.fov) / 2) * SIZE[0] / SIZE[1]))
-    return rendered(scene.replace(scene.camera, fov=vertical))
+    return scene.replace(scene.camera, fov=vertical)
 
 
-def on_their_base(scene: Scene) -> Bytes:
+def on_their_base(scene: Scene) -> Scene:
     for each in scene.cylinders:
         centre = tuple(p + each.height / 2 * d for p, d in zip(each.centre, each.axis, strict=True))
         scene = scene.replace(each, centre=centre)
-    return rendered(scene)
+    return scene
 
 
-def doubled_balls(scene: Scene) -> Bytes:
+def doubled_balls(scene: Scene) -> Scene:
     for each in scene.spheres:
         scene = scene.replace(each, diameter=2 * each.diameter)
-    return rendered(scene)
+    return scene
 
 
-EDITED: dict[tuple[str, object], Callable[[Scene], Bytes]] = {
-    ("mirrored", True): lambda scene: rendered(scene.mirrored()),
+EDITED: dict[tuple[str, object], Callable[[Scene], Scene]] = {
+    ("mirrored", True): Scene.mirrored,
     ("fov", "vertical"): wider,
     ("cylinder", "base"): on_their_base,
     ("radius", "spheres"): doubled_balls,
-    ("ambient", 0.5): lambda scene: rendered(scene.replace(scene.ambient, brightness=scene.ambient.brightness / 2)),
-    ("colours", "swapped"): lambda scene: rendered(scene)[..., ::-1],
+    ("ambient", 0.5): lambda scene: scene.replace(scene.ambient, brightness=scene.ambient.brightness / 2),
 }
+SWAPPED = "colours", "swapped"
 
 
-@pytest.mark.parametrize("cause", EDITED)
-def test_what_an_edited_scene_shows_is_named(cause: tuple[str, object], tmp_path: Path) -> None:
-    scene = student_scene(7)
-    found = compared(scene, EDITED[cause](scene), tmp_path)
-    assert [(each.name, each.value) for each in found.causes] == [cause]
+@pytest.mark.parametrize(
+    "causes",
+    [
+        [("fov", "vertical"), SWAPPED],
+        [("mirrored", True), ("ambient", 0.5)],
+        [("cylinder", "base"), ("radius", "spheres")],
+    ],
+)
+def test_what_an_edited_scene_shows_is_named(causes: list[tuple[str, object]], tmp_path: Path) -> None:
+    scene = edited = student_scene(7)
+    for cause in causes:
+        edited = EDITED[cause](edited) if cause in EDITED else edited
+    levels = rendered(edited)[..., :: -1 if SWAPPED in causes else 1]
+    found = compared(scene, levels, tmp_path)
+    assert {(each.name, each.value) for each in found.causes} == {*causes}
     assert (found.explained > 0.99, found.sure, "likely" in str(found)) == (True, True, False)
 
 
 @pytest.mark.parametrize(
     ("seed", "names"),
     [
-        (1, ["up z"]),
-        (2, ["pixel corner"]),
-        (3, ["ambient not in shadow"]),
-        (4, ["fading 1"]),
-        (5, ["gamma 2.2", "flipped True"]),
-        (6, ["cylinder doubled", "shadows none"]),
-        (8, ["reflections True", "cylinder turned"]),
-        (9, ["fading linear", "mirrored True"]),
-        (0, ["cone both halves"]),
-        (1, ["cone whole angle"]),
-        (1, ["axis not normalised"]),
-        (0, ["axis in the formula"]),
-        (0, ["diffuse brightness squared"]),
         (1, ["direction angles"]),
         (2, ["fov equal angles"]),
-        (11, ["background gradient"]),
-        (2042, ["inside False"]),
         (3, ["direction position added"]),
-        (4, ["fading 1/(1 + 0.1 distance)"]),
+        (0, ["axis in the formula", "gamma 2.2"]),
+        (0, ["cone both halves", "diffuse brightness squared"]),
+        (1, ["up z", "cone whole angle"]),
+        (2, ["pixel corner", "ambient not in shadow"]),
+        (4, ["axis not normalised", "fading 1"]),
+        (4, ["mirrored True", "fading 1/(1 + 0.1 distance)"]),
+        (6, ["cylinder doubled", "shadows none"]),
+        (8, ["cylinder turned", "reflections True"]),
+        (11, ["background gradient", "fading linear"]),
+        (2042, ["inside False", "flipped True"]),
     ],
 )
 def test_planted_causes_are_named_alone_and_in_pairs(seed: int, names: list[str], tmp_path: Path) -> None:
@@ -121,10 +125,8 @@ def bent(scene: Scene, power: float) -> Bytes:
 
 WRONG = [
     (7, from_behind, 0.3),
-    (0, from_behind, 0.3),
     (1, from_behind, 1.0),
     (7, bent, 1.1),
-    (0, bent, 0.93),
     (2, bent, 0.93),
 ]
 

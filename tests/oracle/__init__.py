@@ -12,6 +12,7 @@ So a new shape needs nothing here. `tests/shapes/test_known_answers.py` holds th
 
 from __future__ import annotations
 
+from functools import cached_property
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -117,13 +118,19 @@ class Crossed:
         with np.errstate(all="ignore"):
             # t is counted from where the ray is nearest to the first point of the shape: there its numbers are small.
             self.approach = np.sum((points(shape)[0] - origins) * directions, axis=-1)
-            way = [number(each, digits) for each in directions.T]
-            start = [number(o, digits) + d * self.approach for o, d in zip(origins.T, way, strict=True)]
+
+    @cached_property
+    def zeros(self) -> tuple[Array, Array]:
+        """The t at which the rays cross the faces, (k, n), and the limits, (l, n), NaN where they do not."""
+        with np.errstate(all="ignore"):
+            way = [number(each, self.digits) for each in self.directions.T]
+            start = [number(o, self.digits) + d * self.approach for o, d in zip(self.origins.T, way, strict=True)]
             ray = Vec(*(line(*each) for each in zip(start, way, strict=True)))
-            self.of_faces, self.of_limits = (
-                np.reshape([(t + self.approach).high for each in some for t in each.zeros()], (-1, len(origins)))
-                for some in kind_of(shape).boundary(exact_shape(shape, digits), ray)
+            faces, limits = (
+                np.reshape([(t + self.approach).high for each in some for t in each.zeros()], (-1, len(self.origins)))
+                for some in kind_of(self.shape).boundary(exact_shape(self.shape, self.digits), ray)
             )
+            return faces, limits
 
     def heights(self, t: Array) -> Heights:
         """Heights of the points of the rays at t, (..., n)."""
@@ -143,7 +150,7 @@ class Crossed:
         Returns the ends of the pieces, (k + 1, n), the greatest height above the surface that was seen in each,
         negative inside, (k, n), and where. Pieces of no length have the height 0.
         """
-        cuts = np.concatenate([self.of_faces, self.of_limits])
+        cuts = np.concatenate(self.zeros)
         cuts[np.abs(cuts) > FARTHEST] = np.nan
         far = 4 * (np.fmax.reduce([*np.abs(cuts - self.approach), 0 * self.approach]) + size(self.shape))
         begin = self.approach - far if start is None else start
@@ -158,7 +165,8 @@ class Crossed:
     def crossings(self) -> Array:
         """All t at which the rays cross the surface, (k, n) in ascending order, then NaN."""
         if is_sheet(self.shape):
-            return np.where(self.heights(self.of_faces).beyond <= 0, self.of_faces, np.nan)
+            faces, _ = self.zeros
+            return np.where(self.heights(faces).beyond <= 0, faces, np.nan)
         cuts, above, _ = self.pieces(shares=SHARES[:1])
         for i in range(1, len(above)):  # a piece of no length is as the one before
             above[i] = np.where(above[i] == 0, above[i - 1], above[i])

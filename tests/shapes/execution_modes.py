@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
@@ -127,23 +128,27 @@ def closest(table: Any, each: int, o: Any, d: Any, t: Any) -> None:
 
 
 class SharedKernels(Library):
-    """Kernels of this file, which are compiled once for all processes and runs until it or the library changes."""
-
-    source = sha256(Path(__file__).read_bytes()).hexdigest()
+    """Kernels of tests, which are compiled once for all processes and runs until their file or the library changes."""
 
     def identity(self, call: Call) -> str:
-        return identity_of(*call, f"{fingerprint_of(os.environ.get('NUMBA_CPU_NAME', NATIVE))} {self.source}")
+        file = sys.modules[call[0].partition(":")[0]].__file__ or ""
+        source = sha256(Path(file).read_bytes()).hexdigest()
+        return identity_of(*call, f"{fingerprint_of(os.environ.get('NUMBA_CPU_NAME', NATIVE))} {source}")
 
 
 KERNELS = SharedKernels()
+
+
+def run_compiled(function: Callable[..., None], *arguments: Any) -> None:
+    """Run the compiled form of a function of a module."""
+    small_kernels.compiled(KERNELS, small_kernels.call(function, *arguments), Compiler())(*arguments)
 
 
 def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """t of rays (m, n, 3) against m shapes, compiled as the renderer's; n is a multiple of the rays of a packet."""
     t = np.empty(origins.shape[:2])
     rays = component_arrays(origins), component_arrays(directions)
-    arguments = shape_rows(shapes), origins.shape[1], *rays, t.reshape(-1)
-    small_kernels.compiled(KERNELS, (f"{__name__}:closest", arguments), Compiler())(*arguments)
+    run_compiled(closest, shape_rows(shapes), origins.shape[1], *rays, t.reshape(-1))
     return t
 
 

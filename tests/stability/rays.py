@@ -137,12 +137,15 @@ def places(shape: Shape, random: Random, n: int) -> Array:
     on_line, on_plane = centre + steps[:, :1] * one, centre + steps[:, :1] * one + steps[:, 1:] * other
     near = hull(shape, random, n)
     near = np.where(random.random((n, 1)) < 0.3, centre + (near - centre) @ np.diag(random.integers(0, 2, 3)), near)
-    heights = oracle.heights(shape, Vec(*map(DoubleDouble, near.T)))
+    heights = oracle.heights(shape, Vec(*map(DoubleDouble, near[:1].T)))
     count = len(heights.faces) + len(heights.limits)
-    order = np.argsort(random.random((max(count, 3), n)), axis=0) % count
-    met = [meeting(shape, near, order[:k]) for k in (1, 1, min(2, count), min(3, count))]
-    found = np.stack([*met, *met[:2], centre, on_line, on_plane, near])
-    chosen = found[random.integers(len(found), size=n), np.arange(n)]
+    order = np.argsort(random.random((max(count, 3), n)), axis=0)[:3] % count
+    found = np.stack([centre, on_line, on_plane, near, *6 * [near]])
+    option = random.integers(len(found), size=n)
+    chosen, meet = found[option, np.arange(n)], option >= 4
+    # Of those, most lie on one face, and the last two options where two and three meet; a face counts once.
+    faces = order[np.minimum(np.arange(3)[:, None], np.maximum(option - 7, 0)), np.arange(n)]
+    chosen[meet] = meeting(shape, near[meet], faces[:, meet])
     return np.where(np.isfinite(chosen) & (np.abs(chosen - centre) < 1e6 * around), chosen, centre)
 
 

@@ -48,8 +48,8 @@ def complaints(kind: Kind, *ways: Intersect, seed: int = RUN, shapes: int = SHAP
             if not is_finite.any():
                 continue
             o, d = (np.resize(part[is_finite], (RAYS, 3)) for part in each)
-            for intersect in ways:
-                t = intersect([shape], o[None], d[None])[0]
+            answers = [intersect([shape], o[None], d[None])[0] for intersect in ways]
+            for t in {each.tobytes(): each for each in answers}.values():  # most ways give the same bits
                 found += [str(each) for each in wrong(shape, o, d, t)]
                 far = np.flatnonzero(off(shape, o, d, np.where(np.isfinite(t), t, np.nan)) > BOUND)
                 found += [f"off: {shape} from {o[i].tolist()} along {d[i].tolist()}" for i in far[:2]]

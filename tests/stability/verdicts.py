@@ -47,7 +47,8 @@ def right(shape: Shape, origins: Array, directions: Array, t: Array, digits: boo
         if oracle.is_sheet(shape):
             slope = np.abs(np.einsum("ij,ji->i", directions, start.normals[0]))
             starts = np.abs(start.faces[0]) <= rounding
-            exact, play = rays.of_faces[0], (band + SLACK * np.abs(rays.of_faces[0])) / slope
+            exact = rays.zeros[0][0]
+            play = (band + SLACK * np.abs(exact)) / slope
             surely = exact - 2 * play > 0
             for side in (-1, 0, 1):
                 surely &= rays.heights(exact + side * play).beyond < -band

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,8 +20,8 @@ from tests.kernel.bvh.test_bvh import (
     trace,
     without_boxes,
 )
-from tests.kernel.machine_code.small_kernels import as_kernel
 from tests.shapes.examples import example
+from tests.shapes.execution_modes import run_compiled
 
 REGIMES: dict[str, dict[str, float]] = {
     "usual": {},
@@ -56,28 +55,20 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int, is_cohere
     assert np.allclose(result[0][hit], expected[0][hit], rtol=1e-11, atol=rounding)
 
 
-@cache
-def shadow_queries() -> Any:
-    """Return `unoccluded` for n rays of unit direction, a multiple of `WIDTH`: interpreted, and compiled for shapes of
-    all kinds."""
-
-    def run(tree: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
-        for i in range(0, distances.shape[0], WIDTH):
-            origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
-            direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
-            distance = load(distances, i)
-            answer = where(
-                bvh_traversal.unoccluded(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance
-            )
-            for ray in range(WIDTH):
-                visible[i + ray] = lane(answer, ray)
-
-    return run, as_kernel(run)
+def shadow_queries(tree: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
+    """Answer `unoccluded` for n rays of unit direction, a multiple of `WIDTH`."""
+    for i in range(0, distances.shape[0], WIDTH):
+        origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
+        direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
+        distance = load(distances, i)
+        answer = where(bvh_traversal.unoccluded(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
+        for ray in range(WIDTH):
+            visible[i + ray] = lane(answer, ray)
 
 
-@pytest.mark.parametrize(("implementation", "count"), [(0, 5), (0, 20), (1, 400)])
+@pytest.mark.parametrize(("is_compiled", "count"), [(False, 5), (False, 20), (True, 400)])
 @pytest.mark.parametrize("is_coherent", [False, True])
-def test_nearer_shapes_occlude(implementation: int, count: int, is_coherent: bool) -> None:
+def test_nearer_shapes_occlude(is_compiled: bool, count: int, is_coherent: bool) -> None:
     random = np.random.default_rng(count)
     shapes = random_shapes(random, count)
     origins, directions = random_rays(random, shapes, 20 * WIDTH)
@@ -91,7 +82,8 @@ def test_nearer_shapes_occlude(implementation: int, count: int, is_coherent: boo
         distances = np.where(hit, result[0] * factor, 1e9 * np.sign(factor))
         visible = np.full(len(hit), 7.0)
         with np.errstate(all="ignore"):
-            shadow_queries()[implementation](scene, origins.T.copy(), directions.T.copy(), distances, visible)
+            arguments = scene, origins.T.copy(), directions.T.copy(), distances, visible
+            run_compiled(shadow_queries, *arguments) if is_compiled else shadow_queries(*arguments)
         # Rays with a negative distance are not active, and inactive rays are not visible.
         assert np.array_equal(visible, np.where(hit, is_visible, factor > 0))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from threading import Semaphore
 
 import numpy as np
@@ -25,8 +26,9 @@ MOST_LEVELS = ROOT / "scenes" / "eval-shadows-many.rt"  # where rounding decides
 def pictures(text: str, samples: int, precision: str = "double") -> list[Painted]:
     """Move the camera of a scene from picture to picture, then stop; return all pictures."""
     scene, done, found = parse(text).scene, Semaphore(0), []
-    Renderer(1, "single").specialise(scene)
+    Renderer(1, "single").prepare(scene)
     painter = BackgroundPainter(Renderer(2, precision), done.release)
+    painter.renderer.kernels.specialised_after = inf  # generic kernels do
     refinement = Refinement(painter, samples)
     x, y, z = scene.camera.position
     steps = [scene.replace(scene.camera, position=(x + step / 8, y, z)) for step in range(12)]
