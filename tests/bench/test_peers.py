@@ -20,8 +20,10 @@ from tests.bench.peers.mitsuba import Mitsuba
 from tests.bench.peers.programs import PovRay, Tachyon
 from tests.bench.yardstick import Yardstick
 from tests.compare import Bytes, edges
+from tests.paths import ROOT
 
 WIDTH, HEIGHT = 320, 176
+COMPILED = ROOT / "out" / "yardstick"  # programs that stay for the next run until their sources change
 LINES = """\
 A 0.5 255,255,255
 C 0,1,-10 0,0,1 90
@@ -92,7 +94,7 @@ def test_tachyon_shows_as_much_light(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_the_yardstick_shows_the_compared_scenes_with_any_lamp(precision: str, tmp_path: Path) -> None:
-    yardstick = made(partial(Yardstick, precision=precision), tmp_path)
+    yardstick = made(partial(Yardstick, precision=precision), COMPILED)
     *paths, mesh = scenes.compared(tmp_path, {"mesh": 1000})
     paths.append(scenes.grown(tmp_path, 1000))
     for number, lamp in enumerate(LAMPS):

@@ -28,6 +28,7 @@ TABLES = (  # what depends on lists of all names
 )
 EDITING = "tests/viewer/editing/test_every_kind.py"
 KEYS = "tests/viewer/test_bindings.py"
+CACHE = ROOT / "out" / "newcomer"  # of kernels, which stay for the next run, as those of the project do
 FOLDERS = ("minirt", "tests", "scenes", "assets", ".ci")
 FILES = ("pyproject.toml", "Makefile", "LICENSE", *(path.name for path in ROOT.glob("*.md")))
 ROW = re.compile(r"^\| (a\w* [\w ]+) \|(.*)\|(.*)\|$", re.MULTILINE)
@@ -61,7 +62,7 @@ def answers(copy: Path, *command: str) -> str:
         **os.environ,
         "MINIRT_REQUIRE_WINDOW": "",
         "PYTHONPATH": str(copy),
-        "XDG_CACHE_HOME": str(copy / "cache"),
+        "XDG_CACHE_HOME": str(CACHE),
     }
     done = run([sys.executable, *command], cwd=copy, env=environment, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -176,19 +176,16 @@ def test_kernels_that_are_missing_are_told(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_errors_are_those_of_the_size_that_was_asked_for(tmp_path: Path) -> None:
     """In crops of it, and the first sentence says so. Two reports measure the same errors and recommend the same."""
-    first, second = (
-        report(ALL, "all.rt", tmp_path / name, (320, 200), 1, quick=True).splitlines()[0] for name in ("one", "two")
-    )
-    assert "miniRT all.rt -o picture.png --size 320x200 --samples" in first
-    assert first == second
+    how: dict[str, Any] = {"size": (320, 200), "threads": 1, "quick": True}
+    first = report(ALL, "all.rt", tmp_path / "one", **how)
+    second = report(ALL, "all.rt", tmp_path / "two", **how, against=tmp_path / "one" / "report.json")
+    assert "miniRT all.rt -o picture.png --size 320x200 --samples" in first.splitlines()[0]
+    assert first.splitlines()[0] == second.splitlines()[0]
     one, two = (json.loads((tmp_path / name / "report.json").read_text()) for name in ("one", "two"))
     assert [row["rmse"] for row in one["pictures"]] == [row["rmse"] for row in two["pictures"]]
     assert (one["subject"]["width"], one["subject"]["height"], one["subject"]["pixels"]) == (320, 200, 8 * SIDE**2)
-    again = report(
-        ALL, "all.rt", tmp_path / "three", (320, 200), 1, quick=True, against=tmp_path / "one" / "report.json"
-    )
-    assert f"What changed? of {len(one['pictures'])} settings, beyond the intervals," in again
-    assert "; 0 closer, 0 further off." in again
+    assert f"What changed? of {len(one['pictures'])} settings, beyond the intervals," in second
+    assert "; 0 closer, 0 further off." in second
 
 
 def test_a_scene_without_shapes(tmp_path: Path) -> None:

@@ -13,9 +13,8 @@ from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.packed_shapes import bounding_boxes
 from minirt.shapes import Kind, Shape
-from tests import oracle
 from tests.shapes.execution_modes import compiled, surfaces
-from tests.shapes.regimes import RAYS, Array, Random, log_uniform, random_directions, unit
+from tests.shapes.regimes import Array, Random, log_uniform, random_directions, unit
 
 
 def random_value(field: Field, random: Random, size: float, middle: Array) -> object:
@@ -47,17 +46,6 @@ def place(shape: Shape) -> Array:
     if balls:
         return np.mean([centre for centre, _ in balls], axis=0)
     return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
-
-
-def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, Array]:
-    """Random points of the surface of a shape of size 1 and the normals there, (count, 3) each, by the oracle."""
-    points = np.zeros((0, 3))
-    while len(points) < count:
-        origins = place(shape) + log_uniform(random, 0.1, 10, count, 1) * random_directions(random, count)
-        directions = unit(place(shape) + random.uniform(-0.6, 0.6, (count, 3)) - origins)
-        t = oracle.Crossed(shape, origins, directions).nearest()[:, None]
-        points = np.concatenate([points, (origins + t * directions)[np.isfinite(t[:, 0])]])[:count]
-    return points, oracle.normals(shape, points)
 
 
 def scaled(shape: Shape, factor: float) -> Shape:

@@ -26,16 +26,7 @@ U = 2.0**-53
 AROUND = {"sphere", "cylinder", "cone", "paraboloid", "hyperboloid", "torus", "ellipsoid"}  # u = 1 is where u = 0 is
 
 
-class SurfaceMapping(NamedTuple):
-    """The results of `mapping` for n points."""
-
-    u: Array
-    v: Array
-    along_u: Array  # (n, 3)
-    along_v: Array
-
-
-Evaluate = Callable[[Shape, Array, Array], SurfaceMapping]
+Evaluate = Callable[[Shape, Array, Array], SurfacePoint]
 
 
 def table(shape: Shape, number: Any = np.float64) -> Any:
@@ -43,13 +34,13 @@ def table(shape: Shape, number: Any = np.float64) -> Any:
     return execution_modes.shape_rows([shape]).astype(scene_arrays.row_type(execution_modes.kind_of(shape), number))
 
 
-def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> SurfaceMapping:
+def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> SurfacePoint:
     """`mapping` of a shape, or another formula, interpreted."""
     formula = formula or execution_modes.kind_of(shape).mapping
     with np.errstate(all="ignore"):
         u, v, to_u, to_v = formula(scene_arrays.read(table(shape, points.dtype), 0), vec(points), vec(normals))
     u, v = (np.broadcast_to(each, points.shape[:-1]) for each in (u, v))
-    return SurfaceMapping(u, v, array(to_u, points), array(to_v, points))
+    return SurfacePoint(u, v, array(to_u, points), array(to_v, points))
 
 
 @cache
@@ -73,12 +64,12 @@ def kernel() -> Any:
     return njit(**FLAGS)(run)
 
 
-def compiled(shape: Shape, points: Array, normals: Array) -> SurfaceMapping:
+def compiled(shape: Shape, points: Array, normals: Array) -> SurfacePoint:
     """`mapping`, compiled; the number of points is a multiple of a packet's."""
     out = np.empty((8, len(points)), points.dtype)
     in_packets = (np.ascontiguousarray(each.T) for each in (points, normals))
     kernel()(table(shape, points.dtype), *in_packets, out)
-    return SurfaceMapping(out[0], out[1], out[2:5].T, out[5:].T)
+    return SurfacePoint(out[0], out[1], out[2:5].T, out[5:].T)
 
 
 MODES: dict[str, Evaluate] = {"interpreted": interpreted, "compiled": compiled}

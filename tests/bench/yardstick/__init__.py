@@ -24,16 +24,19 @@ FLAGS = [
 
 def compiled(target: Path, sources: Collection[Path], headers: Collection[Path], name: str, *flags: str) -> Path:
     """Compile sources into `target` unless it is newer than they; `MissingError` without a suitable compiler."""
-    if target.exists() and target.stat().st_mtime > max(each.stat().st_mtime for each in (*sources, *headers)):
+    if target.exists() and target.stat().st_mtime > max(
+        each.stat().st_mtime for each in (*sources, *headers, Path(__file__))
+    ):
         return target
     compiler = os.environ.get("CXX") or next(filter(shutil.which, ("g++", "clang++", "c++")), None)
     if compiler is None:
         raise MissingError(f"{name}: no C++ compiler is installed; {INSTALL}")
     target.parent.mkdir(parents=True, exist_ok=True)
-    ran = run([*compiler.split(), *FLAGS, *flags, *map(str, sorted(sources)), "-o", str(target)], text=True)
+    unfinished = target.with_suffix(".part")
+    ran = run([*compiler.split(), *FLAGS, *flags, *map(str, sorted(sources)), "-o", str(unfinished)], text=True)
     if ran.returncode:
         raise MissingError(f"{name}: {compiler} cannot compile it: {ran.stderr.strip().splitlines()[0]}")
-    return target
+    return unfinished.replace(target)
 
 
 HERE = Path(__file__).parent

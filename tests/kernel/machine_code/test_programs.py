@@ -31,10 +31,11 @@ def frame(
         for x in range(pixels.shape[1]):
             pixels[y, x] = argb(light.x, light.y, light.z)
 """
-PROJECT = """
-def project_shapes(next_chunk: Any, seen: BinningArrays) -> None:
-    pass
-"""
+STUBS = (  # of functions that these pictures do not need: the file, the name and the parameters
+    ("rectangles", "project_shapes", "next_chunk: Any, seen: BinningArrays"),
+    ("binning", "move_shape", "shape: int, seen: BinningArrays, starts: Any, members: Any"),
+    ("pixels", "classify", "next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, classes: Any"),
+)
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
 RENDER = """
 import minirt
@@ -77,7 +78,8 @@ def copy(tmp_path: Path) -> Path:
     """Folder with a copy of the package. Its pictures show nothing but the ambient light on the colour of the ball."""
     package = tmp_path / "minirt"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__", "ahead_of_time", "viewer", "mlx"))
-    for name, function, stub in (("frame", "frame", FRAME), ("rectangles", "project_shapes", PROJECT)):
+    stubs = [(file, name, f"\n\ndef {name}({parameters}) -> None:\n    pass\n") for file, name, parameters in STUBS]
+    for name, function, stub in (("frame", "frame", FRAME), *stubs):
         file = package / "kernel" / f"{name}.py"
         replace_once(file, f"def {function}(", f"def real_{function}(")
         file.write_text(file.read_text() + stub)

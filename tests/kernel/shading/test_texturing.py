@@ -11,8 +11,9 @@ import pytest
 from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped
 from minirt.lanes import Vec, load
 from tests.kernel.pictures import Array
+from tests.reference.uv_mapping import SurfacePoint
 from tests.shapes.execution_modes import array, on_lanes, vec, vec_lanes
-from tests.shapes.mapping_checks import SurfaceMapping, lengths
+from tests.shapes.mapping_checks import lengths
 from tests.shapes.regimes import random_directions, unit
 
 SIDE = 256  # pixels along an edge of the height map
@@ -62,16 +63,16 @@ def normal_lanes(i: int, maps: Any, uv: Any, a: Any, b: Any, n: Any) -> Any:
 
 LANES = {"bump": bump_lanes, "normal": normal_lanes}
 PLAIN = {"bump": bump_mapped, "normal": normal_mapped}
-Bend = Callable[[str, SurfaceMaps, SurfaceMapping, Array], Array]
+Bend = Callable[[str, SurfaceMaps, SurfacePoint, Array], Array]
 
 
-def interpreted_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
+def interpreted_bend(name: str, maps: SurfaceMaps, at: SurfacePoint, normals: Array) -> Array:
     """Apply a bump or normal map to normals by the interpreted kernel."""
     result = PLAIN[name](maps, 0, at.u, at.v, vec(at.along_u), vec(at.along_v), vec(normals))
     return array(result, normals)
 
 
-def compiled_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
+def compiled_bend(name: str, maps: SurfaceMaps, at: SurfacePoint, normals: Array) -> Array:
     """Apply a bump or normal map to normals by the compiled kernel."""
     vectors = (np.ascontiguousarray(each.T) for each in (at.along_u, at.along_v, normals))
     return on_lanes(LANES[name], 3, maps, np.stack([at.u, at.v]), *vectors).T
@@ -87,18 +88,18 @@ def test_zero_tangents_leave_normals_unchanged(bend: Bend, name: str) -> None:
     nothing = np.zeros((16, 3))
     maps = height_map() if name == "bump" else uniform((200, 50, 230))
     for a, b in ((nothing, nothing), (nothing, random_directions(np.random.default_rng(3), 16))):
-        at = SurfaceMapping(np.full(16, 0.3), np.full(16, 0.6), a, b)
+        at = SurfacePoint(np.full(16, 0.3), np.full(16, 0.6), a, b)
         result = bend(name, maps, at, normals)
         assert np.abs(lengths(result) - 1).max() < 1e-12
         if name == "bump" or b is nothing:
             assert lengths(result - normals).max() < 1e-12
 
 
-def skewed_tangents() -> tuple[SurfaceMapping, Array]:
+def skewed_tangents() -> tuple[SurfacePoint, Array]:
     """Return tangents of many lengths, not perpendicular to each other, and normals."""
     random = np.random.default_rng(4)
     a, b = random.normal(size=(2, 32, 3)) * 10.0 ** random.uniform(-6, 6, (2, 32, 1))
-    return SurfaceMapping(*random.random((2, 32)), a, b), unit(np.cross(unit(a), unit(b)))
+    return SurfacePoint(*random.random((2, 32)), a, b), unit(np.cross(unit(a), unit(b)))
 
 
 @EITHER
