@@ -6,19 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from minirt.kernel.beam_traversal import fold_over_mesh
-from minirt.kernel.bvh_nodes import (
-    DIRECTION,
-    HIT,
-    INVERSE,
-    ORIGIN,
-    REFERENCES,
-    intersect_boxes,
-    near_planes,
-    search_limit,
-    vec_at,
-)
-from minirt.kernel.mesh_nodes import FACTOR
-from minirt.kernel.mesh_single_rays import triangles_along
+from minirt.kernel.bvh_nodes import DIRECTION, FACTOR, HIT, ORIGIN, vec_at
+from minirt.kernel.bvh_rays import Rays, boxes_on_ray, search_limit, set_limit
+from minirt.kernel.mesh_rays import triangles_along
 from minirt.kernel.scene_arrays import read_row
 from minirt.kernel.trace import triangle_extent
 from minirt.lanes import Mask, Number, any, bits, first, load, load_vec, lowest, max_norm, splat
@@ -58,12 +48,11 @@ def reach_of_packet(state: int, data: tuple[Callable[..., None], Any]) -> Number
     return search_limit(load(data[1], HIT))
 
 
-def visit_meshes(touch: Callable[..., None], group: Any, block: int, memory: Any, ray: int) -> None:
+def visit_meshes(touch: Callable[..., None], group: Any, block: int, rays: Rays, ray: int) -> None:
     """Intersect one ray with the meshes of a block whose boxes it hits."""
-    planes = near_planes(vec_at(memory, INVERSE, ray))
-    limit = search_limit(memory[HIT + ray])
-    hit, _ = intersect_boxes(group.boxes, block * REFERENCES, memory, ray, planes, limit)
+    hit, _ = boxes_on_ray(rays, group.first_leaf + block, ray)
     remaining = bits(hit)
     while remaining != 0:
-        triangles_along(touch, group, group.blocks[block, lowest(remaining)], memory, 1 << ray)
+        triangles_along(touch, group, group.blocks[block, lowest(remaining)], rays.memory, 1 << ray)
         remaining = remaining & (remaining - 1)
+    set_limit(rays, ray)

@@ -7,13 +7,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from minirt.kernel import mesh_nodes
 from minirt.kernel.bvh_build import INDEX
+from minirt.kernel.bvh_nodes import HUGE, NODE, MeshTrees
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import MeshTriangles
 from minirt.meshes import Triangles
 from minirt.meshes.triangles import BLOCK
-from minirt.rendering.packing.bvh import Meshes, aligned_copy, lanes_of, wide_nodes
+from minirt.rendering.packing.bvh import Meshes, aligned_copy, wide_nodes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes.mesh import Mesh
@@ -27,7 +27,7 @@ def pack_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Mes
     return mesh_trees(shapes, kernel, run), place_meshes(shapes, kernel, run)
 
 
-def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh_nodes.MeshTrees | None:
+def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTrees | None:
     """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet, or None
     without any."""
     if Mesh not in shapes.group_numbers:
@@ -35,19 +35,17 @@ def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh
     owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
     meshes: Any = [shapes.shapes[index] for index in owners]
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
-    roots = np.cumsum([0, *map(len, nodes[:-1])]) // mesh_nodes.NODE
+    roots = np.cumsum([0, *map(len, nodes[:-1])]) // NODE
     first = shapes.first_primitive[owners]
     rows = shapes.slots[first, 1]
     numbers = np.zeros(rows[-1] + 1, np.int64)
     numbers[rows] = np.arange(len(rows))
     joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
-    return mesh_nodes.MeshTrees(
-        joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers
-    )
+    return MeshTrees(joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers)
 
 
 def place_of(mesh: Mesh) -> np.ndarray:
-    """Return a row of `minirt.kernel.mesh_nodes.MeshTrees.places`."""
+    """Return a row of `minirt.kernel.bvh_nodes.MeshTrees.places`."""
     middle, size = space_of(mesh.triangles)
     (centre,) = mesh.placed(middle[None])
     apart = np.abs(centre - mesh.position).max()
@@ -72,19 +70,15 @@ def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.nda
                 boxes[start : start + BLOCK, axis] = -np.minimum(np.minimum(a, b), c)
                 boxes[start : start + BLOCK, 3 + axis] = np.maximum(np.maximum(a, b), c)
         boxes[:, INDEX] = np.arange(len(boxes))
-        nodes, leaves = wide_nodes(boxes, kernel, mesh_nodes.WIDE, run=run)
-        names = nodes[:, 6]
-        names[names < 0] -= len(nodes) - 1
-        places, spare = lanes_of(leaves, mesh_nodes.WIDE)
+        nodes, places, spare = wide_nodes(boxes, kernel, run=run)
         inside = boxes[places, INDEX].astype(np.int64)
         del boxes
-        packed = np.zeros((len(nodes) + len(leaves), mesh_nodes.NODE // mesh_nodes.WIDE, mesh_nodes.WIDE), np.float32)
-        packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], names
+        leaves = nodes[len(nodes) - len(inside) :]
         corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[inside]]
-        corners[spare] = mesh_nodes.HUGE
-        packed[len(nodes) :, :9] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
-        packed[len(nodes) :, -1] = -1 - inside
-        trees[triangles] = aligned_copy(packed)
+        corners[spare] = HUGE
+        leaves[:, (0, 1, 2, 3, 4, 5, 7, 8, 9)] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
+        leaves[:, 6] = -1 - inside
+        trees[triangles] = aligned_copy(nodes)
     return trees[triangles]
 
 
