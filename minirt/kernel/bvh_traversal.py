@@ -17,8 +17,8 @@ from minirt.kernel.bvh_nodes import (
     DIRECTION,
     HIT,
     NODE,
-    REFERENCES,
     ORIGIN,
+    REFERENCES,
     WIDE,
     WIDTH,
     LeafGroup,
@@ -106,8 +106,8 @@ def walk(
         top = integers[TOP + PACKET]
         pending = integers[PENDING + top]
         is_node, is_leaf, _ = advance(rays, PACKET)
-        child, reference = lowest(pending ^ integers[PENDING + top]), integers[NEXT + PACKET]
-        chosen = integers[HITS + top * WIDE + child]
+        child, reference = lowest(int(pending ^ integers[PENDING + top])), integers[NEXT + PACKET]
+        chosen = int(integers[HITS + top * WIDE + child])
         if is_node + is_leaf > 0:
             if are_few(chosen, few):
                 traverse(all_leaves, visit_leaves, (visit, tree), rays, chosen, reference)

@@ -20,6 +20,7 @@ from minirt.kernel.bvh_nodes import (
     MARGIN,
     NODE,
     ORIGIN,
+    REFERENCES,
     ROUNDING,
     WIDE,
     WIDTH,
@@ -156,7 +157,7 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
             box_low, box_high = nodes[node, :3, child], nodes[node, 3:6, child]
             assert (low <= box_low).all()
             assert (box_high <= high).all()
-            reference = int(nodes[node, -1, child])
+            reference = int(nodes[node, REFERENCES // WIDE, child])
             references.append(abs(reference))
             if reference > 0:
                 todo.append((reference, box_low, box_high, level + 1))
@@ -216,7 +217,7 @@ def test_the_traversal_stack_holds_the_deepest_tree() -> None:
     far = 2.0 ** np.arange(-899, 1)[:, None]
     boxes = np.hstack([np.repeat(far, 6, axis=1) * [-1, -1, -1, 1.5, 1.5, 1.5], np.zeros((900, 2))])
     nodes, inside, _ = wide_nodes(np.repeat(boxes, WIDE, axis=0), functions)
-    children = nodes[: len(nodes) - len(inside), -1].astype(int)
+    children = nodes[: len(nodes) - len(inside), REFERENCES // WIDE].astype(int)
     deepest = np.ones(len(children), int)
     for node in range(len(children) - 1, -1, -1):  # a child comes behind its parent
         deepest[node] += (
@@ -276,7 +277,8 @@ def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf
     """Return the leaves that a ray visits, in order, if it hits nothing."""
     visited_leaves: list[int] = []
     visit = lambda group, block, rays, ray: visited_leaves.append(block)  # noqa: E731
-    traverse(bvh_traversal.visit_leaves, (visit, scene), packet_of(scene, origin, direction, limit), 1 << 5, 0)
+    packet = packet_of(scene, origin, direction, limit)
+    traverse(bvh_traversal.all_leaves, bvh_traversal.visit_leaves, (visit, scene), packet, 1 << 5, 0)
     return visited_leaves
 
 
@@ -302,7 +304,7 @@ def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
         rays.memory[HIT + ray] = distance
         bvh_rays.set_limit(rays, ray)
 
-    traverse(bvh_traversal.visit_leaves, (hit, scene), packet, (1 << WIDTH) - 1 - 4, 0)
+    traverse(bvh_traversal.all_leaves, bvh_traversal.visit_leaves, (hit, scene), packet, (1 << WIDTH) - 1 - 4, 0)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first leaf that it hits
     expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in origins]
     expected[2] = 0  # not active
@@ -342,10 +344,11 @@ def test_rays_that_graze_the_sides_of_boxes_hit_what_they_hit_without_boxes() ->
     assert 3000 < hits < 27_000
 
 
-@pytest.mark.parametrize("margin", ["ROUNDING", "MARGIN"])
-def test_rays_with_too_small_a_margin_are_found_out(monkeypatch: pytest.MonkeyPatch, margin: str) -> None:
-    monkeypatch.setattr(bvh_rays, margin, -1e-3)
+def test_rays_without_margins_are_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (bvh, bvh_rays):
+        monkeypatch.setattr(module, "ROUNDING", 0.0)
     shapes, *rays = grazing_rays(1)
+    shapes.append(sphere(1.1, 2.2, 3.3, 0.7))
     assert wrong_hits(build_tree(shapes), shapes, (rays[0], rays[1])) > 5
 
 
