@@ -42,9 +42,12 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
 
 
 def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
-    """Find for each binary node, and k + 1 places among the children of a wide node for what is in it, the least area
-    of wide nodes, and how many of the places its first child gets: 0 where the node itself is the child. In the last
-    column of `shares` the node becomes a wide node."""
+    """Find how to divide the places of wide nodes so that their surface area is least in all.
+
+    Writes, for each binary node and each k: to `areas` the least area of the wide nodes for what is in the node, where
+    it gets k + 1 places among the children of a wide node; to `shares` how many of these places its first child gets,
+    0 where the node itself takes one. In the last column of `shares` the node becomes a wide node.
+    """
     for node in range(tree.found[0] - 1, -1, -1):
         first = tree.links[node, 2]
         for k in range(tree.width - 1, -1, -1):

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.bvh_meshes import visit_mesh, visit_meshes
+from minirt.kernel.bvh_leaves import all_leaves, visit_leaf, visit_leaves, visit_meshes, visit_unbounded
 from minirt.kernel.bvh_nodes import (
     DEEPEST,
     DIRECTION,
@@ -41,11 +41,10 @@ from minirt.kernel.bvh_rays import (
     rays_in_box,
     search_limit,
     set_limit,
-    set_limits,
     store_rays,
 )
 from minirt.kernel.bvh_single_rays import advance, least_lane, traverse
-from minirt.kernel.scene_arrays import Group, has_rows, intersect, occludes, read, read_block, read_one, read_row
+from minirt.kernel.scene_arrays import Group, intersect, occludes, read_block, read_one, read_row
 from minirt.kernel.trace import Hit, closer_hit, for_each_kind, triangle_extent
 from minirt.lanes import (
     Mask,
@@ -138,60 +137,6 @@ def push_children(rays: Rays, node: int) -> None:
             pushed = pushed | 1 << child
     save(load_half(rays.nodes, node * NODE + REFERENCES), numbers, STACK + top * LEVEL + WIDE)
     integers[PENDING + top], integers[TOP + PACKET] = pushed, top - int(pushed == 0)
-
-
-def visit_unbounded(group: LeafGroup, state: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
-    """Intersect a packet with the unbounded shapes of one kind; the state is not changed."""
-    if group.unbounded is not None:
-        step, tree, memory = arguments
-        for i in range(group.unbounded.shape[0]):
-            index = group.unbounded[i]
-            shape, active = read(group.rows, tree.slots[index, 1]), load(memory, HIT) > -inf
-            step(shape, index, tree.extents[index], active, memory)
-    return state
-
-
-def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Callable[..., None], Rays]) -> int:
-    """Intersect a packet with the shapes of a leaf, if they are of this kind; the state is not changed."""
-    step, touch, rays = arguments
-    if has_rows(group.blocks) and 0 <= leaf - group.first_leaf < group.blocks.shape[0]:
-        block = leaf - group.first_leaf
-        for i in range(WIDE):
-            if rays.nodes[leaf * NODE + i] == inf:
-                break
-            hit, _ = rays_in_box(rays, leaf, i)
-            if any(hit):
-                index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
-                if group.trees is None:
-                    step(read_one(group.blocks, block, i), index, extent, hit, rays.memory)
-                else:
-                    visit_mesh(group, group.blocks[block, i], hit, step, touch, rays.memory)
-                set_limits(rays)
-    return leaf
-
-
-def all_leaves(rays: Rays, at_leaf: int, data: tuple[Callable[..., None], Tree]) -> int:
-    """Visit all leaves that single rays are at: nothing is to be prepared."""
-    return at_leaf
-
-
-def visit_leaves(rays: Rays, at_leaf: int, data: tuple[Callable[..., None], Tree]) -> None:
-    """Visit the leaves that single rays are at, one bit for each in `at_leaf`."""
-    visit, tree = data
-    for_each_kind(visit_leaves_of_kind, tree.groups, at_leaf, (visit, rays))
-
-
-def visit_leaves_of_kind(group: LeafGroup, at_leaf: int, arguments: tuple[Callable[..., None], Rays]) -> int:
-    """Visit those leaves whose shapes are of one kind; the state, `at_leaf`, is not changed."""
-    visit, rays = arguments
-    remaining = at_leaf if has_rows(group.blocks) else 0
-    while remaining != 0:
-        ray = lowest(remaining)
-        remaining = remaining & (remaining - 1)
-        block = -rays.integers[NEXT + ray] - group.first_leaf
-        if 0 <= block < group.blocks.shape[0]:
-            visit(group, block, rays, ray)
-    return at_leaf
 
 
 @outlined

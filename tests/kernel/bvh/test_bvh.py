@@ -11,6 +11,7 @@ import pytest
 from minirt.element import fields_of
 from minirt.fields import Point
 from minirt.kernel import bvh_build, bvh_collapse, bvh_rays, bvh_traversal, functions, ray_batches
+from minirt.kernel.bvh_leaves import all_leaves, visit_leaves
 from minirt.kernel.bvh_nodes import (
     CENTRE,
     DEEPEST,
@@ -278,7 +279,7 @@ def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf
     visited_leaves: list[int] = []
     visit = lambda group, block, rays, ray: visited_leaves.append(block)  # noqa: E731
     packet = packet_of(scene, origin, direction, limit)
-    traverse(bvh_traversal.all_leaves, bvh_traversal.visit_leaves, (visit, scene), packet, 1 << 5, 0)
+    traverse(all_leaves, visit_leaves, (visit, scene), packet, 1 << 5, 0)
     return visited_leaves
 
 
@@ -304,7 +305,7 @@ def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
         rays.memory[HIT + ray] = distance
         bvh_rays.set_limit(rays, ray)
 
-    traverse(bvh_traversal.all_leaves, bvh_traversal.visit_leaves, (hit, scene), packet, (1 << WIDTH) - 1 - 4, 0)
+    traverse(all_leaves, visit_leaves, (hit, scene), packet, (1 << WIDTH) - 1 - 4, 0)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first leaf that it hits
     expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in origins]
     expected[2] = 0  # not active
