@@ -20,10 +20,10 @@ from minirt.lanes.memory import prefetch
 
 WIDTH = width(np.empty(0))  # rays in a packet
 WIDE = width(np.empty(0, np.float32)) // 2  # children of a node, shapes or triangles in a leaf: as many
-# Numbers of a node: the low x, y, z and high x, y, z of its children, and references to them. A leaf has the boxes of
-# its shapes, its block and its group; that of a mesh the corners of its triangles, and references to these.
+# Numbers of a node: the low x, y, z and high x, y, z of its children, and references to them; the rest is not used. A
+# leaf has the boxes of its shapes; that of a mesh two corners of its triangles, references to these, and third corners.
 NODE = 10 * WIDE
-HIGH, REFERENCES, CORNERS = 3 * WIDE, 6 * WIDE, 7 * WIDE  # offsets in a node; those of the third corners
+HIGH, REFERENCES, CORNERS = 3 * WIDE, 6 * WIDE, 7 * WIDE  # offsets in a node or leaf
 DEEPEST = LEVELS + WIDE  # nodes from the root to a leaf, at most: the last levels part shapes by their kinds
 LINE = 16  # float32 in a line of the processor's cache
 MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together

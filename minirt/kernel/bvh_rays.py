@@ -53,20 +53,19 @@ LOOSE = 4.0  # a ray that is widened by so much meets the whole tree
 FAR = 4.0  # more than the depth of anything in a tree
 TINY = 2.0**-60  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
 
-# Numbers of rays: rows with those of all rays; the last six are those of `minirt.kernel.mesh_rays`. Then for each ray,
-# for the packet as a whole, and for each level of the tree, the depths of children still to visit.
+PACKET = WIDTH  # the number of the packet as a whole among the rays
+# Numbers of rays, by rows with those of all; AT, SLOPE, AXES, ROUNDED and SIGN are those of `minirt.kernel.mesh_rays`.
+# Then their stacks: for each ray, and each level of the tree, the depths of children, and references to these.
 ENTER, LEAVE, INVERSE, AT, SLOPE, AXES = (3 * WIDTH * i for i in range(6))
 BEGIN, SLACK, ROUNDED, SIGN, LIMIT = (18 * WIDTH + WIDTH * i for i in range(5))
-STACK = 24 * WIDTH
-PACKET = WIDTH  # the number of the packet among the rays
-LEVEL = 2 * WIDE
+STACK, LEVEL = 24 * WIDTH, 2 * WIDE
 NUMBERS = STACK + (WIDTH + 1) * DEEPEST * LEVEL
-# Integers of rays: the reference to the node that each visits next, and the place of that node in its stack; the top
-# level of its stack; which triangles of a leaf it may hit; for each level of its stack the node whose children are
-# there; and for each child in the stack of the packet, which rays hit it.
+# Integers of rays: the reference to what each visits next; the top level of its stack; which triangles of a leaf it may
+# hit; for each level of its stack, which of the children it has still to visit; and for each child in the stack of the
+# packet, which rays hit it.
 NEXT, TOP, CANDIDATES, PENDING = 0, 2 * WIDTH, 4 * WIDTH, 6 * WIDTH
 HITS = PENDING + (WIDTH + 1) * DEEPEST
-INTEGERS = HITS + (WIDTH + 1) * DEEPEST * WIDE
+INTEGERS = HITS + DEEPEST * WIDE
 
 
 class Rays(NamedTuple):
@@ -78,7 +77,7 @@ class Rays(NamedTuple):
     memory: Any  # the rays in the scene, and their hits
     numbers: Any
     integers: Any
-    reads_leaves: int  # 1 if single rays read leaves, or 0: what is prefetched
+    reads_leaves: int  # 1 if a ray reads the leaves that it visits, or 0: whether these are prefetched
 
 
 def ray_numbers() -> Any:

@@ -106,7 +106,7 @@ def walk(
         pending = integers[PENDING + top]
         is_node, is_leaf, _ = advance(rays, PACKET)
         child, reference = lowest(int(pending ^ integers[PENDING + top])), integers[NEXT + PACKET]
-        chosen = int(integers[HITS + top * WIDE + child])
+        chosen = int(integers[HITS + (top - PACKET * DEEPEST) * WIDE + child])
         if is_node + is_leaf > 0:
             if are_few(chosen, few):
                 traverse(all_leaves, visit_leaves, (visit, tree), rays, chosen, reference)
@@ -133,7 +133,7 @@ def push_children(rays: Rays, node: int) -> None:
         hit, near = rays_in_box(rays, node, child)
         if any(hit):
             numbers[STACK + top * LEVEL + child] = least_lane(where(hit, near, inf))
-            integers[HITS + top * WIDE + child] = bits(hit)
+            integers[HITS + (top - PACKET * DEEPEST) * WIDE + child] = bits(hit)
             pushed = pushed | 1 << child
     save(load_half(rays.nodes, node * NODE + REFERENCES), numbers, STACK + top * LEVEL + WIDE)
     integers[PENDING + top], integers[TOP + PACKET] = pushed, top - int(pushed == 0)

@@ -10,7 +10,7 @@ import pytest
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel import bvh_build, bvh_collapse, bvh_rays, bvh_traversal, functions, ray_batches
+from minirt.kernel import bvh_build, bvh_collapse, bvh_leaves, bvh_rays, bvh_traversal, functions, ray_batches
 from minirt.kernel.bvh_leaves import all_leaves, visit_leaves
 from minirt.kernel.bvh_nodes import (
     CENTRE,
@@ -388,7 +388,8 @@ def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.Monke
             patch.setattr(bvh_rays, "where", lambda mask, a, b: np.where(mask[0], a, b))
             return rays_in_box(*box)
 
-    monkeypatch.setattr(bvh_traversal, "rays_in_box", by_planes_of_first)
+    for module in (bvh_traversal, bvh_leaves):
+        monkeypatch.setattr(module, "rays_in_box", by_planes_of_first)
     assert wrong_hits(tree, shapes, rays) > 5
 
 
