@@ -10,14 +10,14 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.bvh_build import BinaryTree, half_area
-from minirt.kernel.bvh_nodes import packet_memory
+from minirt.kernel.bvh_nodes import WIDE, packet_memory
 
 
 def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, references: Any, leaves: Any) -> None:
-    """Find the wide nodes: the binary node of each child, -1 for none, and references to the children, (n, width).
+    """Find the wide nodes: the binary node of each child, -1 for none, and references to the children, (n, WIDE).
 
     The reference to a node is its number; that to leaf i, whose binary node is written to `leaves`, is -1 - i. `areas`
-    (m, width) and `shares` (m, width + 1) are overwritten.
+    (m, WIDE) and `shares` (m, WIDE + 1) are overwritten.
     """
     share_places(tree, areas, shares)
     node_count, leaf_count, top, memory = 1, 0, 2, packet_memory()
@@ -26,7 +26,7 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
         top -= 2
         binary, node = int(memory[top]), int(memory[top + 1])
         count = collect_children(tree, shares, binary, children[node], references[node])
-        for place in range(tree.width):
+        for place in range(WIDE):
             child = children[node, place]
             if place >= count:
                 children[node, place], references[node, place] = -1, 0
@@ -50,15 +50,15 @@ def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
     """
     for node in range(tree.found[0] - 1, -1, -1):
         first = tree.links[node, 2]
-        for k in range(tree.width - 1, -1, -1):
+        for k in range(WIDE - 1, -1, -1):
             least, share = (inf, 1) if first > 0 and k > 0 else (0.0, 0)
             for i in range(k if first > 0 else 0):
                 area = areas[first, i] + areas[first + 1, k - 1 - i]
                 if area < least:
                     least, share = area, i + 1
-            if k == tree.width - 1:
+            if k == WIDE - 1:
                 whole = least + half_area(tree.bounds[node], 0) if first > 0 else 0.0
-                shares[node, tree.width] = share
+                shares[node, WIDE] = share
             if k == 0 or whole < least:
                 least, share = whole, 0
             areas[node, k], shares[node, k] = least, share
@@ -70,7 +70,7 @@ def collect_children(tree: BinaryTree, shares: Any, node: int, children: Any, pl
     The only child of a leaf is the leaf itself, or none if the leaf is empty. `places` is overwritten.
     """
     links = tree.links
-    children[0], places[0] = node, tree.width + 1
+    children[0], places[0] = node, WIDE + 1
     if links[node, 2] == 0:
         return min(1, links[node, 1] - links[node, 0])
     child, count = 0, 1
@@ -80,6 +80,6 @@ def collect_children(tree: BinaryTree, shares: Any, node: int, children: Any, pl
             child += 1
         else:
             children[child], children[count] = first, first + 1
-            places[child], places[count] = share, min(places[child], tree.width) - share
+            places[child], places[count] = share, min(places[child], WIDE) - share
             count += 1
     return count

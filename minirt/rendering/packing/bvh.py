@@ -85,7 +85,7 @@ def wide_nodes(
     """
     room = max(1, 2 * len(boxes) - 1)
     links, bounds, found = np.empty((room, 3), np.int64), np.empty((room, 6)), np.array([1, 0])
-    tree = BinaryTree(boxes, bounds, links, found, WIDE)
+    tree = BinaryTree(boxes, bounds, links, found)
     links[0, :2], roots, most = (0, len(boxes)), np.zeros((1, 2), np.int64), len(boxes)
     while len(roots):
         most = most // PARTS if run and most >= PARALLEL * PARTS else 0
