@@ -39,6 +39,7 @@ from minirt.lanes import (
     dot,
     fabs,
     in_single,
+    load,
     load_vec,
     max_norm,
     maximum,
@@ -54,6 +55,7 @@ FAR = 4.0  # more than the depth of anything in a tree
 TINY = 2.0**-60  # replaces 0 in a direction, so that no ray is parallel to the planes of boxes
 
 PACKET = WIDTH  # the number of the packet as a whole among the rays
+AHEAD = 9 * WIDTH  # offset in the memory of a packet: how far rays go to depth 0 in the scene's tree; then, in a mesh's
 # Numbers of rays, by rows with those of all; AT, SLOPE, AXES, ROUNDED and SIGN are those of `minirt.kernel.mesh_rays`.
 # Then their stacks: for each ray, and each level of the tree, the depths of children, and references to these.
 ENTER, LEAVE, INVERSE, AT, SLOPE, AXES = (3 * WIDTH * i for i in range(6))
@@ -77,7 +79,7 @@ class Rays(NamedTuple):
     memory: Any  # the rays in the scene, and their hits
     numbers: Any
     integers: Any
-    reads_leaves: int  # 1 if a ray reads the leaves that it visits, or 0: whether these are prefetched
+    is_mesh: int  # 1 if the tree is that of a mesh, whose leaves rays read and prefetch; or 0
 
 
 def ray_numbers() -> Any:
@@ -116,6 +118,7 @@ def store_rays(rays: Rays) -> tuple[Vec, Vec, Number]:
     slack, error = where(is_loose, HUGE, slack), where(is_loose, HUGE, error)
     save(in_single(maximum(-ahead, -FAR) - slack), numbers, BEGIN)
     save(in_single(slack), numbers, SLACK)
+    save(ahead, rays.memory, AHEAD + WIDTH * rays.is_mesh)
     set_limits(rays)
     return p, d, error
 
@@ -137,23 +140,17 @@ def search_limit(distance: Number) -> Number:
     return distance * (1.0 + 2.0 * COINCIDENT)
 
 
-def depth_limit(place: Any, origin: Vec, direction: Vec, distance: Number) -> Number:
-    """Return the depth up to which rays are followed that have hit something at a distance."""
-    ahead = maximum(-place[FACTOR] * dot(origin - vector(place, CENTRE), direction), 0.0)
-    return minimum(search_limit(distance) * place[FACTOR] - ahead, FAR)
-
-
 def set_limits(rays: Rays) -> None:
     """Set the depths up to which all rays are followed, by the distances at which they have hit something."""
-    origin, direction = load_vec(rays.memory, ORIGIN), load_vec(rays.memory, DIRECTION)
-    depth = depth_limit(rays.place, origin, direction, load_vec(rays.memory, HIT).x)
+    distance, ahead = load(rays.memory, HIT), load(rays.memory, AHEAD + WIDTH * rays.is_mesh)
+    depth = minimum(search_limit(distance) * rays.place[FACTOR] - ahead, FAR)
     save(in_single(depth) + load_half(rays.numbers, SLACK), rays.numbers, LIMIT)
 
 
 def set_limit(rays: Rays, ray: int) -> None:
     """Set the depth up to which one ray is followed."""
-    origin, direction = vec_at(rays.memory, ORIGIN, ray), vec_at(rays.memory, DIRECTION, ray)
-    depth = depth_limit(rays.place, origin, direction, rays.memory[HIT + ray])
+    distance, ahead = rays.memory[HIT + ray], rays.memory[AHEAD + WIDTH * rays.is_mesh + ray]
+    depth = minimum(search_limit(distance) * rays.place[FACTOR] - ahead, FAR)
     rays.numbers[LIMIT + ray] = depth + rays.numbers[SLACK + ray]
 
 

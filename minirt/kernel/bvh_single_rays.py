@@ -83,7 +83,7 @@ def advance(rays: Rays, ray: int) -> tuple[int, int, int]:
     within = bits(depths <= rays.numbers[LIMIT + ray])
     child = first(depths == least_lane(depths))
     reference = int(rays.numbers[STACK + top * LEVEL + WIDE + child])
-    prefetch_node(rays.nodes, rays.root + max(reference, -reference * rays.reads_leaves), rays.reads_leaves)
+    prefetch_node(rays.nodes, rays.root + max(reference, -reference * rays.is_mesh), rays.is_mesh)
     rays.integers[PENDING + top] = pending ^ 1 << child
     rays.integers[NEXT + ray] = reference
     top = top - int(within & (within - 1) == 0)
