@@ -17,7 +17,7 @@ from minirt.kernel.beams import (
     boxes_in_beam,
     triangles_in_beam,
 )
-from minirt.kernel.mesh_nodes import NODE, REFERENCES, prefetch_node
+from minirt.kernel.bvh_nodes import NODE, REFERENCES, prefetch_node
 from minirt.kernel.scene_arrays import Group, prefetch_triangle
 from minirt.lanes import Mask, Number, Vec, any, bits, fabs, greatest, lowest, save, where
 
@@ -82,7 +82,7 @@ def walk(visit: Visit, reach: Reach, group: Group, row: int, beam: Beam, own: Nu
                 child = lowest(children)
                 children = children & (children - 1)
                 reference = nodes[node + REFERENCES + child]
-                prefetch_node(nodes, start[0] + abs(int(reference)))
+                prefetch_node(nodes, start[0] + abs(int(reference)), 1)
                 push(memory, waiting, reference, memory[CHILDREN + child])
                 waiting += 1
     return state

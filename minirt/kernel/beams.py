@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.mesh_nodes import APART, CENTRE, FACTOR, HIGH, HUGE, ROUNDING, WIDE
+from minirt.kernel.bvh_nodes import APART, CENTRE, CORNERS, FACTOR, HIGH, HUGE, ROUNDING, WIDE
 from minirt.kernel.scene_arrays import LEVELS, vector
 from minirt.lanes import (
     Mask,
@@ -162,7 +162,7 @@ def between_slopes(nodes: Any, node: int, bounds: Bounds) -> Mask:
 def triangles_in_beam(nodes: Any, node: int, beam: Beam, limit: float, memory: Any) -> Mask:
     """Return which triangles of a leaf a beam may meet up to a depth, and write what `between_planes` takes."""
     a, b = sheared(nodes, node, beam), sheared(nodes, node + 3 * WIDE, beam)
-    c = sheared(nodes, node + 6 * WIDE, beam)
+    c = sheared(nodes, node + CORNERS, beam)
     slack, far = beam.slack + beam.rounding, maximum(maximum(a.x, b.x), c.x)
     most = limit - beam.apex + (slack + ROUNDING * abs(beam.apex))
     inside = (minimum(minimum(a.x, b.x), c.x) <= most) & (far >= -slack)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
-from minirt.kernel.bvh_nodes import packet_memory
+from minirt.kernel.bvh_nodes import WIDE, packet_memory
 from minirt.kernel.pixels import fetch_add
 from minirt.kernel.scene_arrays import LEVELS
 from minirt.lanes import maximum
@@ -32,12 +32,11 @@ class BinaryTree(NamedTuple):
     bounds: Any  # (m, 6) bounds of each node
     links: Any  # (m, 3) first box of a node, the box behind its last, and the first of its two children; 0: a leaf
     found: Any  # (2,) the number of nodes, and what `collapse` finds
-    width: int  # children of a wide node, and boxes in a leaf, at most
 
 
 def divide(next_root: Any, tree: BinaryTree, roots: Any, most: int) -> None:
     """Divide nodes, taking them from the counter `next_root` until none is left, until each leaf has one group and at
-    most `tree.width` boxes.
+    most `WIDE` boxes.
 
     Any number of threads may do so at the same time. `roots` (r, 2) are nodes and their levels. Of nodes below them
     those with at most `most` boxes are left, marked by -1 - level in place of a child. The tree is the same whatever is
@@ -59,7 +58,7 @@ def divide(next_root: Any, tree: BinaryTree, roots: Any, most: int) -> None:
                 continue
             fit_bounds(tree, node, memory)
             links[node, 2] = 0
-            if stop - start > tree.width or has_mixed_groups(tree.boxes, start, stop):
+            if stop - start > WIDE or has_mixed_groups(tree.boxes, start, stop):
                 middle, child = partition(tree, start, stop, level, memory), fetch_add(tree.found, 2)
                 links[node, 2] = child
                 links[child, 0], links[child, 1] = start, middle
@@ -95,10 +94,10 @@ def fit_bounds(tree: BinaryTree, node: int, memory: Any) -> None:
 def partition(tree: BinaryTree, start: int, stop: int, level: int, memory: Any) -> int:
     """Partition the boxes of a range at the best split, and return the first box of the second part."""
     boxes = tree.boxes
-    if stop - start <= tree.width:
+    if stop - start <= WIDE:
         return partition_by_group(boxes, start, stop)
     axis, last = best_split(tree, start, stop, memory)
-    if axis < 0 or stop - start > tree.width << (LEVELS - 1 - level):  # all centres coincide, or too deep: halves
+    if axis < 0 or stop - start > WIDE << (LEVELS - 1 - level):  # all centres coincide, or too deep: halves
         return (start + stop) // 2
     low, scale = bin_scale(memory, axis)
     while start < stop:
@@ -133,7 +132,7 @@ def best_split(tree: BinaryTree, start: int, stop: int, memory: Any) -> tuple[in
         low, scale = bin_scale(memory, axis)
         if scale < inf:
             fill_bins(tree.boxes, start, stop, axis, low, scale, memory)
-            cost, bin_below = best_bin(tree.width, memory)
+            cost, bin_below = best_bin(memory)
             if cost < least:
                 least, best_axis, last = cost, axis, bin_below
     return best_axis, last
@@ -161,17 +160,17 @@ def fill_bins(boxes: Any, start: int, stop: int, axis: int, low: float, scale: f
         memory[at + 6] += 1.0
 
 
-def best_bin(width: int, memory: Any) -> tuple[float, int]:
+def best_bin(memory: Any) -> tuple[float, int]:
     """Find the least cost of a split between two bins, and the bin below that split."""
     clear_bin(memory, SEVERAL)
     for b in range(BINS - 1, 0, -1):
         merge_bin(memory, BIN * b)
-        memory[COSTS + b - 1] = sah_cost(memory, width)
+        memory[COSTS + b - 1] = sah_cost(memory)
     clear_bin(memory, SEVERAL)
     least, last = inf, 0
     for b in range(BINS - 1):
         merge_bin(memory, BIN * b)
-        cost = sah_cost(memory, width) + memory[COSTS + b]
+        cost = sah_cost(memory) + memory[COSTS + b]
         if cost < least:
             least, last = cost, b
     return least, last
@@ -191,9 +190,9 @@ def merge_bin(memory: Any, at: int) -> None:
     memory[SEVERAL + 6] += memory[at + 6]
 
 
-def sah_cost(memory: Any, width: int) -> float:
+def sah_cost(memory: Any) -> float:
     """Return the SAH cost of the boxes in the last bin: half of their surface area times the leaves that they fill."""
-    leaves = (int(memory[SEVERAL + 6]) + width - 1) // width
+    leaves = (int(memory[SEVERAL + 6]) + WIDE - 1) // WIDE
     return half_area(memory, SEVERAL) * leaves if leaves > 0 else inf
 
 

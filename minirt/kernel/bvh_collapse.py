@@ -10,14 +10,14 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.bvh_build import BinaryTree, half_area
-from minirt.kernel.bvh_nodes import packet_memory
+from minirt.kernel.bvh_nodes import WIDE, packet_memory
 
 
 def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, references: Any, leaves: Any) -> None:
-    """Find the wide nodes: the binary node of each child, -1 for none, and references to the children, (n, width).
+    """Find the wide nodes: the binary node of each child, -1 for none, and references to the children, (n, WIDE).
 
     The reference to a node is its number; that to leaf i, whose binary node is written to `leaves`, is -1 - i. `areas`
-    (m, width) and `shares` (m, width + 1) are memory for `share_places`. The numbers of wide nodes and of leaves are
+    (m, WIDE) and `shares` (m, WIDE + 1) are memory for `share_places`. The numbers of wide nodes and of leaves are
     written to `tree.found`.
     """
     share_places(tree, areas, shares)
@@ -27,7 +27,7 @@ def collapse(tree: BinaryTree, areas: Any, shares: Any, children: Any, reference
         top -= 2
         binary, node = int(memory[top]), int(memory[top + 1])
         count = collect_children(tree, shares, binary, children[node], references[node])
-        for place in range(tree.width):
+        for place in range(WIDE):
             child = children[node, place]
             if place >= count:
                 children[node, place], references[node, place] = -1, 0
@@ -47,20 +47,20 @@ def share_places(tree: BinaryTree, areas: Any, shares: Any) -> None:
 
     `areas[node, k]` becomes the least surface area, in all, of the wide nodes in a binary node that gets k + 1 places.
     `shares[node, k]` becomes the number of these places that its first child gets, and the second child gets the rest;
-    0 where the node takes one place itself. `shares[node, tree.width]` is the share of the first child where the node
+    0 where the node takes one place itself. `shares[node, WIDE]` is the share of the first child where the node
     becomes a wide node, with as many places as that has.
     """
     for node in range(tree.found[0] - 1, -1, -1):
         first = tree.links[node, 2]
-        for k in range(tree.width - 1, -1, -1):
+        for k in range(WIDE - 1, -1, -1):
             least, share = (inf, 1) if first > 0 and k > 0 else (0.0, 0)
             for i in range(k if first > 0 else 0):
                 area = areas[first, i] + areas[first + 1, k - 1 - i]
                 if area < least:
                     least, share = area, i + 1
-            if k == tree.width - 1:
+            if k == WIDE - 1:
                 whole = least + half_area(tree.bounds[node], 0) if first > 0 else 0.0
-                shares[node, tree.width] = share
+                shares[node, WIDE] = share
             if k == 0 or whole < least:
                 least, share = whole, 0
             areas[node, k], shares[node, k] = least, share
@@ -73,7 +73,7 @@ def collect_children(tree: BinaryTree, shares: Any, node: int, children: Any, pl
     places that it gets, until it is divided no further.
     """
     links = tree.links
-    children[0], places[0] = node, tree.width + 1
+    children[0], places[0] = node, WIDE + 1
     if links[node, 2] == 0:
         return min(1, links[node, 1] - links[node, 0])
     child, count = 0, 1
@@ -83,6 +83,6 @@ def collect_children(tree: BinaryTree, shares: Any, node: int, children: Any, pl
             child += 1
         else:
             children[child], children[count] = first, first + 1
-            places[child], places[count] = share, min(places[child], tree.width) - share
+            places[child], places[count] = share, min(places[child], WIDE) - share
             count += 1
     return count

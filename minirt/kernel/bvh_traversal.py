@@ -11,31 +11,40 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.bvh_meshes import visit_mesh, visit_meshes
+from minirt.kernel.bvh_leaves import all_leaves, visit_leaf, visit_leaves, visit_meshes, visit_unbounded
 from minirt.kernel.bvh_nodes import (
+    DEEPEST,
     DIRECTION,
-    GROUPS,
     HIT,
     NODE,
     ORIGIN,
-    PACKET,
-    PACKET_LEVEL,
     REFERENCES,
+    WIDE,
     WIDTH,
     LeafGroup,
     Tree,
-    leaf_number,
-    least_lane,
     packet_memory,
-    rays_in_box,
-    reference_of,
-    search_limit,
-    store_rays,
-    tag,
     vec_at,
 )
-from minirt.kernel.bvh_single_rays import traverse
-from minirt.kernel.scene_arrays import Group, has_rows, intersect, occludes, read, read_block, read_one, read_row
+from minirt.kernel.bvh_rays import (
+    HITS,
+    LEVEL,
+    LIMIT,
+    NEXT,
+    PACKET,
+    PENDING,
+    STACK,
+    TOP,
+    Rays,
+    ray_integers,
+    ray_numbers,
+    rays_in_box,
+    search_limit,
+    set_limit,
+    store_rays,
+)
+from minirt.kernel.bvh_single_rays import advance, least_lane, traverse
+from minirt.kernel.scene_arrays import Group, intersect, occludes, read_block, read_one, read_row
 from minirt.kernel.trace import DISTANCE, EXTENT, OWNER, ClosestHit, closer_hit, for_each_kind, triangle_extent
 from minirt.lanes import (
     Mask,
@@ -56,52 +65,55 @@ from minirt.lanes import (
     splat,
     where,
 )
+from minirt.lanes.memory import load_half
 
 FEW = 6  # rays of a packet that go on one by one
 FEW_IN_SMALL = 2  # likewise in a small tree, which has one node
+SMALL = (1 + WIDE) * NODE  # numbers of a small tree, at most
 APART = 1.0  # square of the difference of directions from which on all rays of a packet go one by one
 
 
 def walk(
-    visit: Callable[..., None], step: Callable[..., None], touch: Callable[..., None], tree: Tree, memory: Any
+    visit: Callable[..., None], step: Callable[..., None], touch: Callable[..., None], tree: Tree, rays: Rays
 ) -> None:
     """Intersect a packet with the shapes that its rays may hit, the nearest leaves first.
 
-    `step(shape, index, extent, rays, memory)` may lessen the distances in `HIT`; where they are -infinity rays hit
-    nothing. `visit` does the same for single rays, and `touch` for one of them and a triangle of a mesh.
+    `step(shape, index, extent, hits, memory)` may lessen the distances in `HIT`; where they are -infinity rays hit
+    nothing. `visit(group, block, leaf, rays, ray)` does the same for single rays, and `touch` for one of them and a
+    triangle of a mesh.
 
     All rays traverse the tree together. Where few of them hit a box, each of these goes on by itself, see `traverse`;
     so does each ray of a packet whose directions differ much, unless the tree is small.
     """
+    memory, numbers, integers = rays.memory, rays.numbers, rays.integers
     for_each_kind(visit_unbounded, tree.groups, 0, (step, tree, memory))
     active = load(memory, HIT) > -inf
     if not any(active):
         return
-    is_small = tree.nodes.shape[0] <= NODE
+    store_rays(rays)
+    is_small = tree.nodes.shape[0] <= SMALL
     few = FEW_IN_SMALL if is_small else FEW
     apart = load_vec(memory, DIRECTION) - vec_at(memory, DIRECTION, first(active))
-    rays = bits(active)
-    if are_few(rays, few) or (not is_small and any(active & (dot(apart, apart) > APART))):
-        traverse(visit, tree, memory, rays, 0.0)
+    chosen = bits(active)
+    if are_few(chosen, few) or (not is_small and any(active & (dot(apart, apart) > APART))):
+        traverse(all_leaves, visit_leaves, (visit, tree), rays, chosen, 0)
         return
-    at = PACKET
-    push_children(tree.nodes, 0, memory, at)
-    while at >= PACKET:
-        tags = load(memory, at)
-        nearest = least_lane(tags)
-        if not nearest < search_limit(greatest(load(memory, HIT))):
-            at -= PACKET_LEVEL
-            continue
-        child = first(tags == nearest)
-        memory[at + child] = inf
-        rays, reference = int(memory[at + WIDTH + child]), reference_of(nearest)
-        if are_few(rays, few):
-            traverse(visit, tree, memory, rays, nearest)
-        elif reference >= 0:
-            at += PACKET_LEVEL
-            push_children(tree.nodes, reference, memory, at)
-        else:
-            for_each_kind(visit_leaf, tree.groups, leaf_number(reference), (step, touch, memory))
+    integers[TOP + PACKET] = PACKET * DEEPEST - 1
+    push_children(rays, 0)
+    while integers[TOP + PACKET] >= PACKET * DEEPEST:
+        numbers[LIMIT + PACKET] = greatest(load_half(numbers, LIMIT))
+        top = integers[TOP + PACKET]
+        pending = integers[PENDING + top]
+        is_node, is_leaf, _ = advance(rays, PACKET)
+        child, reference = lowest(int(pending ^ integers[PENDING + top])), integers[NEXT + PACKET]
+        chosen = int(integers[HITS + (top - PACKET * DEEPEST) * WIDE + child])
+        if is_node + is_leaf > 0:
+            if are_few(chosen, few):
+                traverse(all_leaves, visit_leaves, (visit, tree), rays, chosen, reference)
+            elif is_node > 0:
+                push_children(rays, reference)
+            else:
+                for_each_kind(visit_leaf, tree.groups, -reference, (step, touch, rays))
 
 
 def are_few(rays: int, few: int) -> bool:
@@ -111,49 +123,20 @@ def are_few(rays: int, few: int) -> bool:
     return rays == 0
 
 
-def push_children(nodes: Any, node: int, memory: Any, at: int) -> None:
-    """Write a level of the packet's stack: the children of a node whose boxes any of its rays hits."""
-    limit = search_limit(load(memory, HIT))
-    save(splat(inf, limit), memory, at)
-    for child in range(WIDTH):
-        if nodes[node + child] == inf:
+def push_children(rays: Rays, node: int) -> None:
+    """Push the children of a node whose boxes any ray of a packet hits onto the packet's stack."""
+    numbers, integers = rays.numbers, rays.integers
+    top, pushed = integers[TOP + PACKET] + 1, 0
+    for child in range(WIDE):
+        if rays.nodes[node * NODE + child] == inf:
             break
-        hit, near = rays_in_box(nodes, node + child, memory, limit)
+        hit, near = rays_in_box(rays, node, child)
         if any(hit):
-            memory[at + child] = least_lane(where(hit, near, inf))
-            memory[at + WIDTH + child] = bits(hit)
-    near = load(memory, at)
-    save(where(near < inf, tag(near, load(nodes, node + REFERENCES)), inf), memory, at)
-
-
-def visit_unbounded(group: LeafGroup, state: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
-    """Intersect a packet with the unbounded shapes of one kind; the state is not changed."""
-    if group.unbounded is not None:
-        step, tree, memory = arguments
-        for i in range(group.unbounded.shape[0]):
-            index = group.unbounded[i]
-            shape, rays = read(group.rows, tree.slots[index, 1]), load(memory, HIT) > -inf
-            step(shape, index, tree.extents[index], rays, memory)
-    return state
-
-
-def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Callable[..., None], Any]) -> int:
-    """Intersect a packet with the shapes of a leaf, if they are of this kind; the state is not changed."""
-    step, touch, memory = arguments
-    if has_rows(group.blocks) and leaf % GROUPS == group.number:
-        block = leaf // GROUPS
-        for i in range(WIDTH):
-            at = block * REFERENCES + i
-            if group.boxes[at] == inf:
-                break
-            rays, _ = rays_in_box(group.boxes, at, memory, search_limit(load(memory, HIT)))
-            if any(rays):
-                index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
-                if group.trees is None:
-                    step(read_one(group.blocks, block, i), index, extent, rays, memory)
-                else:
-                    visit_mesh(group, group.blocks[block, i], rays, step, touch, memory)
-    return leaf
+            numbers[STACK + top * LEVEL + child] = least_lane(where(hit, near, inf))
+            integers[HITS + (top - PACKET * DEEPEST) * WIDE + child] = bits(hit)
+            pushed = pushed | 1 << child
+    save(load_half(rays.nodes, node * NODE + REFERENCES), numbers, STACK + top * LEVEL + WIDE)
+    integers[PENDING + top], integers[TOP + PACKET] = pushed, top - int(pushed == 0)
 
 
 @outlined
@@ -162,11 +145,13 @@ def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Closes
 
     Rays that are not `active` hit nothing.
     """
-    memory = packet_memory()
-    store_rays(memory, origin, direction)
+    memory, numbers, integers = packet_memory(), ray_numbers(), ray_integers()
+    save_vec(origin, memory, ORIGIN)
+    save_vec(direction, memory, DIRECTION)
     farthest = where(active, splat(inf, direction.x), -inf)
     save_vec(Vec(farthest, splat(-1.0, farthest), splat(0.0, farthest)), memory, HIT)
-    walk(closest_in_block, closest_of_shape, closest_of_triangle, tree, memory)
+    rays = Rays(tree.nodes, 0, tree.place, memory, numbers, integers, 0)
+    walk(closest_in_block, closest_of_shape, closest_of_triangle, tree, rays)
     hit = load_vec(memory, HIT)
     return where(active, hit.x, inf), hit.y, hit.z, -1
 
@@ -179,11 +164,12 @@ def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     save_vec(Vec(state[DISTANCE], state[OWNER], state[EXTENT]), memory, HIT)
 
 
-def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """Continue `closest_hit` of one ray over the shapes of a block, and store the result in `HIT`."""
+def closest_in_block(group: LeafGroup, block: int, rays: Rays, ray: int) -> None:
+    """Continue `closest_hit` of one ray over the shapes of a leaf, and store the result in `HIT`."""
     if group.trees is not None:
-        visit_meshes(closest_of_triangle, group, block, memory, ray)
+        visit_meshes(closest_of_triangle, group, block, rays, ray)
         return
+    memory = rays.memory
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
     candidates = bits(hit & (t <= search_limit(memory[HIT + ray])))
@@ -196,6 +182,7 @@ def closest_in_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray:
             label, state = group.labels[block, i], (best, owner, extent, -1)
             best, owner, extent, _ = closer_hit(shape, label[0], label[1], True, lane(t, i), origin, direction, state)
         memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = best, owner, extent
+        set_limit(rays, ray)
 
 
 def closest_of_triangle(group: Group, row: int, index: int, memory: Any, ray: int) -> None:
@@ -214,10 +201,12 @@ def closest_of_triangle(group: Group, row: int, index: int, memory: Any, ray: in
 @outlined
 def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active: Mask) -> Mask:
     """Trace shadow rays: the `active` rays that hit nothing nearer than `distance`."""
-    memory = packet_memory()
-    store_rays(memory, origin, direction)
+    memory, numbers, integers = packet_memory(), ray_numbers(), ray_integers()
+    save_vec(origin, memory, ORIGIN)
+    save_vec(direction, memory, DIRECTION)
     save(where(active, distance, -inf), memory, HIT)
-    walk(occlude_by_block, occlude_by_shape, occlude_by_triangle, tree, memory)
+    rays = Rays(tree.nodes, 0, tree.place, memory, numbers, integers, 0)
+    walk(occlude_by_block, occlude_by_shape, occlude_by_triangle, tree, rays)
     return load(memory, HIT) > -inf
 
 
@@ -228,14 +217,16 @@ def occlude_by_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     save(where(rays & occluded, -inf, distance), memory, HIT)
 
 
-def occlude_by_block(group: LeafGroup, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
+def occlude_by_block(group: LeafGroup, block: int, rays: Rays, ray: int) -> None:
+    """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a leaf occludes it."""
     if group.trees is not None:
-        visit_meshes(occlude_by_triangle, group, block, memory, ray)
+        visit_meshes(occlude_by_triangle, group, block, rays, ray)
         return
+    memory = rays.memory
     origin, direction, distance = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray), memory[HIT + ray]
     occluded = any(occludes(read_block(group.blocks, block), origin, direction, distance))
     memory[HIT + ray] = where(occluded, -inf, distance)
+    rays.numbers[LIMIT + ray] = where(occluded, -inf, rays.numbers[LIMIT + ray])
 
 
 def occlude_by_triangle(group: Group, row: int, index: int, memory: Any, ray: int) -> None:

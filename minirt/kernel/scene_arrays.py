@@ -38,7 +38,7 @@ class Group(NamedTuple):
     tile_starts: Any  # (tiles + 1,)
     light_starts: Any  # (m, cells + 1)
     number: int  # of the group in `SceneArrays.slots`; -1 without rows
-    trees: Any = None  # of meshes: `minirt.kernel.mesh_nodes.MeshTrees`
+    trees: Any = None  # of meshes: `minirt.kernel.bvh_nodes.MeshTrees`
     triangles: Any = None  # of meshes
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.fields import MeshFile
-from minirt.kernel import beam_traversal, beams, interpreted, mesh_nodes
+from minirt.kernel import beam_traversal, beams, bvh_nodes, interpreted
 from minirt.kernel.scene_arrays import Group
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
@@ -56,7 +56,7 @@ def visited(rays: Packet, number: type = np.float64, own: int = -1) -> np.ndarra
     arrays.update((mesh, mesh.replace(scale=2 * mesh.scale)))
     trees = mesh_trees(arrays, interpreted)
     if number is np.float32:
-        trees.places[:, mesh_nodes.CENTRE : mesh_nodes.FACTOR] -= eye
+        trees.places[:, bvh_nodes.CENTRE : bvh_nodes.FACTOR] -= eye
         trees, eye = trees._replace(places=trees.places.astype(np.float32)), np.zeros(3)
     lanes = LANES[number]
     way = Vec(*np.tile(directions, lanes // 16).astype(number))

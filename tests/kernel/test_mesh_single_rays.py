@@ -10,10 +10,10 @@ import pytest
 import minirt
 from minirt import Camera, Scene
 from minirt.fields import MeshFile
-from minirt.kernel import bvh_nodes, interpreted, mesh_rays, mesh_single_rays
-from minirt.kernel.bvh_nodes import WIDTH
+from minirt.kernel import bvh_rays, interpreted, mesh_rays
+from minirt.kernel.bvh_nodes import DIRECTION, HIT, ORIGIN, WIDTH, packet_memory
 from minirt.kernel.scene_arrays import Group
-from minirt.lanes import Vec
+from minirt.lanes import Vec, save_vec
 from minirt.rendering.packing.mesh_trees import mesh_trees, place_meshes
 from minirt.rendering.packing.ray_casting import nearest_hits
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -29,9 +29,10 @@ def visited(rays: Packet, reach: float = np.inf) -> np.ndarray:
     arrays = ShapeArrays()
     arrays.update((mesh, mesh.replace(scale=2 * mesh.scale)))
     trees, triangles = mesh_trees(arrays, interpreted), place_meshes(arrays, interpreted)
-    memory, found = bvh_nodes.packet_memory(), np.zeros((WIDTH, mesh.parts), bool)
-    bvh_nodes.store_rays(memory, Vec(*(np.full(WIDTH, part) for part in eye)), Vec(*directions))
-    memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = reach
+    memory, found = packet_memory(), np.zeros((WIDTH, mesh.parts), bool)
+    save_vec(Vec(*(np.full(WIDTH, part) for part in eye)), memory, ORIGIN)
+    save_vec(Vec(*directions), memory, DIRECTION)
+    memory[HIT : HIT + WIDTH] = reach
 
     def visit(group: Any, row: int, index: int, memory: Any, ray: int) -> None:
         assert row == index < mesh.parts
@@ -39,7 +40,7 @@ def visited(rays: Packet, reach: float = np.inf) -> np.ndarray:
 
     group = Group(arrays.tables[0], None, None, 0, trees, triangles)
     with np.errstate(all="ignore"):
-        mesh_single_rays.triangles_along(visit, group, 0, memory, (1 << WIDTH) - 1)
+        mesh_rays.triangles_along(visit, group, 0, memory, (1 << WIDTH) - 1)
     return found
 
 
@@ -50,9 +51,14 @@ def test_a_ray_visits_all_triangles_that_it_hits() -> None:
         assert not missing.any(), f"seed {seed}: {np.argwhere(missing)[:3].tolist()} are left out"
 
 
-@pytest.mark.parametrize("margin", ["ROUNDING", "ROUNDINGS"])
-def test_a_ray_with_too_small_a_margin_is_found_out(monkeypatch: pytest.MonkeyPatch, margin: str) -> None:
-    monkeypatch.setattr(mesh_rays, margin, {"ROUNDING": -1e-2, "ROUNDINGS": -1e13}[margin])
+@pytest.mark.parametrize(
+    ("module", "margin", "value"),
+    [(mesh_rays, "ROUNDING", -1e-2), (bvh_rays, "ROUNDING", -2.0), (bvh_rays, "MARGIN", -0.1)],
+)
+def test_a_ray_with_too_small_a_margin_is_found_out(
+    monkeypatch: pytest.MonkeyPatch, module: Any, margin: str, value: float
+) -> None:
+    monkeypatch.setattr(module, margin, value)
     assert any((hits(packet(seed)) & ~visited(packet(seed))).any() for seed in range(12))
 
 

@@ -1,4 +1,4 @@
-"""Compiled operations of kernels: reading packed shapes, the memory and the references of BVH traversal, and pixels."""
+"""Compiled operations of kernels: reading packed shapes, the memory of BVH traversal, and pixels."""
 
 from __future__ import annotations
 
@@ -10,18 +10,17 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
-from minirt.kernel import beams, bvh_nodes, mesh_rays, mesh_single_rays, scene_arrays
+from minirt.kernel import beams, bvh_nodes, bvh_rays, bvh_single_rays, scene_arrays
 from minirt.kernel.compiler.by_reference import length
 from minirt.kernel.pixels import OPAQUE, PACKET_HEIGHT, fetch_add, store_block
 from minirt.kernel.shading import whitted
 from minirt.lanes.compiled.memory import address, array_of, first_of, reduced
-from minirt.lanes.compiled.types import Lanes, VecType, common, constant, register, splat, vec_of
+from minirt.lanes.compiled.types import Lanes, Mask, VecType, common, constant, register, splat, vec_of
 
 PIXEL = ir.IntType(32)
 INTEGER = ir.IntType(64)
 LANES = Lanes(types.float64)
 LANES_IR = ir.VectorType(ir.DoubleType(), LANES.count)
-INTEGERS = ir.VectorType(INTEGER, LANES.count)
 CACHE_LINE = 64  # bytes; aligned to it, no load of lanes touches two lines
 
 # Packed shapes: rows of record arrays, or, side by side, blocks of BVH leaves. The numbers of a row lie one after the
@@ -80,7 +79,7 @@ def _numbers_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
     return context.make_tuple(builder, sig.return_type, parts)
 
 
-# BVH traversal: memory on the stack, and node references in the bits of distances.
+# BVH traversal: memory on the stack.
 
 
 def register_memory(function: Callable[..., Any], number: types.Type, size: int) -> None:
@@ -95,31 +94,17 @@ def register_memory(function: Callable[..., Any], number: types.Type, size: int)
 
 register_memory(bvh_nodes.packet_memory, types.float64, bvh_nodes.MEMORY)
 register_memory(beams.beam_memory, types.float32, beams.MEMORY)
-register_memory(mesh_rays.ray_numbers, types.float32, mesh_rays.MEMORY)
-register_memory(mesh_single_rays.ray_integers, types.int64, mesh_single_rays.INTEGERS)
+register_memory(bvh_rays.ray_numbers, types.float32, bvh_rays.NUMBERS)
+register_memory(bvh_rays.ray_integers, types.int64, bvh_rays.INTEGERS)
 register_memory(whitted.ray_stack, types.float64, whitted.STACK_SIZE)
 
 
-@register(bvh_nodes.put_integer, lambda memory, at, n: types.none)
-def _put_integer(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    value = context.cast(builder, args[2], sig.args[2], types.int64)
-    builder.store(value, address(context, builder, sig.args, args, INTEGER))
-    return context.get_dummy_value()
+@register(bvh_single_rays.mask_of, lambda pending: Mask(LANES))
+def _mask_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.bitcast(builder.trunc(args[0], ir.IntType(LANES.count)), sig.return_type.llvm)
 
 
-@register(bvh_nodes.tag, lambda distance, references: LANES)
-def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    distance, references = (builder.bitcast(each, INTEGERS) for each in args)
-    high = builder.and_(distance, constant(distance, ~bvh_nodes.REFERENCE_BITS))
-    return builder.bitcast(builder.or_(high, references), LANES_IR)
-
-
-@register(bvh_nodes.reference_of, lambda tagged: types.int64 if tagged == types.float64 else None)
-def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.sext(builder.trunc(builder.bitcast(args[0], INTEGER), ir.IntType(32)), INTEGER)
-
-
-@register(bvh_nodes.least_lane, lambda x: x.number if isinstance(x, Lanes) else None)
+@register(bvh_single_rays.least_lane, lambda x: x.number if isinstance(x, Lanes) else None)
 def _least_lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return reduced(builder, "fmin", args[0])
 

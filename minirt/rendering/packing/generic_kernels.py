@@ -11,9 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel import bvh_nodes
-from minirt.kernel.bvh_nodes import WIDTH, Tree
-from minirt.kernel.mesh_nodes import MeshTrees
+from minirt.kernel.bvh_nodes import WIDE, LeafGroup, MeshTrees, Tree
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import TRIANGLE_ROW, Group, MeshTriangles, SceneArrays, row_type
 from minirt.kernel.shading.lights import LightGrid
@@ -117,7 +115,8 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         ),
         environment=Environment(NO_TEXELS, NO_PICTURES),
         bvh=Tree(
-            numbers(0),
+            np.zeros(0, np.float32),
+            numbers(14),
             numbers(0),
             integers((0, 2)),
             tuple(empty_blocks(kind, each, (trees, triangles)) for kind, each in zip(ALL_KINDS, rows, strict=True)),
@@ -128,10 +127,10 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
     return whole._replace(**lacking)
 
 
-def empty_blocks(kind: Kind, rows: np.ndarray, meshes: Meshes) -> bvh_nodes.LeafGroup:
-    absent = np.zeros((0, WIDTH, 2)), np.zeros(0)
+def empty_blocks(kind: Kind, rows: np.ndarray, meshes: Meshes) -> LeafGroup:
+    labels = np.zeros((0, WIDE, 2))
     if kind is MESH:
-        blocks = np.zeros((0, WIDTH), np.int64)
-        return bvh_nodes.LeafGroup(np.zeros(0, TRIANGLE_ROW), blocks, *absent, None, ABSENT, *meshes)
+        blocks = np.zeros((0, WIDE), np.int64)
+        return LeafGroup(np.zeros(0, TRIANGLE_ROW), blocks, labels, None, 0, ABSENT, *meshes)
     unbounded = np.zeros(0, np.int64) if kind.element.infinite else None
-    return bvh_nodes.LeafGroup(rows, np.zeros(0, block_type(kind)), *absent, unbounded, ABSENT)
+    return LeafGroup(rows, np.zeros(0, block_type(kind)), labels, unbounded, 0, ABSENT)

@@ -7,13 +7,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from minirt.kernel import mesh_nodes
 from minirt.kernel.bvh_build import INDEX
+from minirt.kernel.bvh_nodes import HUGE, NODE, MeshTrees
 from minirt.kernel.machine_code.library import bound
 from minirt.kernel.scene_arrays import ROW, MeshTriangles
 from minirt.meshes import Triangles
 from minirt.meshes.triangles import BLOCK
-from minirt.rendering.packing.bvh import Meshes, aligned_copy, lanes_of, wide_nodes
+from minirt.rendering.packing.bvh import Meshes, aligned_copy, wide_nodes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.visibility import PARALLEL, Run
 from minirt.shapes.mesh import Mesh
@@ -27,7 +27,7 @@ def pack_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Mes
     return mesh_trees(shapes, kernel, run), place_meshes(shapes, kernel, run)
 
 
-def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh_nodes.MeshTrees | None:
+def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> MeshTrees | None:
     """Return the trees of the meshes of a scene, built with the functions of `kernel` where they are not yet, or None
     without any."""
     if Mesh not in shapes.group_numbers:
@@ -35,19 +35,17 @@ def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> mesh
     owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
     meshes: Any = [shapes.shapes[index] for index in owners]
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
-    roots = np.cumsum([0, *map(len, nodes[:-1])]) // mesh_nodes.NODE
+    roots = np.cumsum([0, *map(len, nodes[:-1])]) // NODE
     first = shapes.first_primitive[owners]
     rows = shapes.slots[first, ROW]  # of the first triangle of each mesh, in the table of all triangles
     numbers = np.zeros(rows[-1] + 1, np.int64)
     numbers[rows] = np.arange(len(rows))
     joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
-    return mesh_nodes.MeshTrees(
-        joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers
-    )
+    return MeshTrees(joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers)
 
 
 def place_of(mesh: Mesh) -> np.ndarray:
-    """Return a row of `minirt.kernel.mesh_nodes.MeshTrees.places`."""
+    """Return a row of `minirt.kernel.bvh_nodes.MeshTrees.places`."""
     middle, size = space_of(mesh.triangles)
     (centre,) = mesh.placed(middle[None])
     apart = np.abs(centre - mesh.position).max()
@@ -61,24 +59,20 @@ def space_of(triangles: Triangles) -> tuple[np.ndarray, float]:
 
 
 def tree_of(triangles: Triangles, kernel: Any, run: Run | None = None) -> np.ndarray:
-    """Return the nodes of the tree of a mesh, flat, float32, see `minirt.kernel.mesh_nodes`. The tree is built at the
+    """Return the nodes of the tree of a mesh, flat, float32, see `minirt.kernel.bvh_nodes`. The tree is built at the
     first call: inner nodes, then leaves."""
     if triangles not in trees:
         middle, size = space_of(triangles)
         boxes = boxes_of_triangles(triangles, middle, size)
-        nodes, leaves = wide_nodes(boxes, kernel, mesh_nodes.WIDE, run=run)
-        references = nodes[:, 6]
-        references[references < 0] -= len(nodes) - 1  # leaves follow the nodes and are numbered with them
-        places, spare = lanes_of(leaves, mesh_nodes.WIDE)
-        members = boxes[places, INDEX].astype(np.int64)  # triangles of each leaf
-        del boxes  # they take more memory than the tree
-        packed = np.zeros((len(nodes) + len(leaves), mesh_nodes.NODE // mesh_nodes.WIDE, mesh_nodes.WIDE), np.float32)
-        packed[: len(nodes), :6], packed[: len(nodes), -1] = nodes[:, :6], references
-        corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[members]]
-        corners[spare] = mesh_nodes.HUGE
-        packed[len(nodes) :, :9] = corners.reshape(*members.shape, 9).transpose(0, 2, 1)
-        packed[len(nodes) :, -1] = -1 - members
-        trees[triangles] = aligned_copy(packed)
+        nodes, places, spare = wide_nodes(boxes, kernel, run=run)
+        inside = boxes[places, INDEX].astype(np.int64)
+        del boxes
+        leaves = nodes[len(nodes) - len(inside) :]
+        corners = (((triangles.points - middle) / size).astype(np.float32))[triangles.corners[inside]]
+        corners[spare] = HUGE
+        leaves[:, (0, 1, 2, 3, 4, 5, 7, 8, 9)] = corners.reshape(*inside.shape, 9).transpose(0, 2, 1)
+        leaves[:, 6] = -1 - inside
+        trees[triangles] = aligned_copy(nodes)
     return trees[triangles]
 
 

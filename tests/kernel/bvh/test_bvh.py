@@ -10,23 +10,28 @@ import pytest
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel import bvh_build, bvh_collapse, bvh_nodes, bvh_single_rays, functions, ray_batches
+from minirt.kernel import bvh_build, bvh_collapse, bvh_leaves, bvh_rays, bvh_traversal, functions, ray_batches
+from minirt.kernel.bvh_leaves import all_leaves, visit_leaves
 from minirt.kernel.bvh_nodes import (
-    GROUPS,
-    LEVELS,
+    CENTRE,
+    DEEPEST,
+    DIRECTION,
+    FACTOR,
+    HIT,
     MARGIN,
-    MEMORY,
     NODE,
-    PACKET,
-    PACKET_LEVEL,
-    STACK,
-    STACK_LEVEL,
+    ORIGIN,
+    REFERENCES,
+    ROUNDING,
+    WIDE,
     WIDTH,
     LeafGroup,
     Tree,
-    reference_of,
+    packet_memory,
 )
-from minirt.lanes import Vec
+from minirt.kernel.bvh_rays import Rays
+from minirt.kernel.bvh_single_rays import traverse
+from minirt.lanes import Vec, save, save_vec
 from minirt.rendering.packing import bvh
 from minirt.rendering.packing.bvh import aligned, block_type, build_bvh, wide_nodes
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, empty_arrays, generalised
@@ -36,7 +41,7 @@ from minirt.shapes import KINDS, Cylinder, Plane, Shape, Sphere
 from tests.shapes.examples import example, place
 from tests.shapes.regimes import Array, Random, log_uniform, random_directions, unit
 
-ENDLESS = 2.0**500  # farther than any shape
+ENDLESS = 2.0**40  # farther than any shape, in the space of a tree
 
 
 class Interpreted:
@@ -54,15 +59,10 @@ def build_tree(shapes: list[Shape], kernel: Any = functions) -> Tree:
 
 def without_boxes(scene: Tree) -> Tree:
     """Return a tree whose boxes reach everywhere: every ray is tested against every shape, by the same kernel."""
-    nodes = scene.nodes.reshape(-1, 7, WIDTH).copy()
-    child = nodes[:, :1] < np.inf
-    nodes[:, :6] = np.where(child, np.repeat([-ENDLESS, ENDLESS], 3)[:, None], nodes[:, :6])
-    groups = []
-    for group in scene.groups:
-        boxes = group.boxes.reshape(-1, 2, 3, WIDTH)
-        wide = np.where(boxes[:, :1] < np.inf, np.array([-ENDLESS, ENDLESS])[:, None, None], boxes)
-        groups.append(group._replace(boxes=wide.reshape(group.boxes.shape)))
-    return scene._replace(nodes=nodes.ravel(), groups=tuple(groups))
+    nodes = scene.nodes.reshape(-1, NODE // WIDE, WIDE).copy()
+    used = nodes[:, :1] < np.inf
+    nodes[:, :6] = np.where(used, np.repeat([-ENDLESS, ENDLESS], 3)[:, None], nodes[:, :6])
+    return scene._replace(nodes=nodes.ravel())
 
 
 def brute_force(shapes: list[Shape]) -> Tree:
@@ -71,11 +71,12 @@ def brute_force(shapes: list[Shape]) -> Tree:
     kinds = [kind for kind in KINDS if kind.element in set(map(type, shapes))]
     groups = []
     for i, (kind, rows) in enumerate(zip(kinds, arrays.rows, strict=True)):
-        labels = np.zeros((0, WIDTH, 2))
+        labels = np.zeros((0, WIDE, 2))
         unbounded = np.flatnonzero(arrays.slots[:, 0] == i)
-        groups.append(LeafGroup(rows, aligned(0, block_type(kind)), labels, np.zeros(0), unbounded, i))
-    root = np.repeat([np.inf, -np.inf, 0.0], [3 * WIDTH, 3 * WIDTH, WIDTH])
-    return Tree(root, arrays.colours_and_extents[:, 3].copy(), arrays.slots, tuple(groups))
+        groups.append(LeafGroup(rows, aligned(0, block_type(kind)), labels, unbounded, 1, i))
+    root = np.repeat(np.array([np.inf, -np.inf, 0.0], np.float32), [3 * WIDE, 3 * WIDE, 4 * WIDE])
+    place = np.array([*np.eye(3).ravel(), 0.0, 0.0, 0.0, 1.0, 0.0])
+    return Tree(root, place, arrays.colours_and_extents[:, 3].copy(), arrays.slots, tuple(groups))
 
 
 def shape_arrays(shapes: list[Shape]) -> ShapeArrays:
@@ -140,9 +141,14 @@ def sphere(*numbers: float) -> Sphere:
     return Sphere(numbers[:3], numbers[3], GREY)
 
 
+def node_count(scene: Tree) -> int:
+    """Count the nodes of a tree, without its leaves."""
+    return len(scene.nodes) // NODE - sum(len(group.blocks) for group in scene.groups)
+
+
 def check_tree(scene: Tree, shapes: list[Shape]) -> int:
     """Check that a tree has every node and shape once, within the boxes above, and return its number of levels."""
-    nodes = scene.nodes.reshape(-1, 7, WIDTH)
+    nodes = scene.nodes.reshape(-1, NODE // WIDE, WIDE).astype(float)
     references, owned, depth = [0], [], 0
     todo = [(0, np.full(3, -np.inf), np.full(3, np.inf), 1)]
     while todo:
@@ -152,20 +158,20 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
             box_low, box_high = nodes[node, :3, child], nodes[node, 3:6, child]
             assert (low <= box_low).all()
             assert (box_high <= high).all()
-            reference = reference_of(nodes[node, 6, child])
-            if reference >= 0:
-                references.append(reference // NODE)
-                todo.append((reference // NODE, box_low, box_high, level + 1))
+            reference = int(nodes[node, REFERENCES // WIDE, child])
+            references.append(abs(reference))
+            if reference > 0:
+                todo.append((reference, box_low, box_high, level + 1))
                 continue
-            block, group = divmod(-1 - reference, GROUPS)
-            labels = scene.groups[group].labels[block]
+            (group,) = (g for g in scene.groups if g.first_leaf <= -reference < g.first_leaf + len(g.blocks))
+            labels = group.labels[-reference - group.first_leaf]
             owners = labels[:, 0].astype(int)
             owned += set(owners.tolist())
             assert np.array_equal(labels[:, 1], scene.extents[owners])
-            corners = np.array([shapes[index].bounds() for index in owners])
-            assert (box_low <= corners[:, 0] - MARGIN * np.abs(corners).max(axis=(1, 2))[:, None] / 2).all()
-            assert (box_high >= corners[:, 1] + MARGIN * np.abs(corners).max(axis=(1, 2))[:, None] / 2).all()
-            check_boxes(scene.groups[group].boxes.reshape(-1, 2, 3, WIDTH)[block], owners, corners)
+            middle, factor = scene.place[CENTRE:FACTOR], scene.place[FACTOR]
+            corners = (np.array([shapes[index].bounds() for index in owners]) - middle) * factor
+            assert check_boxes(nodes[node, :6, [child] * WIDE].T, corners).all()
+            assert np.array_equal(check_boxes(nodes[-reference, :6], corners), np.arange(WIDE) < len(set(owners)))
         empty = nodes[node, 0] == np.inf
         assert (nodes[node, :3, empty] == np.inf).all()
         assert (nodes[node, 3:6, empty] == -np.inf).all()
@@ -177,17 +183,15 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
     return depth
 
 
-def check_boxes(boxes: Array, owners: Array, corners: Array) -> None:
-    """Check that the boxes (2, 3, WIDTH) of a leaf enclose its shapes, and that those of lanes to spare are empty."""
-    count = len(set(owners.tolist()))
-    slack = MARGIN * np.abs(corners).max(axis=(1, 2))[:count, None] / 2
-    assert (corners[:count, 0] - slack >= boxes[0, :, :count].T).all()
-    assert (corners[:count, 1] + slack <= boxes[1, :, :count].T).all()
-    assert (boxes[0, :, count:] == np.inf).all()
-    assert (boxes[1, :, count:] == -np.inf).all()
+def check_boxes(boxes: Array, corners: Array) -> Array:
+    """Return which boxes (6, WIDE) enclose those with some corners (WIDE, 2, 3), with margins; the others are empty."""
+    slack = (ROUNDING * np.abs(corners) + MARGIN * np.abs(corners).max(axis=(1, 2))[:, None, None]) / 2
+    encloses = (corners[:, 0] - slack[:, 0] >= boxes[:3].T) & (corners[:, 1] + slack[:, 1] <= boxes[3:].T)
+    assert (boxes[:3].T[~encloses.all(axis=1)] == np.inf).all()
+    return encloses.all(axis=1)
 
 
-@pytest.mark.parametrize("count", [1, 2, WIDTH, WIDTH + 1, 100, 1000])
+@pytest.mark.parametrize("count", [1, 2, WIDE, WIDE + 1, 100, 1000])
 @pytest.mark.parametrize("kernel", [Interpreted, functions], ids=["interpreted", "compiled"])
 def test_every_shape_is_in_the_tree_once_and_every_box_encloses_its_subtree(count: int, kernel: Any) -> None:
     shapes = random_shapes(np.random.default_rng(count), count)
@@ -206,23 +210,22 @@ def test_every_shape_is_in_the_tree_once_and_every_box_encloses_its_subtree(coun
     ids=["equal", "nested", "halving", "flat", "two kinds in one place"],
 )
 def test_degenerate_distributions_of_shapes_give_a_tree_of_limited_depth(shapes: list[Shape]) -> None:
-    assert check_tree(build_tree(shapes), shapes) <= LEVELS + WIDTH
+    assert check_tree(build_tree(shapes), shapes) <= DEEPEST
 
 
 def test_the_traversal_stack_holds_the_deepest_tree() -> None:
     # Each box is half as large and as far as the one before: the cheapest splits separate one box at a time.
-    far = 2.0 ** np.arange(-450, 450)[:, None]
+    far = 2.0 ** np.arange(-899, 1)[:, None]
     boxes = np.hstack([np.repeat(far, 6, axis=1) * [-1, -1, -1, 1.5, 1.5, 1.5], np.zeros((900, 2))])
-    nodes, leaves = wide_nodes(np.repeat(boxes, WIDTH, axis=0), functions)
-    children = nodes[:, 6].astype(int)
+    nodes, inside, _ = wide_nodes(np.repeat(boxes, WIDE, axis=0), functions)
+    children = nodes[: len(nodes) - len(inside), REFERENCES // WIDE].astype(int)
     deepest = np.ones(len(children), int)
     for node in range(len(children) - 1, -1, -1):  # a child comes behind its parent
         deepest[node] += (
             max(deepest[child] for child in children[node] if child > 0) if (children[node] > 0).any() else 0
         )
-    assert leaves[:, 1].max() == 900 * WIDTH
-    assert STACK + deepest[0] * STACK_LEVEL <= PACKET
-    assert PACKET + deepest[0] * PACKET_LEVEL <= MEMORY
+    assert inside.max() + 1 == 900 * WIDE
+    assert deepest[0] <= DEEPEST
 
 
 def test_any_number_of_threads_builds_the_same_tree(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -249,31 +252,40 @@ def test_a_ray_visits_few_leaves() -> None:
     shapes: list[Shape] = [sphere(*place, 0.1) for place in np.ndindex(30, 30, 30)]
     scene = build_tree(shapes)
     assert 0 < len(leaves_along(scene, (-1, 14.3, 13.7), unit(np.array([1, 0.3, 0.2])))) < 60
-    assert len(scene.nodes) // NODE < 27_000 / 16
+    assert node_count(scene) < 27_000 / 16
 
 
 def test_leaves_and_nodes_are_nearly_full() -> None:
-    # They cost the same however full they are, so splits into multiples of `WIDTH` are cheaper.
+    # They cost the same however full they are, so splits into multiples of `WIDE` are cheaper.
     random = np.random.default_rng(3)
     scene = build_tree([sphere(*place, 1) for place in random.uniform(0, 100, (10_000, 3))])
-    assert 0.85 * WIDTH * len(scene.groups[0].labels) < 10_000
-    assert 0.6 * WIDTH * len(scene.nodes) / NODE < len(scene.groups[0].labels)
+    assert 0.85 * WIDE * len(scene.groups[0].labels) < 10_000
+    assert 0.6 * WIDE * node_count(scene) < len(scene.groups[0].labels)
+
+
+def packet_of(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> Rays:
+    """Return a packet of rays that have hit something at a distance."""
+    memory = packet_memory()
+    for at, v in ((ORIGIN, origin), (DIRECTION, direction)):
+        save_vec(Vec(*(np.full(WIDTH, x) for x in v)), memory, at)
+    save(np.full(WIDTH, limit), memory, HIT)
+    rays = Rays(scene.nodes, 0, scene.place, memory, bvh_rays.ray_numbers(), bvh_rays.ray_integers(), 0)
+    bvh_rays.store_rays(rays)
+    return rays
 
 
 def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> list[int]:
     """Return the leaves that a ray visits, in order, if it hits nothing."""
-    memory = bvh_nodes.packet_memory()
     visited_leaves: list[int] = []
-    bvh_nodes.store_rays(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
-    memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = limit
-    visit = lambda group, block, tree, memory, ray: visited_leaves.append(block)  # noqa: E731
-    bvh_single_rays.traverse(visit, scene, memory, 1 << 5, 0.0)
+    visit = lambda group, block, rays, ray: visited_leaves.append(block)  # noqa: E731
+    packet = packet_of(scene, origin, direction, limit)
+    traverse(all_leaves, visit_leaves, (visit, scene), packet, 1 << 5, 0)
     return visited_leaves
 
 
 def test_leaves_are_visited_nearest_first_up_to_the_limit() -> None:
     # One behind the other: the boxes are entered at x = 0, 3, 6...
-    scene = build_tree([sphere(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
+    scene = build_tree([sphere(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDE)])
     order = np.argsort(scene.groups[0].labels[:, 0, 0])
     for direction, expected in (((1.0, 0.0, 0.0), order), ((-1.0, 0.0, 0.0), order[::-1])):
         origin = (-1.0 if direction[0] > 0 else 119.0, 0.1, 0.1)
@@ -283,20 +295,19 @@ def test_leaves_are_visited_nearest_first_up_to_the_limit() -> None:
 
 @pytest.mark.parametrize("distance", [1.0, 7.0])
 def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
-    scene = build_tree([sphere(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
-    memory = bvh_nodes.packet_memory()
-    rays = [np.linspace(-1, 50, WIDTH), np.full(WIDTH, 0.1), np.full(WIDTH, 0.1)]
-    bvh_nodes.store_rays(memory, Vec(*rays), Vec(np.ones(WIDTH), np.zeros(WIDTH), np.zeros(WIDTH)))
-    memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = np.inf
+    scene = build_tree([sphere(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDE)])
+    origins = np.linspace(-1, 50, WIDTH)
+    packet = packet_of(scene, (origins, 0.1, 0.1), (1.0, 0.0, 0.0))
     visits = np.zeros(WIDTH, int)
 
-    def hit(group: Any, block: int, tree: Tree, memory: Any, ray: int) -> None:
+    def hit(group: Any, block: int, rays: Rays, ray: int) -> None:
         visits[ray] += 1
-        memory[bvh_nodes.HIT + ray] = distance
+        rays.memory[HIT + ray] = distance
+        bvh_rays.set_limit(rays, ray)
 
-    bvh_single_rays.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4, 0.0)
+    traverse(all_leaves, visit_leaves, (hit, scene), packet, (1 << WIDTH) - 1 - 4, 0)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first leaf that it hits
-    expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in rays[0]]
+    expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in origins]
     expected[2] = 0  # not active
     assert visits.tolist() == expected
 
@@ -334,6 +345,14 @@ def test_rays_that_graze_the_sides_of_boxes_hit_what_they_hit_without_boxes() ->
     assert 3000 < hits < 27_000
 
 
+def test_rays_without_margins_are_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (bvh, bvh_rays):
+        monkeypatch.setattr(module, "ROUNDING", 0.0)
+    shapes, *rays = grazing_rays(1)
+    shapes.append(sphere(1.1, 2.2, 3.3, 0.7))
+    assert wrong_hits(build_tree(shapes), shapes, (rays[0], rays[1])) > 5
+
+
 NOT_NUMBERS = [((np.nan,) * 3, (0, 0, 1)), ((0, 0, 0), (np.nan,) * 3), ((1e308, -1e308, 1e308), (0, 1e-300, -1))]
 
 
@@ -362,17 +381,15 @@ def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.Monke
         assert np.array_equal(result[0], np.full(24, 9.5))
     tree = build_tree(shapes)
     assert min(len(leaves_along(tree, *ray)) for ray in zip(*rays, strict=True)) > 0
-    near_planes = bvh_nodes.near_planes
-    tiny = lambda x: np.abs(x) if np.abs(x) * bvh_nodes.TINY == 1.0 else x  # noqa: E731  (-0 as if it were 0)
-    monkeypatch.setattr(
-        bvh_single_rays,
-        "near_planes",
-        lambda inverse: near_planes(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z))),
-    )
-    assert [len(leaves_along(tree, *ray)) for ray in zip(*rays, strict=True)].count(0) > 5
-    monkeypatch.undo()
-    # Rays that enter boxes by the planes of the first ray of their packet.
-    monkeypatch.setattr(bvh_nodes, "where", lambda mask, a, b: np.where(mask if np.ndim(a) else mask[0], a, b))
+    rays_in_box = bvh_rays.rays_in_box
+
+    def by_planes_of_first(*box: Any) -> Any:
+        with monkeypatch.context() as patch:
+            patch.setattr(bvh_rays, "where", lambda mask, a, b: np.where(mask[0], a, b))
+            return rays_in_box(*box)
+
+    for module in (bvh_traversal, bvh_leaves):
+        monkeypatch.setattr(module, "rays_in_box", by_planes_of_first)
     assert wrong_hits(tree, shapes, rays) > 5
 
 
@@ -382,6 +399,6 @@ def test_rays_along_axes_visit_no_boxes_beside_them(monkeypatch: pytest.MonkeyPa
     few = [len(leaves_along(scene, *way)) for way in ways]
     assert max(few) <= 12
     # With an infinite inverse, positions along the other axes make no difference.
-    monkeypatch.setattr(bvh_nodes, "safe_inverse", lambda x: 1.0 / x)
+    monkeypatch.setattr(bvh_rays, "safe_inverse", lambda x: 1.0 / x)
     with np.errstate(all="ignore"):
         assert min(len(leaves_along(scene, *way)) for way in ways) > 12

@@ -17,11 +17,13 @@ from tests.kernel.bvh.test_bvh import (
     coherent,
     random_rays,
     random_shapes,
+    sphere,
     trace,
     without_boxes,
 )
 from tests.shapes.examples import example
 from tests.shapes.execution_modes import run_compiled
+from tests.shapes.regimes import random_directions, unit
 
 REGIMES: dict[str, dict[str, float]] = {
     "usual": {},
@@ -53,6 +55,20 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int, is_cohere
     hit = expected[1] >= 0
     rounding = 1e-15 * np.median(expected[0][hit])  # relative to the sizes of the shapes
     assert np.allclose(result[0][hit], expected[0][hit], rtol=1e-11, atol=rounding)
+
+
+@pytest.mark.parametrize("distance", [10.0, 1e5, 1e9, 1e15])
+def test_small_shapes_on_a_huge_one_are_hit_as_without_boxes(distance: float) -> None:
+    random = np.random.default_rng(1)
+    places = random.uniform(-10, 10, (300, 3)) * [1, 0, 1] + [0, 0.4, 0]
+    shapes = [sphere(0, -1e8, 0, 2e8), *(sphere(*place, random.uniform(0.1, 1)) for place in places)]
+    origins = places[random.integers(300, size=4000)] + distance * np.abs(random_directions(random, 4000))
+    rays = origins, unit(places[random.integers(300, size=4000)] + 0.3 * random.normal(size=(4000, 3)) - origins)
+    tree = build_tree(shapes)
+    result, expected = trace(tree, *rays), trace(without_boxes(tree), *rays)
+    assert np.array_equal(result[1], expected[1])
+    assert np.array_equal(result[0], expected[0])
+    assert (expected[1] > 0).sum() > 300
 
 
 def shadow_queries(tree: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
