@@ -5,6 +5,8 @@ Rays that are hard for the formulas are in `tests.stability`.
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 
@@ -47,7 +49,22 @@ Ray = tuple[tuple[float, ...], tuple[float, ...], float]  # origin, direction an
 SIDE = (4.9**2 - 9) ** 0.5  # height at which the side of the tower is 4.9 wide
 AHEAD, DOWN, RIGHT = (0, 0, 1), (0, -1, 0), (1, 0, 0)
 # `tests.stability` holds the formulas equal to the boundaries of shapes, and these hold what both of them mean.
+SAIL_RAYS: list[Ray] = [
+    ((0, 1, 0), AHEAD, 6),  # z = 5 + y
+    ((0, 1, 0), (0, 0, -1), NEVER),  # behind
+    ((0, 2, 9), (0, 0, -1), 2),  # from its back
+    ((0, 9, 6), DOWN, 8),  # from above, at y = 1
+    ((1.3, 1, 0), AHEAD, 6),  # 1 / 30 within the edge, at y = 1
+    ((1.4, 1, 0), AHEAD, NEVER),  # and past it
+    ((-1.3, 1, 0), AHEAD, 6),
+    ((-1.4, 1, 0), AHEAD, NEVER),
+    ((0, -0.01, 0), AHEAD, NEVER),
+    ((0, 3.01, 0), AHEAD, NEVER),
+    ((0, 1, 6), AHEAD, NEVER),  # from it
+    ((0, 1, 2), (0, 0.6, 0.8), NEVER),  # y + 5 = z: 0.2 t = 4
+]
 HITS: list[tuple[Shape, list[Ray]]] = [
+    *((Triangle(*corners, GREY), SAIL_RAYS) for corners in permutations((SAIL.a, SAIL.b, SAIL.c))),
     (BALL, [((0, 0, 0), AHEAD, 2), ((1.8, 0, 0), AHEAD, 2.6), ((3.1, 0, 0), AHEAD, NEVER)]),
     (FLOOR, [((0, 1, 0), (0.8, -0.6, 0), 5), ((0, -5, 0), (0, 1, 0), 3), ((0, 0, 0), (0, 1, 0), NEVER)]),
     (TUBE, [((0, 0, 0), AHEAD, 2), ((0, 5, 5), (0.6, -0.8, 0), 3.75), ((0, 0, 5), (0.8, 0.6, 0), 10 / 3)]),

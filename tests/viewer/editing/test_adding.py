@@ -15,7 +15,7 @@ from minirt.rendering.packing.ray_casting import distances_of
 from minirt.rendering.queries.pick import clearance, pick
 from minirt.scene import Scene, load
 from minirt.scene.registry import ELEMENTS
-from minirt.shapes import KINDS, Box, Cylinder, Mesh, Shape, Sphere, Triangle
+from minirt.shapes import KINDS, Box, Cylinder, Shape, Sphere, Triangle
 from minirt.shapes.frames import basis
 from minirt.viewer.editing.defaults import default_element
 from minirt.viewer.editing.editor import apply
@@ -253,16 +253,6 @@ def test_shapes_come_first_and_what_a_scene_has_once_is_not_added_again() -> Non
     assert kinds[: len(KINDS)] == [kind.element for kind in KINDS]
     assert ELEMENTS["L"] in kinds
     assert ELEMENTS["L"] not in addable_kinds(scene())
-
-
-def test_each_choice_adds_another_kind_and_is_one_undo_step() -> None:
-    start = initial_state(scene())
-    after = [each for _, each in choices(start, ELEMENT)]
-    assert [*(type(state.element) for state in after), Mesh] == addable_kinds(start.scene)  # there is no mesh file
-    for state in after:
-        assert len(state.scene.elements) == len(start.scene.elements) + 1
-        assert apply(state, "undo").scene.items == start.scene.items
-        assert len(state.undo_stack) == 1
 
 
 def test_undo_restores_the_selection() -> None:
