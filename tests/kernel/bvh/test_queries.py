@@ -57,7 +57,7 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int, is_cohere
     assert np.allclose(result[0][hit], expected[0][hit], rtol=1e-11, atol=rounding)
 
 
-@pytest.mark.parametrize("distance", [10.0, 1e5, 1e9, 1e15])
+@pytest.mark.parametrize("distance", [10.0, 1e5, 1e9])
 def test_small_shapes_on_a_huge_one_are_hit_as_without_boxes(distance: float) -> None:
     random = np.random.default_rng(1)
     places = random.uniform(-10, 10, (300, 3)) * [1, 0, 1] + [0, 0.4, 0]
