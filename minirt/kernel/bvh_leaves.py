@@ -9,7 +9,7 @@ from typing import Any
 
 from minirt.kernel.beam_traversal import fold_over_mesh
 from minirt.kernel.bvh_nodes import DIRECTION, FACTOR, HIT, NODE, ORIGIN, WIDE, LeafGroup, Tree, vec_at
-from minirt.kernel.bvh_rays import NEXT, Rays, boxes_on_ray, rays_in_box, search_limit, set_limit, set_limits
+from minirt.kernel.bvh_rays import NEXT, RayPacket, boxes_on_ray, rays_in_box, search_limit, set_limit, set_limits
 from minirt.kernel.mesh_rays import triangles_along
 from minirt.kernel.scene_arrays import has_rows, read, read_one, read_row
 from minirt.kernel.trace import for_each_kind, triangle_extent
@@ -30,7 +30,9 @@ def visit_unbounded(group: LeafGroup, state: int, arguments: tuple[Callable[...,
     return state
 
 
-def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Callable[..., None], Rays]) -> int:
+def visit_leaf(
+    group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None], Callable[..., None], RayPacket]
+) -> int:
     """Intersect a packet with the shapes of a leaf, if they are of this kind; the state is not changed."""
     step, touch, rays = arguments
     if has_rows(group.blocks) and 0 <= leaf - group.first_leaf < group.blocks.shape[0]:
@@ -49,18 +51,18 @@ def visit_leaf(group: LeafGroup, leaf: int, arguments: tuple[Callable[..., None]
     return leaf
 
 
-def all_leaves(rays: Rays, at_leaf: int, data: tuple[Callable[..., None], Tree]) -> int:
+def all_leaves(rays: RayPacket, at_leaf: int, data: tuple[Callable[..., None], Tree]) -> int:
     """Visit all leaves that single rays are at: nothing is to be prepared."""
     return at_leaf
 
 
-def visit_leaves(rays: Rays, at_leaf: int, data: tuple[Callable[..., None], Tree]) -> None:
+def visit_leaves(rays: RayPacket, at_leaf: int, data: tuple[Callable[..., None], Tree]) -> None:
     """Visit the leaves that single rays are at, one bit for each in `at_leaf`."""
     visit, tree = data
     for_each_kind(visit_leaves_of_kind, tree.groups, at_leaf, (visit, rays))
 
 
-def visit_leaves_of_kind(group: LeafGroup, at_leaf: int, arguments: tuple[Callable[..., None], Rays]) -> int:
+def visit_leaves_of_kind(group: LeafGroup, at_leaf: int, arguments: tuple[Callable[..., None], RayPacket]) -> int:
     """Visit those leaves whose shapes are of one kind; the state, `at_leaf`, is not changed."""
     visit, rays = arguments
     remaining = at_leaf if has_rows(group.blocks) else 0
@@ -104,7 +106,7 @@ def reach_of_packet(state: int, data: tuple[Callable[..., None], Any]) -> Number
     return search_limit(load(data[1], HIT))
 
 
-def visit_meshes(touch: Callable[..., None], group: Any, block: int, rays: Rays, ray: int) -> None:
+def visit_meshes(touch: Callable[..., None], group: Any, block: int, rays: RayPacket, ray: int) -> None:
     """Intersect one ray with the meshes of a block whose boxes it hits."""
     hit, _ = boxes_on_ray(rays, group.first_leaf + block, ray)
     remaining = bits(hit)

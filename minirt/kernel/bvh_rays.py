@@ -70,7 +70,7 @@ HITS = PENDING + (WIDTH + 1) * DEEPEST
 INTEGERS = HITS + DEEPEST * WIDE
 
 
-class Rays(NamedTuple):
+class RayPacket(NamedTuple):
     """A packet of rays in the space of a tree."""
 
     nodes: Any  # of the tree, and maybe of others
@@ -92,7 +92,7 @@ def ray_integers() -> Any:
     return np.zeros(INTEGERS, np.int64)
 
 
-def store_rays(rays: Rays) -> tuple[Vec, Vec, Number]:
+def store_rays(rays: RayPacket) -> tuple[Vec, Vec, Number]:
     """Prepare rays of unit directions for the box test. Returns, in the space of the tree, their points closest to its
     middle, their directions, and how wrong these may be.
 
@@ -140,21 +140,21 @@ def search_limit(distance: Number) -> Number:
     return distance * (1.0 + 2.0 * COINCIDENT)
 
 
-def set_limits(rays: Rays) -> None:
+def set_limits(rays: RayPacket) -> None:
     """Set the depths up to which all rays are followed, by the distances at which they have hit something."""
     distance, ahead = load(rays.memory, HIT), load(rays.memory, AHEAD + WIDTH * rays.is_mesh)
     depth = minimum(search_limit(distance) * rays.place[FACTOR] - ahead, FAR)
     save(in_single(depth) + load_half(rays.numbers, SLACK), rays.numbers, LIMIT)
 
 
-def set_limit(rays: Rays, ray: int) -> None:
+def set_limit(rays: RayPacket, ray: int) -> None:
     """Set the depth up to which one ray is followed."""
     distance, ahead = rays.memory[HIT + ray], rays.memory[AHEAD + WIDTH * rays.is_mesh + ray]
     depth = minimum(search_limit(distance) * rays.place[FACTOR] - ahead, FAR)
     rays.numbers[LIMIT + ray] = depth + rays.numbers[SLACK + ray]
 
 
-def boxes_on_ray(rays: Rays, node: int, ray: int) -> tuple[Mask, Number]:
+def boxes_on_ray(rays: RayPacket, node: int, ray: int) -> tuple[Mask, Number]:
     """Return which children of a node a ray may meet up to its limit, and the depths at which it enters their boxes."""
     nodes, numbers, at = rays.nodes, rays.numbers, node * NODE
     enter, leave, inverse = vec_at(numbers, ENTER, ray), vec_at(numbers, LEAVE, ray), vec_at(numbers, INVERSE, ray)
@@ -168,7 +168,7 @@ def boxes_on_ray(rays: Rays, node: int, ray: int) -> tuple[Mask, Number]:
     return slab_test(near, far, enter, leave, inverse, numbers[BEGIN + ray], numbers[LIMIT + ray])
 
 
-def rays_in_box(rays: Rays, node: int, child: int) -> tuple[Mask, Number]:
+def rays_in_box(rays: RayPacket, node: int, child: int) -> tuple[Mask, Number]:
     """Return which rays of a packet may meet a child of a node up to their limits, and the depths at which they enter
     its box."""
     nodes, numbers, at = rays.nodes, rays.numbers, node * NODE + child

@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 
 from minirt.kernel.bvh_nodes import DEEPEST, NODE, REFERENCES, WIDE, prefetch_node
-from minirt.kernel.bvh_rays import LEVEL, LIMIT, NEXT, PENDING, STACK, TOP, Rays, boxes_on_ray
+from minirt.kernel.bvh_rays import LEVEL, LIMIT, NEXT, PENDING, STACK, TOP, RayPacket, boxes_on_ray
 from minirt.lanes import any, bits, first, lowest, outlined, save, where
 from minirt.lanes.memory import load_half
 
 
 @outlined
 def traverse(
-    prepare: Callable[..., int], visit: Callable[..., None], data: Any, rays: Rays, chosen: int, start: int
+    prepare: Callable[..., int], visit: Callable[..., None], data: Any, rays: RayPacket, chosen: int, start: int
 ) -> None:
     """Call `visit(rays, at_leaf, data)` for the leaves that the `chosen` rays hit, the nearest first.
 
@@ -58,7 +58,7 @@ def traverse(
             unfinished = unfinished ^ is_last << ray
 
 
-def descend(rays: Rays, ray: int) -> int:
+def descend(rays: RayPacket, ray: int) -> int:
     """Push the children of the next node whose boxes a ray hits onto its stack; returns 1 if the stack has any."""
     node, top = rays.root + rays.integers[NEXT + ray], rays.integers[TOP + ray] + 1
     hit, near = boxes_on_ray(rays, node, ray)
@@ -70,7 +70,7 @@ def descend(rays: Rays, ray: int) -> int:
     return int(top >= ray * DEEPEST)
 
 
-def advance(rays: Rays, ray: int) -> tuple[int, int, int]:
+def advance(rays: RayPacket, ray: int) -> tuple[int, int, int]:
     """Pop the nearest child from the top level of a ray's stack, and make it the next to visit; a level in which
     nothing else is within reach is dropped.
 

@@ -35,7 +35,7 @@ from minirt.kernel.bvh_rays import (
     PENDING,
     STACK,
     TOP,
-    Rays,
+    RayPacket,
     ray_integers,
     ray_numbers,
     rays_in_box,
@@ -74,7 +74,7 @@ APART = 1.0  # square of the difference of directions from which on all rays of 
 
 
 def walk(
-    visit: Callable[..., None], step: Callable[..., None], touch: Callable[..., None], tree: Tree, rays: Rays
+    visit: Callable[..., None], step: Callable[..., None], touch: Callable[..., None], tree: Tree, rays: RayPacket
 ) -> None:
     """Intersect a packet with the shapes that its rays may hit, the nearest leaves first.
 
@@ -123,7 +123,7 @@ def are_few(rays: int, few: int) -> bool:
     return rays == 0
 
 
-def push_children(rays: Rays, node: int) -> None:
+def push_children(rays: RayPacket, node: int) -> None:
     """Push the children of a node whose boxes any ray of a packet hits onto the packet's stack."""
     numbers, integers = rays.numbers, rays.integers
     top, pushed = integers[TOP + PACKET] + 1, 0
@@ -150,7 +150,7 @@ def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Closes
     save_vec(direction, memory, DIRECTION)
     farthest = where(active, splat(inf, direction.x), -inf)
     save_vec(Vec(farthest, splat(-1.0, farthest), splat(0.0, farthest)), memory, HIT)
-    rays = Rays(tree.nodes, 0, tree.place, memory, numbers, integers, 0)
+    rays = RayPacket(tree.nodes, 0, tree.place, memory, numbers, integers, 0)
     walk(closest_in_block, closest_of_shape, closest_of_triangle, tree, rays)
     hit = load_vec(memory, HIT)
     return where(active, hit.x, inf), hit.y, hit.z, -1
@@ -164,7 +164,7 @@ def closest_of_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     save_vec(Vec(state[DISTANCE], state[OWNER], state[EXTENT]), memory, HIT)
 
 
-def closest_in_block(group: LeafGroup, block: int, rays: Rays, ray: int) -> None:
+def closest_in_block(group: LeafGroup, block: int, rays: RayPacket, ray: int) -> None:
     """Continue `closest_hit` of one ray over the shapes of a leaf, and store the result in `HIT`."""
     if group.trees is not None:
         visit_meshes(closest_of_triangle, group, block, rays, ray)
@@ -205,7 +205,7 @@ def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active
     save_vec(origin, memory, ORIGIN)
     save_vec(direction, memory, DIRECTION)
     save(where(active, distance, -inf), memory, HIT)
-    rays = Rays(tree.nodes, 0, tree.place, memory, numbers, integers, 0)
+    rays = RayPacket(tree.nodes, 0, tree.place, memory, numbers, integers, 0)
     walk(occlude_by_block, occlude_by_shape, occlude_by_triangle, tree, rays)
     return load(memory, HIT) > -inf
 
@@ -217,7 +217,7 @@ def occlude_by_shape(shape: Any, index: int, extent: float, rays: Mask, memory: 
     save(where(rays & occluded, -inf, distance), memory, HIT)
 
 
-def occlude_by_block(group: LeafGroup, block: int, rays: Rays, ray: int) -> None:
+def occlude_by_block(group: LeafGroup, block: int, rays: RayPacket, ray: int) -> None:
     """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a leaf occludes it."""
     if group.trees is not None:
         visit_meshes(occlude_by_triangle, group, block, rays, ray)

@@ -18,7 +18,7 @@ from minirt.kernel.bvh_rays import (
     SIGN,
     SLACK,
     SLOPE,
-    Rays,
+    RayPacket,
     ray_integers,
     ray_numbers,
     save_single,
@@ -39,12 +39,12 @@ def triangles_along(touch: Callable[..., None], group: Group, row: int, memory: 
     """
     trees, mesh = group.trees, group.trees.numbers[row]
     numbers, integers = ray_numbers(), ray_integers()
-    rays = Rays(trees.nodes, trees.starts[mesh, 0], trees.places[mesh], memory, numbers, integers, 1)
+    rays = RayPacket(trees.nodes, trees.starts[mesh, 0], trees.places[mesh], memory, numbers, integers, 1)
     shear_rays(rays)
     traverse(find_triangles, visit_triangles, (touch, group, row), rays, chosen, 0)
 
 
-def shear_rays(rays: Rays) -> None:
+def shear_rays(rays: RayPacket) -> None:
     """Prepare rays for the test of boxes and of triangles.
 
     The axis along which a ray advances most comes first; along the others, coordinates are those seen along the ray.
@@ -66,7 +66,7 @@ def shear_rays(rays: Rays) -> None:
     save(in_single(sign), rays.numbers, SIGN)
 
 
-def find_triangles(rays: Rays, at_leaf: int, data: tuple[Callable[..., None], Group, int]) -> int:
+def find_triangles(rays: RayPacket, at_leaf: int, data: tuple[Callable[..., None], Group, int]) -> int:
     """Find the triangles that rays may hit in the leaves that they are at; returns the rays for which there are any,
     one bit for each."""
     _, group, row = data
@@ -78,7 +78,7 @@ def find_triangles(rays: Rays, at_leaf: int, data: tuple[Callable[..., None], Gr
     return found
 
 
-def visit_triangles(rays: Rays, found: int, data: tuple[Callable[..., None], Group, int]) -> None:
+def visit_triangles(rays: RayPacket, found: int, data: tuple[Callable[..., None], Group, int]) -> None:
     """Visit the triangles that `find_triangles` found."""
     touch, group, row = data
     while found != 0:
@@ -93,7 +93,7 @@ def visit_triangles(rays: Rays, found: int, data: tuple[Callable[..., None], Gro
         set_limit(rays, ray)
 
 
-def find_candidates(rays: Rays, group: Group, row: int, ray: int) -> int:
+def find_candidates(rays: RayPacket, group: Group, row: int, ray: int) -> int:
     """Find the triangles of the next leaf that a ray may hit, and prefetch the first; returns 1 if there are any."""
     leaf = (rays.root - rays.integers[NEXT + ray]) * NODE
     candidates = bits(triangles_on_ray(rays.nodes, leaf, rays.numbers, ray))

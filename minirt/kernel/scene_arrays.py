@@ -239,6 +239,11 @@ def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
     return formula(shape, origin, direction, None)
 
 
+def is_convex(shape: Any) -> bool:
+    """Whether the kind of a packed shape is convex; the compiler knows the answer."""
+    return kind_of_packed(type(shape)).element.convex
+
+
 def occludes(shape: Any, origin: Vec, direction: Vec, limit: Number) -> Mask:
     """Whether shadow rays, which start clear of all surfaces, hit a packed shape nearer than `limit`."""
     hit, t = formula(shape, origin, direction, limit)

@@ -21,13 +21,14 @@ from minirt.kernel.scene_arrays import (
     Group,
     SceneArrays,
     has_rows,
+    is_convex,
     may_meet,
     occludes,
     range_in_cell,
     read_row,
     vector,
 )
-from minirt.kernel.trace import for_each_kind
+from minirt.kernel.trace import ClosestHit, for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, floor, minimum, rarely, splat, unit, where, width
 
 CIRCLE = 1.1 * 2.0**0.5  # in half edges of a cell: with 16 of them or more on an edge it takes in all corners
@@ -86,6 +87,17 @@ class ShadowRays(NamedTuple):
     direction: Vec
     distance: Number  # of the end
     own: Number  # the index of the shape that a ray starts on and leads away from, which cannot occlude it; or -1
+    left: int  # the index of a shape that all rays start on and lead away from, on its outside; or -1
+
+
+def shape_left(found: ClosestHit, side: Number, hit: Mask) -> int:
+    """Return the index of the shape that all rays `hit` from outside, or -1.
+
+    If it is convex, rays that leave it never meet it again. Packets on its lit side, whose light-buffer cells list it,
+    need no test: that is half of the tests of shadow rays on fifty.rt, and a tenth of the frame.
+    """
+    _, owner, _, index = found
+    return -1 if rarely(hit & ((owner != index) | (side < 0.0))) else index
 
 
 def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, glass: bool) -> Mask:
@@ -131,7 +143,8 @@ def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mas
             break
         # Minus the cosine of the angle from the axis, as rays lead to the light.
         towards, cosine = dot(vector(cone, AXIS), rays.towards), cone[COSINE]
-        if may_count(scene, index, glass) and (cosine <= -1.0 or rarely(in_cell & (towards <= -cosine))):
+        counted = may_count(scene, index, glass) and not (index == rays.left and is_convex(read_row(group, row)))
+        if counted and (cosine <= -1.0 or rarely(in_cell & (towards <= -cosine))):
             if group.trees is None:
                 visible = unoccluded_by_shape(group, row, index, in_cell, visible, arguments)
             else:

@@ -24,7 +24,7 @@ from minirt.shapes.shape import Ball, Capped, Hit, Position, point_along
 class Cylinder(Capped):
     """A line `cy` of a scene file."""
 
-    code, title, plural, revolved = "cy", "cylinder", "cylinders", True
+    code, title, plural, revolved, convex = "cy", "cylinder", "cylinders", True, True
     centre: Triple = declare(Point, "centre, half-way up")
     axis: Triple = declare(Direction, "axis")
     diameter: float = declare(Length, "diameter")

@@ -68,6 +68,7 @@ class Shape(Attributes):
     columnar: ClassVar[bool] = False  # whether `pack`, `balls` and `bounds` take fields that are columns of many shapes
     infinite: ClassVar[bool] = False  # whether the shapes of this kind have no bounding box, as planes
     solid: ClassVar[bool] = True  # whether it has an inside, that of a plane being below it
+    convex: ClassVar[bool] = False  # whether a ray that leaves it never meets it again, by more than rounding
     parts: ClassVar[int] = 1  # primitives in the kernel; a mesh has more
     smooth: ClassVar[bool] = False  # whether its flat parts are shaded as if they were curved; a mesh may be
     if TYPE_CHECKING:  # its kinds declare it as a field

@@ -27,7 +27,7 @@ ROUNDING = 16  # unit roundoffs by which |f|^2 / radius^2 - 1 may be off, and mo
 class Sphere(Turnable):
     """A line `sp` of a scene file."""
 
-    code, title, plural, revolved, columnar = "sp", "sphere", "spheres", True, True
+    code, title, plural, revolved, columnar, convex = "sp", "sphere", "spheres", True, True, True
     centre: Triple = declare(Point, "centre")
     diameter: float = declare(Length, "diameter")
     colour: Triple = declare(Colour, "colour")

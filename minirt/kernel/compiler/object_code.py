@@ -48,6 +48,7 @@ def by_kind(function: Any, choose: Callable[[Any], Any]) -> None:
 
 for _name in ("surface", "shading", "smooth_point", "may_meet", "mapping"):
     by_kind(getattr(scene_arrays, _name), attrgetter(_name))
+by_kind(scene_arrays.is_convex, lambda kind: (lambda shape: True) if kind.element.convex else (lambda shape: False))
 by_kind(scene_arrays.formula, lambda kind: kind.intersect)
 
 for _package in (lanes, shapes, kernel, shading):

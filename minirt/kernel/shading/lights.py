@@ -200,13 +200,14 @@ def sampled_position(
 
 
 def aim(
-    scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number, owner: Number, normal: Vec
+    scene: SceneArrays, memory: Any, light: int, point: Vec, rounding: Number, owner: Number, normal: Vec, left: int
 ) -> tuple[ShadowRays, Number]:
     """Return the shadow rays from some points to a light source, and the strength of the light there without shadows.
 
     The strength is a share of the light's intensity: 1 but for spot lights and for lights that fade. The points lie on
     the shapes `owner`, whose `normal` is towards the ray that hit them, and are known up to `rounding`. Rays end a
-    little before the light source: no surface on which it lies occludes it. `memory` is that of `sampled_position`.
+    little before the light source: no surface on which it lies occludes it. `memory` is that of `sampled_position`,
+    `left` that of `ShadowRays`.
     """
     position = vector(scene.lights[light], 0)
     to_centre, distance, strength = incident_light(scene.spots, light, position, point)
@@ -215,7 +216,7 @@ def aim(
         position, to_light, distance = sampled_position(scene.soft, memory, light, position, to_centre, distance)
     distance = distance - 4.0 * (rounding + ROUNDING * unit_roundoff(distance) * max_norm(position))
     own = where(dot(normal, to_light) > 0.0, owner, -1.0)
-    return ShadowRays(light, position, to_centre, point, to_light, distance, own), strength
+    return ShadowRays(light, position, to_centre, point, to_light, distance, own, left), strength
 
 
 def is_spread(scene: SceneArrays, light: int) -> bool:

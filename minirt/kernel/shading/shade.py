@@ -31,7 +31,7 @@ from minirt.kernel.shading.surfaces import (
     surface_of,
     tint,
 )
-from minirt.kernel.shadow_rays import ShadowRays, unoccluded
+from minirt.kernel.shadow_rays import ShadowRays, shape_left, unoccluded
 from minirt.kernel.trace import EXTENT, OWNER, ClosestHit, clearance, of_shape
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
@@ -58,12 +58,13 @@ def direct_light(
     first_source, end, brightness = remembered_part(scene, memory)
     if scene.light_grid is not None and has_rows(scene.light_grid.grids):
         first_source, end = sources_in_reach(scene.light_grid, surface.point, rounding, hit)
+    left = -1 if has_bumps(scene) else shape_left(found, surface.side, hit)
     for number in range(first_source, end):
         source = number
         if scene.light_grid is not None and has_rows(scene.light_grid.grids):
             source = int(scene.light_grid.sources[number])
         intensity = brightness * vector(scene.lights[source], 3)
-        rays, strength = aim(scene, memory, source, start, rounding, owner, normal)
+        rays, strength = aim(scene, memory, source, start, rounding, owner, normal, left)
         to_light = rays.direction
         if (scene.surface_maps is not None or scene.patterns is not None) and has_bumps(scene):
             strength = strength * bump_fading(surface.base_normal, shading_normal, to_light)
@@ -75,7 +76,7 @@ def direct_light(
                 if rarely(turned_away):
                     smooth = smooth_points(scene, owner, surface.point, normal, turned_away)
                     smooth_start = where(turned_away, smooth + rounding * normal, start)
-                    rays, _ = aim(scene, memory, source, smooth_start, rounding, owner, normal)
+                    rays, _ = aim(scene, memory, source, smooth_start, rounding, owner, normal, left)
             shine, light = zero, intensity
             if scene.transparent is None:  # else `shares_of_light` traces the rays
                 lit = trace_shadow_rays(scene, memory, rays, lit, False)

@@ -29,7 +29,7 @@ from minirt.kernel.bvh_nodes import (
     Tree,
     packet_memory,
 )
-from minirt.kernel.bvh_rays import Rays
+from minirt.kernel.bvh_rays import RayPacket
 from minirt.kernel.bvh_single_rays import traverse
 from minirt.lanes import Vec, save, save_vec
 from minirt.rendering.packing import bvh
@@ -263,13 +263,13 @@ def test_leaves_and_nodes_are_nearly_full() -> None:
     assert 0.6 * WIDE * node_count(scene) < len(scene.groups[0].labels)
 
 
-def packet_of(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> Rays:
+def packet_of(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> RayPacket:
     """Return a packet of rays that have hit something at a distance."""
     memory = packet_memory()
     for at, v in ((ORIGIN, origin), (DIRECTION, direction)):
         save_vec(Vec(*(np.full(WIDTH, x) for x in v)), memory, at)
     save(np.full(WIDTH, limit), memory, HIT)
-    rays = Rays(scene.nodes, 0, scene.place, memory, bvh_rays.ray_numbers(), bvh_rays.ray_integers(), 0)
+    rays = RayPacket(scene.nodes, 0, scene.place, memory, bvh_rays.ray_numbers(), bvh_rays.ray_integers(), 0)
     bvh_rays.store_rays(rays)
     return rays
 
@@ -300,7 +300,7 @@ def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
     packet = packet_of(scene, (origins, 0.1, 0.1), (1.0, 0.0, 0.0))
     visits = np.zeros(WIDTH, int)
 
-    def hit(group: Any, block: int, rays: Rays, ray: int) -> None:
+    def hit(group: Any, block: int, rays: RayPacket, ray: int) -> None:
         visits[ray] += 1
         rays.memory[HIT + ray] = distance
         bvh_rays.set_limit(rays, ray)
