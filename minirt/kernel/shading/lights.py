@@ -205,9 +205,8 @@ def aim(
     """Return the shadow rays from some points to a light source, and the strength of the light there without shadows.
 
     The strength is a share of the light's intensity: 1 but for spot lights and for lights that fade. The points lie on
-    the shapes `owner`, whose `normal` is towards the ray that hit them, and are known up to `rounding`. Rays end a
-    little before the light source: no surface on which it lies occludes it. `memory` is that of `sampled_position`,
-    `left` that of `ShadowRays`.
+    shapes, `owner`, whose `normal` is towards the ray that hit them, and are known up to `rounding`. Rays end a little
+    before the light source, so no surface on which it lies counts. See `sampled_position` and `ShadowRays`.
     """
     position = vector(scene.lights[light], 0)
     to_centre, distance, strength = incident_light(scene.spots, light, position, point)
