@@ -22,7 +22,7 @@ def dots(cells: Cells, path: Path, label: str) -> None:
     """Draw a dot plot: a row for each system, a dot for each scene that it renders, on a logarithmic axis."""
     rcParams.update(STYLE)
     systems, scenes = names(cells)
-    canvas, panel = pyplot.subplots(figsize=(9, 1.3 + 0.55 * len(systems)))
+    canvas, panel = pyplot.subplots(figsize=(9, 1.3 + 0.8 * len(systems)))
     for scene, colour, mark in zip(scenes, cycle(COLOURS), cycle(MARKS)):
         rows = [row for row, system in enumerate(systems) if (system, scene) in cells]
         values = [median(cells[systems[row], scene]) for row in rows]
@@ -38,7 +38,7 @@ def dots(cells: Cells, path: Path, label: str) -> None:
     panel.set(xscale="log", xlabel=label)
     panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     panel.tick_params(length=0)
-    panel.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=len(scenes))
+    panel.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 1.1), ncols=len(scenes))
     save(canvas, path, panel.xaxis)
 
 
