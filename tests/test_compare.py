@@ -125,8 +125,10 @@ def bent(scene: Scene, power: float) -> Bytes:
 
 WRONG = [
     (7, from_behind, 0.3),
+    (0, from_behind, 0.3),
     (1, from_behind, 1.0),
     (7, bent, 1.1),
+    (0, bent, 0.93),
     (2, bent, 0.93),
 ]
 

@@ -11,7 +11,7 @@ from minirt.kernel.beam_traversal import fold_over_mesh
 from minirt.kernel.bvh_nodes import DIRECTION, FACTOR, HIT, NODE, ORIGIN, WIDE, LeafGroup, Tree, vec_at
 from minirt.kernel.bvh_rays import NEXT, RayPacket, boxes_on_ray, rays_in_box, search_limit, set_limit, set_limits
 from minirt.kernel.mesh_rays import triangles_along
-from minirt.kernel.scene_arrays import has_rows, read, read_one, read_row
+from minirt.kernel.scene_arrays import ROW, has_rows, read, read_one, read_row
 from minirt.kernel.trace import for_each_kind, triangle_extent
 from minirt.lanes import Mask, Number, any, bits, first, load, load_vec, lowest, max_norm, splat
 
@@ -25,7 +25,8 @@ def visit_unbounded(group: LeafGroup, state: int, arguments: tuple[Callable[...,
         step, tree, memory = arguments
         for i in range(group.unbounded.shape[0]):
             index = group.unbounded[i]
-            shape, active = read(group.rows, tree.slots[index, 1]), load(memory, HIT) > -inf
+            row = tree.slots[index, ROW]
+            shape, active = read(group.rows, row), load(memory, HIT) > -inf
             step(shape, index, tree.extents[index], active, memory)
     return state
 

@@ -56,8 +56,10 @@ TINY = 2.0**-60  # replaces 0 in a direction, so that no ray is parallel to the 
 
 PACKET = WIDTH  # the number of the packet as a whole among the rays
 AHEAD = 9 * WIDTH  # offset in the memory of a packet: how far rays go to depth 0 in the scene's tree; then, in a mesh's
-# Numbers of rays, by rows with those of all; AT, SLOPE, AXES, ROUNDED and SIGN are those of `minirt.kernel.mesh_rays`.
-# Then their stacks: for each ray, and each level of the tree, the depths of children, and references to these.
+# Numbers of rays, by rows with those of all. For boxes: the point of depth 0, moved forward and back and divided by the
+# direction; one over the direction; the depths from which and up to which a ray is followed, both widened by its slack.
+# For triangles, see `minirt.kernel.mesh_rays.shear_rays`: AT, SLOPE, AXES, ROUNDED and SIGN. Then the stacks: for each
+# ray, and each level of the tree, the depths of children, and references to these.
 ENTER, LEAVE, INVERSE, AT, SLOPE, AXES = (3 * WIDTH * i for i in range(6))
 BEGIN, SLACK, ROUNDED, SIGN, LIMIT = (18 * WIDTH + WIDTH * i for i in range(5))
 STACK, LEVEL = 24 * WIDTH, 2 * WIDE
@@ -77,8 +79,8 @@ class RayPacket(NamedTuple):
     root: int  # the number of its first node
     place: Any  # its space
     memory: Any  # the rays in the scene, and their hits
-    numbers: Any
-    integers: Any
+    numbers: Any  # float32, by offsets as `ENTER`
+    integers: Any  # by offsets as `NEXT`
     is_mesh: int  # 1 if the tree is that of a mesh, whose leaves rays read and prefetch; or 0
 
 

@@ -79,8 +79,8 @@ def walk(
     """Intersect a packet with the shapes that its rays may hit, the nearest leaves first.
 
     `step(shape, index, extent, hits, memory)` may lessen the distances in `HIT`; where they are -infinity rays hit
-    nothing. `visit(group, block, leaf, rays, ray)` does the same for single rays, and `touch` for one of them and a
-    triangle of a mesh.
+    nothing. `visit(group, block, rays, ray)` does the same for a single ray and a leaf, and
+    `touch(group, row, index, memory, ray)` for a single ray and a triangle of a mesh.
 
     All rays traverse the tree together. Where few of them hit a box, each of these goes on by itself, see `traverse`;
     so does each ray of a packet whose directions differ much, unless the tree is small.

@@ -91,10 +91,11 @@ class ShadowRays(NamedTuple):
 
 
 def shape_left(found: ClosestHit, side: Number, hit: Mask) -> int:
-    """Return the index of the shape that all rays `hit` from outside, or -1.
+    """Return the index of the one shape that all rays of the mask `hit` have met from its outside, or -1.
 
-    If it is convex, rays that leave it never meet it again. Packets on its lit side, whose light-buffer cells list it,
-    need no test: that is half of the tests of shadow rays on fifty.rt, and a tenth of the frame.
+    If it is convex, shadow rays, which start clear of it and on the side of its normal, never meet it again. Packets on
+    its lit side, whose light-buffer cells list it, need no test: that is half of the tests of shadow rays on fifty.rt,
+    and a tenth of the frame.
     """
     _, owner, _, index = found
     return -1 if rarely(hit & ((owner != index) | (side < 0.0))) else index

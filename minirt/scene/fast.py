@@ -43,10 +43,9 @@ def forms() -> tuple[list[type[Element]], np.ndarray]:
         fields = positional_fields(kind)
         if not kind.once and kind is not FurtherCamera and all(field.number for field in fields):
             parts = [(field.number is int, part > 0) for field in fields for part in range(field.width)]
-            bits = [
-                NUMBER | (WHOLE if is_whole else 0) | (BEHIND_COMMA if is_behind else 0)
-                for is_whole, is_behind in parts
-            ]
+            wholes = [WHOLE if is_whole else 0 for is_whole, _ in parts]
+            commas = [BEHIND_COMMA if is_behind else 0 for _, is_behind in parts]
+            bits = [NUMBER | whole | comma for whole, comma in zip(wholes, commas, strict=True)]
             table[len(kinds), : NAME + len(bits)] = [*name.encode().ljust(NAME, b"\0"), *bits]
             kinds.append(kind)
     return kinds, table[: len(kinds)]

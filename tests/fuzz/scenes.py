@@ -207,4 +207,4 @@ def check_extreme(data: bytes) -> str:
     return options[0]
 
 
-EXTREMES = Fuzzer(make_extreme, check_extreme, 200)
+EXTREMES = Fuzzer(make_extreme, check_extreme, 400)

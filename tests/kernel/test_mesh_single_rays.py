@@ -98,6 +98,6 @@ def test_rays_of_any_origin_hit_the_closest_triangle(regime: tuple[float, float]
     distance, primitive = nearest_hits(arrays, Vec(*origins.T), Vec(*directions.T))
     found = minirt.trace(Scene([Camera((0, 0, -9), (0, 0, 1), 60), *shapes]), origins, directions)
     hit = primitive >= 0
-    assert hit.mean() > 0.1  # all, with some seeds
+    assert hit.mean() > 0.2  # all, with some seeds
     assert np.array_equal(found.owner, np.where(hit, arrays.owner[primitive], -1))
     assert np.allclose(found.distance[hit], distance[hit], rtol=1e-9, atol=0)
