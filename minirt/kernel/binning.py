@@ -110,9 +110,10 @@ def rectangles_of(seen: BinningArrays, shape: int) -> tuple[int, int]:
 
 
 def take_out(seen: BinningArrays, shape: int, starts: Any, members: Any) -> None:
-    """Take a shape out of the lists of the cells that its rectangles cover.
+    """Take a shape out of the lists of the cells that its rectangles cover, each of which has it.
 
-    Cells are visited in ascending order, so that each member behind the first one that is taken out moves once.
+    `starts` and `members` are overwritten. Cells are visited in ascending order, so that each member behind the first
+    one that is taken out moves once.
     """
     first, end = rectangles_of(seen, shape)
     # `gone` members were taken out so far, the last one from the cell `before`; `behind` is the place behind that one.
@@ -121,7 +122,7 @@ def take_out(seen: BinningArrays, shape: int, starts: Any, members: Any) -> None
         _, corner, columns, rows = rectangle_at(seen, at)
         for i in range(columns * rows):
             cell = corner + i // columns * seen.grid.across + i % columns
-            place = int(starts[cell])
+            place = int(starts[cell])  # which no shift has moved so far
             while members[place] != shape:
                 place += 1
             shift(starts, members, before, cell, behind, place, -gone)
@@ -132,7 +133,8 @@ def take_out(seen: BinningArrays, shape: int, starts: Any, members: Any) -> None
 def put_in(seen: BinningArrays, shape: int, more: int, starts: Any, members: Any) -> None:
     """Put a shape into the lists of the `more` cells that its rectangles cover: by distance, then by number.
 
-    Cells are visited in descending order, so that each member moves once. `members` has room for `more` further ones.
+    `starts` and `members` are overwritten; `members` has room for `more` further ones. Cells are visited in descending
+    order, so that each member moves once.
     """
     first, end = rectangles_of(seen, shape)
     last = starts.shape[0] - 1
@@ -156,7 +158,8 @@ def is_behind(seen: BinningArrays, shape: int, other: int) -> bool:
 
 
 def shift(starts: Any, members: Any, before: int, last: int, first: int, stop: int, by: int) -> None:
-    """Move the members from `first` up to `stop`, and the starts of the cells behind `before` up to `last`."""
+    """Move the members from `first` to before `stop` by some places, and add as many to the starts of the cells behind
+    `before` up to and with `last`."""
     if by != 0:
         for cell in range(before + 1, last + 1):
             starts[cell] += by

@@ -77,12 +77,13 @@ def advance(rays: RayPacket, ray: int) -> tuple[int, int, int]:
     Returns three flags, 1 or 0: whether the child is a node to visit, whether it is a leaf to visit, and whether the
     stack is now empty.
     """
-    top = rays.integers[TOP + ray]
+    top = rays.integers[TOP + ray]  # the number of a level: each ray has DEEPEST of them, from `ray * DEEPEST` on
     pending, depths = rays.integers[PENDING + top], load_half(rays.numbers, STACK + top * LEVEL)
     depths = where(mask_of(pending), depths, inf)
     within = bits(depths <= rays.numbers[LIMIT + ray])
-    child = first(depths == least_lane(depths))
+    child = first(depths == least_lane(depths))  # any one where nothing is within reach: no flag says to visit it
     reference = int(rays.numbers[STACK + top * LEVEL + WIDE + child])
+    # A leaf of a mesh lies among the nodes, at its negated reference; in place of others the root is fetched.
     prefetch_node(rays.nodes, rays.root + max(reference, -reference * rays.is_mesh), rays.is_mesh)
     rays.integers[PENDING + top] = pending ^ 1 << child
     rays.integers[NEXT + ray] = reference

@@ -49,17 +49,18 @@ def projected_rectangle(
     slant_x = sqrt(1.0 + half_x * half_x)
     slant_y = sqrt(1.0 + half_y * half_y)
     frames = grid.frames
-    # Whether all spheres so far lie wholly behind the point, or beyond one edge of the grid; and whether one of them
-    # reaches the plane z = 0.
+    # Whether all spheres so far lie wholly behind the point, or beyond one edge of the grid, so that the hull of all is
+    # not seen; and whether one of them reaches the plane z = 0.
     behind = left = right = above = below = True
     beside = False
     low_x, high_x, low_y, high_y = inf, -inf, inf, -inf
     for i in range(start, end):
+        is_last = i + 1 == end
         px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
         radius = spheres[i, 3] + slack
         z = frames[face, 2, 0] * px + frames[face, 2, 1] * py + frames[face, 2, 2] * pz
         behind &= z <= -radius
-        if behind and i + 1 == end:
+        if is_last and behind:
             return 0, 0, 0, 0
         x = frames[face, 0, 0] * px + frames[face, 0, 1] * py + frames[face, 0, 2] * pz
         y = frames[face, 1, 0] * px + frames[face, 1, 1] * py + frames[face, 1, 2] * pz
@@ -68,14 +69,15 @@ def projected_rectangle(
         above &= y + half_y * z < -slant_y * radius
         below &= y - half_y * z > slant_y * radius
         beside |= z <= radius
-        if i + 1 == end and (left | right | above | below):
+        if is_last and (left | right | above | below):
             return 0, 0, 0, 0
         low, high = tangent_slopes(x, z, radius)
         low_x, high_x = min(low_x, low), max(high_x, high)
         low, high = tangent_slopes(y, z, radius)
         low_y, high_y = min(low_y, low), max(high_y, high)
-    if beside and end - start > 1:  # parts of the hull may project beyond all spheres
+    if beside and end - start > 1:  # parts of the hull between spheres may project beyond all of them
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
+    # The edges above are those of the whole grid. Cells are counted from the first ones of a part of it.
     middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
     margin_x, margin_y = margin_around(grid, low_x, high_x), margin_around(grid, low_y, high_y)
     column, columns = cell_interval(low_x, high_x, grid.scale_x, middle_x, margin_x, grid.across)

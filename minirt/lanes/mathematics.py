@@ -20,7 +20,7 @@ def arctan2(y: Number, x: Number) -> Number:
     a, b = fabs(y), fabs(x)
     steep = a > b
     smaller, larger = where(steep, b, a), where(steep, a, b)
-    ratio = smaller / larger
+    ratio = smaller / larger  # NaN for two zeros or infinities, which meet at the angle of 0 and of 1
     ratio = where(smaller == larger, where(larger == 0.0, 0.0, splat(1.0, ratio)), ratio)
     angle = arctan(ratio)
     angle = where(steep, 0.5 * pi - angle, angle)

@@ -117,18 +117,24 @@ def read_value(lines: Lines, start: int, at: int) -> int:
 
 
 def read_corner(lines: Lines, at: int) -> int:
-    """Read a corner of a face, from byte `at` on, into `lines.corners`; return the place behind it, `at` where it is
-    wrong. A point that is counted back beyond the first one is wrong, a vt or vn is `NOWHERE`."""
-    text, counts, corner, part, end = lines.text, lines.counts, lines.corners, 0, at - 1
-    row = counts[CORNERS]
-    corner[row, 0], corner[row, 1], corner[row, 2] = ABSENT, ABSENT, ABSENT
+    """Read a corner of a face, from byte `at` on, into the next row of `lines.corners`, also if it is wrong; return the
+    place behind it, `at` where it is wrong.
+
+    Its numbers count points, uvs or normals from 1 on, or back from the last one, -1. One that is counted back beyond
+    the first is wrong for a point, and `NOWHERE` for a uv or normal. 0 is wrong for a point, and `ABSENT` for others.
+    """
+    text, counts, row, part, end = lines.text, lines.counts, lines.corners[lines.counts[CORNERS]], 0, at
+    row[0], row[1], row[2] = ABSENT, ABSENT, ABSENT
     counts[CORNERS] += 1
     while part < 3 and (part == 0 or text[end] == SLASH):
-        named, after = read_whole(text, end + 1)
-        if after - end > LONGEST + 1 or abs(named) == LARGEST:
+        start = end if part == 0 else end + 1  # behind the slash
+        number, end = read_whole(text, start)
+        if end - start > LONGEST or abs(number) == LARGEST:
             return at
-        if after > end + 1:
-            index = named - 1 if named >= 0 else counts[part] + named
-            corner[row, part] = index if named >= 0 or index >= 0 else NOWHERE
-        end, part = after, part + 1
-    return end if corner[row, 0] >= 0 else at
+        if end > start and number >= 0:
+            row[part] = number - 1  # ABSENT for 0
+        elif end > start:
+            index = counts[part] + number
+            row[part] = index if index >= 0 else NOWHERE
+        part += 1
+    return end if row[0] >= 0 else at

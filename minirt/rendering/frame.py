@@ -114,12 +114,16 @@ def frame_arguments(
 
     The kernel writes `pixels`, (h, w, 4) uint8, and `linear`, (h, w, 3), which has no rows where nobody wants light.
     `counter` (1,) counts the rows that threads have taken. `rays` are those of `frame_rays`, and `memory` is that of
-    `thread_memory`. What is None is made anew.
+    `thread_memory`; what of these is None is made anew. `crop` chooses the samples of apertures: the camera of `arrays`
+    is that of the crop already.
     """
-    rays, plan = frame_rays(arrays, samples) if rays is None else rays, ALL_PACKETS
+    plan = ALL_PACKETS
+    if rays is None:
+        rays = frame_rays(arrays, samples)
     if samples > 1 and camera.has_apertures(arrays):
         whole = Crop(pixels.shape[1], pixels.shape[0])
-        plan = plan_of_variants(pixels.shape, width(rays), samples, len(rays) // samples, crop or whole)
+        variants = len(rays) // samples
+        plan = plan_of_variants(pixels.shape, width(rays), samples, variants, crop or whole)
     return Frame(
         np.zeros(1, np.int64) if counter is None else counter,
         pixels.view(np.uint32)[..., 0],  # numbers 0xAARRGGBB

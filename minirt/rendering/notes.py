@@ -25,9 +25,10 @@ NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for thes
 
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
-    """Describe how the shapes of a scene were packed: tiles, light buffers, and what has no effect."""
+    """Describe how the shapes of a scene, of which it must have one, were packed: tiles, light buffers, and what has no
+    effect."""
     shapes = counted(len(shape_arrays.listed), "shape")
-    sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)  # shapes of all groups in each tile
+    sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)  # shapes of all groups in each tile, (tiles,)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if arrays.light_buffer_cells == 1:
         yield f"light buffer: none, every shape is tried ({shapes})"
@@ -49,8 +50,8 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
 def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool, samples: object = None) -> Iterator[str]:
     """Describe the kernel that drew a scene: which one it is, and which kinds of shapes and features it leaves out.
 
-    `generic` is None for the specialised kernel, `compiling` tells whether that is being made; `samples` are those of
-    `features`.
+    `generic` is the generic kernel that drew it, None if the specialised one did. `compiling`: whether the specialised
+    one is being compiled meanwhile. `samples` are those of `features`.
     """
     used = {type(shape) for shape in scene.shapes}
     if generic:
@@ -62,7 +63,8 @@ def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool, s
     if unused := {kind.element for kind in ALL_KINDS} - used:
         yield f"kernel without {plurals(unused)}"
     used_features = features(scene, samples)
-    yield f"kernel without {', '.join(words for feature, words in WORDS.items() if feature not in used_features)}"
+    if unused_features := [words for feature, words in WORDS.items() if feature not in used_features]:
+        yield f"kernel without {', '.join(unused_features)}"
 
 
 def plurals(elements: set[type[Shape]]) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from minirt.fields import Triple, clamp, cos_and_sin, neat, upright
-from minirt.scene.elements import linear_combination
+from minirt.scene.elements import linear_combination, multiple
 
 # Sorts of changes, as notices tell them.
 LEFT_OUT = "words that cannot be read here are left out"
@@ -167,13 +167,13 @@ Meanings = dict[str, Callable[[Any, Triple], dict[str, Any]]]
 CONES: Meanings = {
     "base": lambda cone, _: {
         "apex": linear_combination(1.0, cone.apex, cone.height, cone.axis),
-        "axis": linear_combination(-1.0, cone.axis, 0.0, cone.axis),
+        "axis": multiple(-1.0, cone.axis),
     },
     "angle": lambda cone, _: {"diameter": 2 * cone.height * tan(radians(cone.diameter))},
 }
 CAMERAS: Meanings = {
     "angles": lambda _, written: {"direction": turned(written)},
-    "reversed": lambda camera, _: {"direction": linear_combination(-1.0, camera.direction, 0.0, camera.direction)},
+    "reversed": lambda camera, _: {"direction": multiple(-1.0, camera.direction)},
     "z-up": lambda camera, _: {"roll": round(degrees(atan2(*(z + 0.0 for _, _, z in upright(*camera.direction)))), 9)},
 }
 OPTIONS = {"base": "--cone base", "angle": "--cone angle", "angles": "--camera-as angles"}

@@ -222,6 +222,11 @@ LAMPS = (Light, FurtherLight, ParallelLight, SpotLight)
 PUBLIC = {kind.__name__: kind for kind in (Resolution, Ambient, Camera, FurtherCamera, Background, Lamp, *LAMPS)}
 
 
+def multiple(a: float, u: Triple) -> Triple:
+    """Return a u, without negative zeros."""
+    return a * u[0] + 0.0, a * u[1] + 0.0, a * u[2] + 0.0
+
+
 def linear_combination(a: float, u: Triple, b: float, v: Triple) -> Triple:
     """Return a u + b v."""
     return a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]

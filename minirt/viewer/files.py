@@ -76,7 +76,7 @@ def contents_differ(scene: Scene, saved: Scene) -> bool:
         sides = [(scene.items, saved.items)]
     return any(
         len(one) != len(other)
-        or any(a is not b and not is_same(a, b) and not looks(a, b) for a, b in zip(one, other, strict=True))
+        or any(a is not b and not is_same(a, b) and not differs_by_view(a, b) for a, b in zip(one, other, strict=True))
         for one, other in sides
     )
 
@@ -88,8 +88,8 @@ def is_same(one: Item, other: Item) -> bool:
     return one == other and one.source == other.source
 
 
-def looks(one: Item, other: Item) -> bool:
-    """Whether two entries of a scene are cameras that were given the same values, and may look elsewhere.
+def differs_by_view(one: Item, other: Item) -> bool:
+    """Whether two entries of a scene are cameras that were given the same values: they differ by where they look alone.
 
     Fields that nobody gave a value, such as a tone that an option chose, are not compared.
     """

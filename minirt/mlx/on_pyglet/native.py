@@ -59,6 +59,7 @@ class NativeWindow(Window):
             )  # fmt: skip
             x11.fix_drag_enter(self.pyglet)
             x11.report_key_events(self.pyglet, self._on_key_event)
+            # Methods here that are named like an event of pyglet's handle it; other events are named below.
             # `partial`: pyglet makes weak references to methods. A window is an int, to which there can be none.
             names = set(dir(self)).intersection(PygletWindow.event_types)
             self.pyglet.push_handlers(

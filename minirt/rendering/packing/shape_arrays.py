@@ -29,21 +29,33 @@ CROWD = 50_000  # shapes, beyond which lists number them in the order of Morton'
 
 
 class ShapeArrays:
-    """The n primitives of the last shapes that it was given: a mesh has one for each triangle, other shapes have one.
+    """The s shapes that it was given last, and their n primitives: a mesh has one for each triangle, others have one.
 
-    `places` (s,) are the numbers of all s shapes in lists for culling; `written` (s,) has for each one, in that order,
-    the number of the last of all `updates` that wrote it. `owner` (n,) is the index in `shapes` of each primitive's
-    shape, and `first_primitive` the first primitive of each shape. Each kind of shape has a group, numbered by
-    `group_numbers`. `tables` are the rows, `slots`, `listed` and `colours_and_extents` those of
-    `minirt.kernel.scene_arrays`; triangles of meshes have no extent there. `boxes`, (s, 2, 3), are the least and the
-    greatest corner of a box around each of s shapes; of an infinite shape, those of its defining points. Number i is in
-    the hull of `balls[first_ball[i]:first_ball[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it.
-    Or it is one of the `planes`, (p, 5) unit normal, its product with the points of the plane, and the rounding error
-    of that, whose primitives are `plane_indices` and whose numbers are `plane_places`.
+    Arrays "by shape" go by the index in `shapes`. Arrays "by place" go by the numbers of shapes in lists for culling,
+    which are ordered by where shapes are if there are many. Each kind of shape has a group.
     """
 
-    runs: tuple[Sequence[Shape], ...]
-    updates: int
+    runs: tuple[Sequence[Shape], ...]  # the shapes
+    updates: int  # how often these arrays were brought up to date
+    group_numbers: dict[type[Shape], int]
+    is_plane: np.ndarray  # (groups,) whether the shapes of a group are infinite planes
+    tables: tuple[np.ndarray, ...]  # of each group: the rows of its shapes, of triangles for meshes
+
+    owner: np.ndarray  # (n,) the index of each primitive's shape
+    slots: np.ndarray  # (n, 2) the group of each primitive, and its row in the table of that
+    colours_and_extents: np.ndarray  # (n, 4) as in `minirt.kernel.scene_arrays`; triangles of meshes have no extent
+    plane_indices: np.ndarray  # (p,) the primitives that are infinite planes
+    planes: np.ndarray  # (p, 5) of these: unit normal, its product with the plane's points, the rounding error of that
+    plane_places: np.ndarray  # (p,) their places
+
+    first_primitive: np.ndarray  # (s + 1,) by shape
+    boxes: np.ndarray  # (s, 2, 3) by shape: corners of a box around it; of an infinite one, around its defining points
+    places: np.ndarray  # (s,) by shape: its place
+
+    written: np.ndarray  # (s,) by place: the number of the last of all `updates` that wrote the shape
+    listed: np.ndarray  # (s, 4) by place: as in `minirt.kernel.scene_arrays`
+    first_ball: np.ndarray  # (s + 1,) by place: the hull of `balls[first_ball[i] : first_ball[i + 1]]` has the shape
+    balls: np.ndarray  # (b, 4) centre, and radius, grown by what rounding may do to the shape
 
     def __init__(self) -> None:
         self.allocate()
@@ -91,26 +103,29 @@ class ShapeArrays:
         return shape
 
     def allocate(self, *runs: Sequence[Shape]) -> None:
-        """Allocate all arrays for these shapes, without writing them."""
+        """Allocate all arrays for these shapes, without writing them; shapes have places in the order of their indices.
+
+        `arrange` makes `listed` and `plane_places`.
+        """
         self.runs, self.updates = runs, 0
         present: Any = {type(each): each for run in runs for each in examined(run)}
         used = [kind for kind in ALL_KINDS if kind.element in present]
-        examples = [present[kind.element].some(FIRST) for kind in used]
+        examples = [present[kind.element].some(FIRST) for kind in used]  # a shape of each group
         self.group_numbers = {kind.element: group for group, kind in enumerate(used)}
         self.is_plane = np.array([each.infinite_plane() is not None for each in examples], bool)
-        groups = groups_of(runs, self.group_numbers)
-        sizes = np.ones(len(groups), np.int64)  # primitives of each shape
+        groups_of_shapes = groups_of(runs, self.group_numbers)
+        sizes = np.ones(len(groups_of_shapes), np.int64)  # primitives of each shape
         if Mesh in present:
             sizes[:] = [shape.parts for shape in self.shapes]
-        groups = np.repeat(groups, sizes)  # from here on of each primitive
+        groups = np.repeat(groups_of_shapes, sizes)  # of each primitive
         count, counts = len(groups), np.bincount(groups, minlength=len(used))
         self.owner = np.repeat(np.arange(len(sizes)), sizes)
         self.first_primitive = np.concatenate([[0], np.cumsum(sizes)])
         self.tables = tuple(
             np.zeros(counts[group], TRIANGLE_ROW if kind is MESH else row_type(kind)) for group, kind in enumerate(used)
         )
-        self.tints: dict[int, Triple] = {}  # the colours of meshes that are written
-        self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # what `by_primitive` has returned, and for what
+        self.tints: dict[int, Triple] = {}  # by the indices of meshes: the colours that are written for them
+        self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # last rows of `by_primitive`, and its result
         self.triangles: Any = None  # of meshes, see `minirt.rendering.packing.mesh_trees.place_meshes`
         self.placed: dict[int, Shape] = {}  # the meshes of these triangles, by their numbers
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
@@ -118,7 +133,7 @@ class ShapeArrays:
             self.slots[groups == group, ROW] = np.arange(counts[group])
         self.plane_indices = np.flatnonzero(self.is_plane[groups])
         ball_counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
-        self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups[self.first_primitive[:-1]]])])
+        self.first_ball = np.concatenate([[0], np.cumsum(ball_counts[groups_of_shapes])])
         self.colours_and_extents, self.boxes = np.zeros((count, 4)), np.zeros((len(sizes), 2, 3))
         self.written = np.zeros(len(sizes), np.int32)
         self.planes, self.balls = np.zeros((len(self.plane_indices), 5)), np.zeros((self.first_ball[-1], 4))
@@ -199,7 +214,10 @@ class ShapeArrays:
         return np.array([shape.smooth for shape in self.shapes], np.int64)[self.owner]
 
     def write(self, group: int, shapes: np.ndarray, members: Sequence[Shape]) -> None:
-        """Write `members`, shapes of one group with the indices `shapes`, into the arrays."""
+        """Write `members`, m shapes of one group with the indices `shapes`, (m,), into the arrays.
+
+        `owner`, `slots` and places are there.
+        """
         indices, places = self.first_primitive[shapes], self.places[shapes]
         self.written[places] = self.updates
         rows, boxes, balls = pack_shapes(members)
@@ -217,9 +235,9 @@ class ShapeArrays:
             at = np.searchsorted(self.plane_indices, indices)
             self.planes[at, :3] = points_and_normals[:, 1]
             self.planes[at, 3] = (points_and_normals[:, 0] * points_and_normals[:, 1]).sum(axis=1)
-            self.planes[at, 4] = MARGIN * self.colours_and_extents[indices, 3]
+            self.planes[at, 4] = MARGIN * extents  # as the largest coordinate of a plane bounds its rounding
         else:
-            x, y, z, radius = np.abs(np.moveaxis(balls, 2, 0))
+            x, y, z, radius = np.abs(np.moveaxis(balls, 2, 0))  # each (m, balls of a shape)
             balls[..., 3] += MARGIN * (radius + np.maximum(np.maximum(x, y), z))
             self.balls[self.first_ball[places, None] + np.arange(balls.shape[1])] = balls
 

@@ -123,12 +123,14 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
 
     `origins` and `directions` are (n, 3), in units of the scene; a direction may have any length but 0. A ray from a
     point that `trace` returned does not hit that surface there again: a ray starts on a surface if its origin is no
-    farther from the surface than 8 * 2^-53 of the origin's largest coordinate, or of its largest distance from the
-    shape's centre along an axis of the scene, which is as exact as such points are. Where surfaces coincide the shape
-    that comes first in the scene is hit. The BVH of the last scene is kept, so that further rays through it start at
-    once. Safe to call from several threads. Where no kernel was compiled ahead of time, the first call for a
-    combination of shapes compiles for some seconds. ValueError, naming the argument, if an array has another shape, a
-    number is infinite or NaN, or a direction has length 0.
+    farther from it than 8 * 2^-53 of the largest one of six lengths, which is as exact as such points are: along each
+    axis of the scene the origin's coordinate, and its distance from the shape's centre. Where surfaces coincide the
+    shape that comes first in the scene is hit.
+
+    The BVH of the last scene is kept, so that further rays through it start at once. Safe to call from several threads.
+    Where no kernel was compiled ahead of time, the first call for a combination of shapes compiles for some seconds.
+    ValueError, naming the argument, if an array has another shape, a number is infinite or NaN, or a direction has
+    length 0.
     """
     check_scene(scene, "trace")
     starts = checked_vectors(origins, "origins")
@@ -142,14 +144,16 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     # The kernel writes them all, also where nothing is hit: for coherent rays filling them took a tenth of the time.
     distance, primitive = np.empty(count), np.empty(count, np.int64)
     point, normal = np.empty((count, 3)), np.empty((count, 3))
-    owner, first_primitive = primitive, np.zeros(1, np.int64)  # without meshes each shape is one primitive
+    owner = primitive  # without meshes each shape is one primitive
+    first_primitive = np.zeros(1, np.int64)  # where nothing is hit
     if count and scene.runs:
         with chosen.busy:
             # The caller's thread only waits, so that Ctrl+C reaches it.
             counter = np.zeros(1, np.int64)
             bvh = chosen.packing.bvh_of(*scene.runs)
             job = query(bvh, counter, starts, vectors, distance, primitive, point, normal)
-            chosen.runner.pool.run([job] * chosen.threads, partial(counter.fill, count))
+            skip_the_rest = partial(counter.fill, count)  # for Ctrl+C: as if all rays were taken
+            chosen.runner.pool.run([job] * chosen.threads, skip_the_rest)
             shapes = chosen.packing.shape_arrays
             first_primitive = shapes.first_primitive
             if len(shapes.owner) > len(scene.shapes):

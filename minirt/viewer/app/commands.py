@@ -21,7 +21,7 @@ from minirt.viewer.bindings import platform_spelling as named
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.state import initial_state, state_after_reading, with_edited_cameras
-from minirt.viewer.files import contents_differ, looks
+from minirt.viewer.files import contents_differ, differs_by_view
 from minirt.viewer.recovery import FoundChanges, find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
@@ -135,20 +135,24 @@ def merge_file(session: Session) -> bool:
     """Show the scene with the changes of another program in its file and those of the session.
 
     Returns False, and nothing changes, if both changed the same line or a version has more than MOST_LINES. SceneError
-    if the file cannot be read.
+    if the file cannot be read. Cameras go on looking where they look now, unless the file changed that.
     """
-    stamps, mine, saved = file_io.stamps(session.path), session.state.scene, session.saved
-    theirs = load(session.path, session.lenient, mine.camera.left_handed).scene
+    stamps, saved = file_io.stamps(session.path), session.saved  # stamps first: the file may change while it is read
+    left_handed = session.state.scene.camera.left_handed
+    theirs = load(session.path, session.lenient, left_handed).scene
+    mine = session.state.scene
     for camera, before in zip(mine.cameras, saved.cameras, strict=False):
-        mine = mine.replace(camera, before) if looks(camera, before) else mine  # looking around changes no line
+        if differs_by_view(camera, before):  # which is nothing to save
+            mine = mine.replace(camera, before)
     texts = [dump(each).split("\n") for each in (saved, mine, theirs)]
     lines = files.merged(*texts) if max(map(len, texts)) <= MOST_LINES else None
     if lines is None:
         return False
     both = parse("\n".join(lines), session.path).scene
-    both = both.mirrored() if mine.camera.left_handed else both  # handedness is on no line
+    both = both.mirrored() if left_handed else both  # no line says so
+    both = with_edited_cameras(theirs, both, also_view=True)
     session.file.accept(stamps)
-    session.show_file(state_after_reading(session.state, with_edited_cameras(theirs, both, "value"), saved), theirs)
+    session.show_file(state_after_reading(session.state, both, saved), theirs)
     return True
 
 
@@ -206,7 +210,7 @@ def take_found(session: Session, found: FoundChanges) -> None:
     scene = parse(found.text, session.path).scene
     if session.state.scene.camera.left_handed:
         scene = scene.mirrored()
-    scene = with_edited_cameras(session.saved, scene, "value")
+    scene = with_edited_cameras(session.saved, scene, also_view=True)
     session.show_file(state_after_reading(session.state, scene, None), session.saved)
     session.say(f"{found.title}: {named('Ctrl+S')} saves them, {named('Ctrl+Z')} takes them back")
     if session.recovery and not found.beside:

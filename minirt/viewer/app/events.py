@@ -92,17 +92,21 @@ class EventDispatcher:
                 if value := screen.value_at(session.state, x, y):  # beside the values a click does nothing
                     session.show(session.state.with_active(value))
                     self.typing.begin(EMPTY)
+            case Event.MOTION_NOTIFY, (x, y) if self.choosing.takes_motion(x, y):
+                pass  # the row under the pointer is marked by the condition
             case Event.MOTION_NOTIFY, (x, y):
-                if self.choosing.takes_motion(x, y):
-                    return
                 handler(x, y)
-                is_busy = session.pressed or (self.panel and self.panel.is_open)
-                near = not is_busy and screen.is_on_tab(x, y, NEAR)
-                tool = None if session.pressed or screen.list_box else screen.tool_at(x, y)
-                screen.has_tab, screen.tool = near, tool
-                session.refresh()  # handles may come or go, too
+                self.show_controls(x, y)
             case _:
                 handler(*arguments)
+
+    def show_controls(self, x: int, y: int) -> None:
+        """Show the tab of the panel where the pointer is near it, and the name of the tool that it is on."""
+        session, screen = self.session, self.session.screen
+        is_panel_open = self.panel is not None and self.panel.is_open
+        screen.has_tab = not session.pressed and not is_panel_open and screen.is_on_tab(x, y, NEAR)
+        screen.tool = None if session.pressed or screen.list_box else screen.tool_at(x, y)
+        session.refresh()  # handles may come or go, too
 
     def is_on_line(self, x: int, y: int) -> bool:
         """Whether a pixel is on the line on top, and on no list or icon there."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from minirt.element import Element
 from minirt.fields import Triple, clamp_length
 from minirt.rendering.queries.pick import pick
-from minirt.scene.elements import Camera, linear_combination
+from minirt.scene.elements import Camera, linear_combination, multiple
 from minirt.shapes import Shape
 from minirt.viewer.editing import motion
 from minirt.viewer.editing.handles import AXES, SLIDE, TURN, Handle
@@ -28,7 +28,8 @@ from minirt.viewer.editing.values import leading_decimal
 from minirt.viewer.language import GAP
 
 PIXEL_CENTRE = 0.5  # pixels
-CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
+# Kind and time of the changes of a drag, the last arguments of all edits: undo takes together what has the same time.
+MERGED = "drag", 0.0
 SNAP_ANGLE = 15.0  # degrees
 LEVEL = 1e-6  # in place of the slope of a level ray
 FINE = 0.1  # of a pixel or a degree, with Shift
@@ -69,11 +70,11 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
         distance = start.projection.distance_along(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.point, axis)
         if distance is None:
             return state.with_message("the view is along the axis: nothing moves")
-        way = linear_combination(distance, axis, 0.0, axis)
+        way = multiple(distance, axis)
     else:
         way = pointer_offset(start, x, y, start.point)
     way = snapped_way(start.element, start.point, way, resolution(start, start.point))
-    return motion.move(state, start.element, way, 1.0, *CHANGE)
+    return motion.move(state, start.element, way, 1.0, *MERGED)
 
 
 def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -> State:
@@ -91,10 +92,10 @@ def place(state: State, start: DragStart, x: int, y: int, turns: bool = False) -
     if turns and there.normal is None:
         return move(state, start, x, y)
     if turns:
-        return replace(motion.put(state, shape, settled(shape, there, others, state.stride), *CHANGE), aim=there)
+        return replace(motion.put(state, shape, settled(shape, there, others, state.stride), *MERGED), aim=there)
     at = shifted(shape, subtract(there.point, middle_of(shape)[0]))
     standing = shifted(at, UP, there.point[1] - lowest_along(at, UP))
-    return motion.put(state, shape, dropped(standing, others, state.stride) or standing, *CHANGE)
+    return motion.put(state, shape, dropped(standing, others, state.stride) or standing, *MERGED)
 
 
 def pointer_offset(start: DragStart, x: int, y: int, point: Triple) -> Triple:
@@ -111,36 +112,55 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
     """
     handle, view, element = start.handle, start.projection, start.element
     assert handle
+    x, y = start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE
+    right, down = start.reach
+    ends = (x, y), (x + right, y + down)  # of the pull, in pixels
+    if handle.kind == TURN:
+        return turn_ring(state, start, handle, ends)
     centre, axis = handle.centre, AXES[handle.axis]
     step = state.stride if start.snaps else resolution(start, centre)
-    from_x, from_y = start.x + PIXEL_CENTRE, start.y + PIXEL_CENTRE
-    right, down = start.reach
-    ends = [(from_x, from_y), (from_x + right, from_y + down)]  # of the pull, in pixels
-    if handle.kind == TURN:
-        middle_x, middle_y = view.pixel(centre) or (0.0, 0.0)
-        first, last = (degrees(atan2(y - middle_y, x - middle_x)) for x, y in ends)
-        facing = motion.handedness(start.camera) * copysign(1.0, dot(axis, subtract(view.eye, centre)))
-        smallest = FINE if start.fine else 1.0
-        angle = snapped(remainder(first - last, 360.0) * facing, SNAP_ANGLE if start.snaps else smallest)
-        turned = motion.rotate_all(state, element, [(axis, angle)], *CHANGE)
-        said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
-        return turned.with_message(GAP.join(said))
-    if handle.kind == SLIDE:  # from where one ray meets the level plane through the centre to where the other does
-        rays = [view.ray(*end) for end in ends]
-        lengths = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in rays]
-        ways = [linear_combination(t, ray, 0.0, centre) for t, ray in zip(lengths, rays, strict=True)]
-        offset = subtract(ways[1], ways[0]) if min(lengths) > 0 else (0.0, 0.0, 0.0)
+    if handle.kind == SLIDE:
+        way = way_on_level(view, centre, ends)
     else:
-        before, after = (view.distance_along(*at, centre, axis) for at in ends)
-        if before is None or after is None:
+        before, after = (view.distance_along(*end, centre, axis) for end in ends)
+        if not before or after is None:  # seen from the end of the axis, where pixels tell no distance along it
             return state.with_message("the view is along the axis: nothing moves")
         if handle.value:
             length = handle.value.current(element) * abs(after / before)
             length = clamp_length(max(snapped(length, step), step))
             changed = element.replace(**{handle.value.field.name: handle.value.replaced(element, length)})
-            return state.edit_element(keep_standing(state, element, changed), *CHANGE)
-        offset = linear_combination(after - before, axis, 0.0, axis)
-    return motion.move(state, element, snapped_way(element, centre, offset, step), 1.0, *CHANGE)
+            return state.edit_element(keep_standing(state, element, changed), *MERGED)
+        way = multiple(after - before, axis)
+    return motion.move(state, element, snapped_way(element, centre, way, step), 1.0, *MERGED)
+
+
+def turn_ring(state: State, start: DragStart, handle: Handle, ends: tuple[Pixel, Pixel]) -> State:
+    """Turn the element about the axis of a ring, by the angle of a pull as seen from the ring's centre in the picture.
+
+    `ends`: of the pull, in pixels. A ring about a point that is not in front of the eye has no handle to be pulled.
+    """
+    view, axis = start.projection, AXES[handle.axis]
+    middle_x, middle_y = view.pixel(handle.centre) or (0.0, 0.0)
+    first, last = (degrees(atan2(y - middle_y, x - middle_x)) for x, y in ends)
+    from_above = copysign(1.0, dot(axis, subtract(view.eye, handle.centre)))  # 1 if the axis points to the eye, else -1
+    clockwise = remainder(first - last, 360.0) * motion.handedness(start.camera)
+    smallest = FINE if start.fine else 1.0
+    angle = snapped(clockwise * from_above, SNAP_ANGLE if start.snaps else smallest)
+    turned = motion.rotate_all(state, start.element, [(axis, angle)], *MERGED)
+    return turned.with_message(f"turned by {angle:.3g} degrees{GAP}Ctrl: by steps of {SNAP_ANGLE:g}")
+
+
+def way_on_level(view: Projection, centre: Triple, ends: tuple[Pixel, Pixel]) -> Triple:
+    """Return the way on the level plane through `centre` from where the ray through one pixel meets it to the other's.
+
+    There is none, (0, 0, 0), where one of them meets the plane behind the eye.
+    """
+    rays = [view.ray(*end) for end in ends]
+    distances = [(centre[1] - view.eye[1]) / (ray[1] or LEVEL) for ray in rays]
+    if min(distances) <= 0:
+        return 0.0, 0.0, 0.0
+    before, after = (multiple(distance, ray) for distance, ray in zip(distances, rays, strict=True))
+    return subtract(after, before)
 
 
 def resolution(start: DragStart, point: Triple) -> float:
@@ -171,14 +191,14 @@ def turn(state: State, start: DragStart, x: int, y: int) -> State:
         return look(state, start, x, y)
     right, down = drag_angles(start, x, y)
     turns = [(UPWARD, right), (RIGHT, -down)]
-    return motion.turn(state, start.element, turns[: 1 if state.frame in WORLD_AXES else 2], *CHANGE)
+    return motion.turn(state, start.element, turns[: 1 if state.frame in WORLD_AXES else 2], *MERGED)
 
 
 def look(state: State, start: DragStart, x: int, y: int) -> State:
     """Turn the camera so that distant objects follow the pointer."""
     step = start.camera.fov / start.projection.width
     camera = motion.turn_camera(start.camera, (start.x - x) * step, (y - start.y) * step)
-    return state.edit_camera(camera, *CHANGE)
+    return state.edit_camera(camera, *MERGED)
 
 
 def orbit(state: State, start: DragStart, x: int, y: int) -> State:
@@ -188,14 +208,14 @@ def orbit(state: State, start: DragStart, x: int, y: int) -> State:
     """
     pivot = start.point or scene_centre(state.scene)
     right, down = drag_angles(start, x, y)
-    return state.edit_camera(motion.orbit_camera(start.camera, pivot, right, -down), *CHANGE)
+    return state.edit_camera(motion.orbit_camera(start.camera, pivot, right, -down), *MERGED)
 
 
 def pan(state: State, start: DragStart, x: int, y: int) -> State:
     """Move the camera parallel to its image plane, so that the point under the pointer stays there."""
     ahead = linear_combination(1.0, start.camera.position, state.size, start.camera.direction)
     x_way, y_way, z_way = pointer_offset(start, x, y, start.point or ahead)
-    return state.edit_camera(shifted(start.camera, (-x_way, -y_way, -z_way)), *CHANGE)
+    return state.edit_camera(shifted(start.camera, (-x_way, -y_way, -z_way)), *MERGED)
 
 
 def drag_angles(start: DragStart, x: int, y: int) -> tuple[float, float]:

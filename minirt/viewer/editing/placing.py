@@ -37,23 +37,36 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     """Aim through pixel x, y at the `point` of a `shape` that is seen there, or without a shape at the ground y = 0.
 
     Where the shape or the ground is farther away than BACKGROUND times `size`, the size of the scene, the aim is in the
-    air, at `size` from the eye. On surfaces it is at the nearest point whose coordinates along them are on a grid.
+    air, at `size` from the eye. On a surface it is at the nearest point whose coordinates along it are on a grid, of
+    which a new element there spans at least two cells.
     """
     ray, height = view.ray(x, y), view.eye[1]
-    to_ground = -height / ray[1] if height * ray[1] < 0 else inf
+    to_ground = -height / ray[1] if height * ray[1] < 0 else inf  # distance; infinity where the ray goes away from it
     normal: Triple | None = None
     if shape and point and dist(view.eye, point) <= BACKGROUND * size:
         normal = surface_normal(shape, point, ray)
-    elif shape or to_ground > BACKGROUND * size:
+    elif shape or to_ground > BACKGROUND * size:  # a shape beyond that, too, is background
         shape, point = None, linear_combination(1.0, view.eye, size, ray)
     else:
         ground_x, _, ground_z = linear_combination(1.0, view.eye, to_ground, ray)
-        point, normal = (ground_x, 0.0, ground_z), UP if height > 0 else DOWN
-    length = length_at(view, shape, point, normal)
+        point = ground_x, 0.0, ground_z
+        normal = UP if height > 0 else DOWN
     if normal:
-        point, normal = on_grid(shape, point, normal, nice_number(min(STEP_SHARE * size, length / 2)))
-        length = length_at(view, shape, point, normal)
-    return Aim(view.eye, point, normal, length, length_at(view, None, point, None), beneath(shape, normal))
+        cell = min(STEP_SHARE * size, size_of_new(view, shape, point, normal) / 2)
+        point, normal = on_grid(shape, point, normal, nice_number(cell))
+    return aim_at(view, shape, point, normal)
+
+
+def aim_at(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> Aim:
+    """Aim at a point with the `normal` of the surface there; without a shape of the ground, None in the air."""
+    return Aim(
+        eye=view.eye,
+        point=point,
+        normal=normal,
+        size=size_of_new(view, shape, point, normal),
+        usual=size_of_new(view, None, point, None),
+        beneath=beneath(shape, normal),
+    )
 
 
 def aim_at_top(view: Projection, shape: Shape) -> Aim | None:
@@ -61,9 +74,8 @@ def aim_at_top(view: Projection, shape: Shape) -> Aim | None:
     box, ((x, _, z), radius) = shape.bounds(), middle_of(shape)
     assert box
     found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
-    point, normal = found or ((x, box[1][1], z), UP)
-    length, usual = length_at(view, shape, point, normal), length_at(view, None, point, None)
-    return Aim(view.eye, point, normal, length, usual, beneath(shape, normal)) if length >= TINY * usual else None
+    aim = aim_at(view, shape, *(found or ((x, box[1][1], z), UP)))
+    return aim if aim.size >= TINY * aim.usual else None
 
 
 def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:
@@ -71,14 +83,17 @@ def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:
     return shape if shape and normal and normal[1] > TOP and shape.bounds() else None
 
 
-def length_at(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
-    """Length of a new element at a point: SHARE of the picture, and at most a share of the shape it stands on."""
-    length = 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up))
+def size_of_new(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
+    """Size of a new element at a point: SHARE of the picture, and at most a share of the shape that it stands on.
+
+    `shape` is None for an element that stands on no shape, `normal` for one in the air.
+    """
+    size = 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up))
     box = shape.bounds() if shape and normal else None
     if box and normal:
-        breadth = sorted(subtract(box[1], box[0]))[1]
-        length = min(abs(length), breadth * (TOP_SHARE if beneath(shape, normal) else SIDE_SHARE))
-    return clamp_length(length)
+        breadth = sorted(subtract(box[1], box[0]))[1]  # the second longest edge of the box
+        size = min(abs(size), breadth * (TOP_SHARE if beneath(shape, normal) else SIDE_SHARE))
+    return clamp_length(size)
 
 
 def on_grid(shape: Shape | None, point: Triple, normal: Triple, grid: float) -> tuple[Triple, Triple]:

@@ -141,7 +141,7 @@ class State:
         merged = bool(kind) and kind == last_kind and now - then <= MERGE_SECONDS
         past = self.undo_stack if merged else (*self.undo_stack[1 - MAX_UNDO :], self.snapshot)
         selected = self.selected if selected is None else selected
-        scene = with_edited_cameras(self.scene, scene, kind)
+        scene = with_edited_cameras(self.scene, scene, also_view=kind.startswith(GIVEN))
         changes: dict[str, Any] = {"undo_stack": past, "redo_stack": (), "last_change": (kind, now)}
         hidden, others = self.indices_in(scene, self.hidden), self.indices_in(scene, self.others)
         return replace(self, scene=scene, selected=selected, others=others - {selected}, hidden=hidden, **changes)
@@ -164,10 +164,14 @@ class State:
         return self.edit_element(camera, kind, now, index_of(self.scene, self.scene.camera))
 
 
-def with_edited_cameras(old: Scene, new: Scene, kind: str) -> Scene:
-    """Note in cameras which fields were given which values: all that no looking around changes, and what was typed."""
+def with_edited_cameras(old: Scene, new: Scene, *, also_view: bool) -> Scene:
+    """Return the new scene with a note in its cameras, `edited`, of the fields that were given other values than in the
+    old one, and of these values.
+
+    `also_view`: also of the fields that looking around changes, as their values were typed or read.
+    """
     for before, after in zip(old.of(Camera), new.of(Camera), strict=False):
-        names = [each.name for each in fields_of(Camera) if kind.startswith(GIVEN) or each.name not in LOOKING]
+        names = [each.name for each in fields_of(Camera) if also_view or each.name not in LOOKING]
         given = {name: getattr(after, name) for name in names if getattr(after, name) != getattr(before, name)}
         if given and before.edited == after.edited:
             new = new.replace(after, after.replace(edited=tuple((dict(before.edited) | given).items())))
