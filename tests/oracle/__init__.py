@@ -107,7 +107,8 @@ def heights(shape: Shape, place: Vec, exact: Boundary | None = None) -> Heights:
             values.append((value.high + 0.0 * like) / steep)
             normals.append(slope / steep)
     count = len(both.faces)
-    return Heights(np.array(values[:count]), np.reshape(values[count:], (-1, *like.shape)), np.array(normals))
+    limits = np.reshape(values[count:], (len(values) - count, *like.shape))
+    return Heights(np.array(values[:count]), limits, np.array(normals))
 
 
 class Crossed:
