@@ -103,7 +103,7 @@ def explain(scene: Scene, options: argparse.Namespace) -> int:
     if options.json:
         say(json.dumps(explanation.as_dict()))
     else:
-        say(f"{TreeText(explanation, has_colours)}\n", is_own=True)
+        say(f"{TreeText(explanation, has_colours)}\n", is_own=True)  # so that its control characters for colours stay
     return OK
 
 

@@ -129,13 +129,15 @@ class FrameRunner:
         if not is_wanted():
             return False
         arrays = packing.pack(scene, pixels.shape[1], pixels.shape[0], crop, samples)
-        rays = packing.view.rays if packing.view and samples == 1 else None
+        rays = packing.view.rays if packing.view and samples == 1 else None  # the view keeps those of one sample
+        # What the first thread remembers of these very arrays; of others it knows nothing.
         memory = self.memories[0] if arrays is self.arrays else None
         frame = frame_arguments(arrays, pixels, samples, light, counter, crop, rays, memory)
         if edges_only and not has_apertures(arrays):
             classes = contrast_classes(pixels, width(arrays.camera) // PACKET_HEIGHT, self.run_on_all)
             packets = np.flatnonzero(classes >= EDGE)
-            frame = frame._replace(plan=plan_of(packets, classes.shape[1], (0, samples, 0)))
+            all_samples = 0, samples, 0  # from the first one on, none for a reference
+            frame = frame._replace(plan=plan_of(packets, classes.shape[1], all_samples))
         self.run(frame)
         return bool(counter[0] < CANCELLED)
 

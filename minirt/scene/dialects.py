@@ -55,8 +55,9 @@ def translated(
 ) -> Translation | None:
     """Return the translation of a line; its text is '' where the line is no element that is known here.
 
-    None where the line stays an error. `colours` are the R,G,B of named materials, and pictures are looked for in
-    `folder`. `seen` has the identifiers of earlier lines.
+    None where the line stays an error, as for an ambient light or a camera without which there is no picture. `colours`
+    are the R,G,B of named materials, and pictures are looked for in `folder`. The keys of `seen` are the identifiers of
+    earlier lines.
     """
     split = split_foreign_line(line)
     if split is None:
@@ -67,14 +68,14 @@ def translated(
     code, *values = words
     kind = kind_of(code)
     if kind is None:
-        is_setting = SETTING.fullmatch(code) or len(values) < 2 or not any(map(TRIPLE.fullmatch, values))
+        # An unknown word with a point, direction or colour is taken for a shape; the face of a mesh has none of these.
+        has_triple = len(values) > 1 and any(map(TRIPLE.fullmatch, values))
+        is_shape = code == tables.FACE or (has_triple and not SETTING.fullmatch(code))
         unread = tables.LIGHTS if LIGHT.fullmatch(code) else tables.MISSING
-        if is_setting and code != tables.FACE:
-            unread = tables.SETTINGS
-        return Translation("", [(unread, code)])
+        return Translation("", [(unread if is_shape else tables.SETTINGS, code)])
     is_second = kind.code in (seen or ())
     kind = FURTHER.get(kind, kind) if is_second else kind
-    if kind is not SPELLINGS.get(code):
+    if kind is not SPELLINGS.get(code):  # it becomes an element of another name
         is_repeated = is_second and code in (Camera.code, Light.code)
         changes.append((tables.SECOND if is_repeated else tables.RENAMED, f"{code}{TAKEN}{kind.code}"))
     ordered = in_order(kind.code, values)

@@ -72,7 +72,7 @@ def parse_slot(slot: Slot, line: Line, log: Log) -> Any:
             return None
         log.notice(line, f"{message} (miniRT {repair.deed})", *span)
         return repair.value
-    if remark and isinstance(field, Direction):
+    if remark and isinstance(field, Direction):  # which the file may have in many lines: told once for all of them
         log.change(line, remark, text)
     elif remark:
         log.notice(line, f"{slot.title} {remark}", *slot.span(None))

@@ -35,10 +35,10 @@ def mesh_trees(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Mesh
     owners = [index for index, shape in enumerate(shapes.shapes) if isinstance(shape, Mesh)]
     meshes: Any = [shapes.shapes[index] for index in owners]
     nodes = [tree_of(mesh.triangles, kernel, run) for mesh in meshes]
-    roots = np.cumsum([0, *map(len, nodes[:-1])]) // NODE
+    roots = np.cumsum([0, *map(len, nodes[:-1])]) // NODE  # of each tree the number of its first node
     first = shapes.first_primitive[owners]
-    rows = shapes.slots[first, ROW]  # of the first triangle of each mesh, in the table of all triangles
-    numbers = np.zeros(rows[-1] + 1, np.int64)
+    rows = shapes.slots[first, ROW]  # of the first triangle of each mesh, in the table of all triangles, ascending
+    numbers = np.zeros(rows[-1] + 1, np.int64)  # of meshes, by these rows; nothing asks for others
     numbers[rows] = np.arange(len(rows))
     joined = np.concatenate(nodes) if len(nodes) > 1 else nodes[0]
     return MeshTrees(joined, np.stack([roots, first], axis=1), np.array(list(map(place_of, meshes))), numbers)
@@ -97,7 +97,7 @@ def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Me
     """Return the triangles of all meshes of a scene, or None without any.
 
     `shapes.triangles` keeps them, and `shapes.placed` the meshes as they were placed: only meshes that have changed are
-    placed anew, by a function of `kernel`, on all threads by `run`.
+    placed anew, by a function of `kernel`, on all threads by `run`. Shapes of other numbers or files empty both.
     """
     if Mesh not in shapes.group_numbers:
         return None
@@ -122,8 +122,9 @@ def place_meshes(shapes: ShapeArrays, kernel: Any, run: Run | None = None) -> Me
             shapes.triangles.turns[number] = turn = mesh.turned(np.eye(3)).ravel()
             source = np.array([*turn, mesh.scale, *mesh.position]), file.points, file.flat_normals, int(first)
             corners, normals = shapes.triangles.corners[own_rows], shapes.triangles.normals[own_rows]
-            into = corners, shapes.triangles.points[first:end], normals
-            job = bound(kernel.place_triangles, np.zeros(1, np.int64), *source, *into)
+            into = corners, shapes.triangles.points[first:end], normals  # the last two of which are overwritten
+            counter = np.zeros(1, np.int64)  # from which threads take their parts
+            job = bound(kernel.place_triangles, counter, *source, *into)
             if run and mesh.parts >= PARALLEL:
                 run(job)
             else:

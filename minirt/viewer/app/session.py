@@ -55,9 +55,9 @@ class Session:
         """Open the window, of `size` in pixels. MlxError.
 
         `path`: the scene's file. `painter`: is called with the renderer and with what to call when there is a picture.
-        `keys`: layout of the keyboard. `lenient`: read other programs' dialects. `samples`: rays per pixel of a picture
-        that does not move. `watch`: read the file when it changes. `saved`: the scene as the file holds it, if not
-        `scene`.
+        `keys`: layout of the keyboard. `lenient`: read dialects as `minirt.load` does. `samples`: rays per pixel of a
+        picture that does not move. `watch`: read the file when another program changes it. `saved`: the scene as the
+        file holds it, if not `scene`.
         """
         self.mlx = mlx
         self.display = display
@@ -68,7 +68,7 @@ class Session:
         self.saved = saved or scene  # the scene as the file holds it
         self.watches_file = watch
         self.recovery: Recovery | None = None  # of unsaved changes
-        self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
+        self.found_changes: FoundChanges | None = None  # of an earlier run, which may be shown instead
         self.slides = False  # whether a number of the panel is dragged
         self.wants_panel = False  # whether the panel opens with the first picture, as it was open in the last window
         self.held_keys: dict[int, HeldKey] = {}  # by their codes
@@ -82,7 +82,7 @@ class Session:
         mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `held_keys` repeats what is worth it
         self._title = title_of(path, scene)
-        self.title_made_from: tuple[object, ...] = ()  # scenes and path; empty: the title is made anew
+        self.title_made_from: tuple[object, ...] = ()  # scenes and path; () has it made anew
         self.window = mlx.mlx_new_window(display, *size, self._title, resizable=True)
         self.refinement = Refinement(painter(renderer, lambda: mlx.mlx_wake(display)), samples)
         self.keymap = Keymap(keys, self.window.letter_at)

@@ -132,9 +132,10 @@ class Elements:
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton.LEFT):
             self.visit(index)
         elif picked and state.chosen == {index} and not session.modifiers:
+            # From the next frame on `type_name` shows a field in place of this row, until a second click comes soon.
             self._naming, self._name, self._takes_focus = index, own_name(state.element), True
             self._naming_since = session.now
-            self.rows.gui.unsettled = TO_TYPE
+            self.rows.gui.unsettled = TO_TYPE  # frames until the field takes keys
         elif picked:
             self.pick(index)
         if kind != name:
