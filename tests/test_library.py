@@ -46,6 +46,14 @@ def test_light_is_made_when_it_is_asked_for(scene: minirt.Scene) -> None:
     assert all(np.array_equal(each.linear, kept.linear) for each in (image, sent))
 
 
+def test_a_scene_says_what_it_has_and_where_it_is_from(scene: minirt.Scene, tmp_path: Path) -> None:
+    path = tmp_path / "some.rt"
+    scene.save(path)
+    about = f"{len(scene.shapes)} shapes and 1 light"
+    assert repr(minirt.Scene(scene.items)) == f"<Scene of {about}>"
+    assert repr(minirt.load(path)) == f"<Scene of {about}, from {str(path)!r}>"
+
+
 def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
     assert minirt.size_of(scene) == minirt.DEFAULT_SIZE
     sized = minirt.Scene((Resolution(40, 20), *scene.items))

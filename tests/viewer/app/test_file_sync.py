@@ -228,7 +228,9 @@ def test_when_both_changed_a_line_a_banner_asks_and_saving_keeps_a_copy_of_the_o
     assert path.with_name("scene-2.rt").read_text() == BROKEN
 
 
-FOREIGN = TEXT.replace("sp 0,0,0 2 255,0,0", "sp 0, 0, 0 2 255,0,0 100") + "qd 1,2,3 4 9,8,7\nqd 0,0,0 4 9,8,7\n"
+# Of a dialect, but for the length of a direction, of which there is a notice, too.
+FOREIGN = TEXT.replace("sp 0,0,0 2 255,0,0", "sp 0, 0, 0 2 255,0,0 100").replace("0,0,-1 90", "0,0,-2 90")
+FOREIGN += "qd 1,2,3 4 9,8,7\nqd 0,0,0 4 9,8,7\n"
 
 
 def test_a_file_in_a_dialect_is_opened_and_saving_asks_before_it_is_written_in_this_format(harness, tmp_path):
