@@ -18,6 +18,7 @@ from minirt.materials import Bump, Glass, Mirror, Specular
 from minirt.meshes import load_mesh
 from minirt.meshes.mtl import MeshMaterial
 from minirt.rendering.packing import materials as packing
+from minirt.rendering.packing.looks import looks_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.tone_mapping import decode_srgb
 from minirt.scene import Scene, load, parse
@@ -169,7 +170,7 @@ def test_own_attributes_of_a_mesh_count_more_and_its_colour_tints(folder: Path) 
     assert looks[200, 100, 0].glass == Glass(1.25, 0.5)
     arrays = ShapeArrays()
     arrays.update((mesh,))
-    shapes, numbers = arrays.looks()
+    shapes, numbers = looks_of(arrays)
     colours = np.array([shapes[number].colour for number in numbers]) / 255
     assert np.array_equal(arrays.colours_and_extents[:, :3], colours)
 

@@ -182,13 +182,11 @@ def light_through_glass(
     """Return the shares of red, green and blue of a light source that reach the origin of shadow rays.
 
     The `clear` rays are known to meet nothing. Of the others those that are `lit` are followed through glass, which is
-    opaque to rays whose light hardly `matters`; the rest get no light. `lit`: the source would light the point if
-    nothing were between. `medium` is the absorption where rays start.
-    """
+    opaque to rays whose light hardly `matters`; the rest get no light. `lit`: the source lights the point where nothing
+    is between. `medium` is the absorption where rays start."""
     share = where(clear, splat(1.0, rays.distance), 0.0)
     light = Vec(share, share, share)
-    # Of the last part of the way, which for clear rays is all of it: its absorption and its length.
-    last_medium, last_length = medium, rays.distance
+    last_medium, last_length = medium, rays.distance  # of the last part of the way, for clear rays all of it
     followed = lit & ~clear
     if has_rows(scene.transparent) and any(followed):
         light, last_medium, last_length = follow_shadow_rays(scene, rays, medium, light, followed, matters)

@@ -21,6 +21,7 @@ from minirt.materials import Placement, pictures
 from minirt.materials.pictures import check_textures
 from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, NO_MATERIALS
 from minirt.rendering.packing.lights import Colours, colours_of
+from minirt.rendering.packing.looks import by_primitive, looks_of
 from minirt.rendering.packing.ray_casting import cast
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera, Scene
@@ -45,7 +46,7 @@ def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -
     """
     if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
         return {}
-    shapes, look_of = primitives.looks()
+    shapes, look_of = looks_of(primitives)
     with_materials = [(i, shape) for i, shape in enumerate(shapes) if ATTRIBUTES(shape) != NO_MATERIALS]
     reader = Reader(scene)
     arrays = {name: FEATURES[name].rows(len(shapes)) for name in FEATURES if name in used & OF_SHAPES}
@@ -53,7 +54,7 @@ def pack_materials(scene: Scene, primitives: ShapeArrays, used: Set[Hashable]) -
         for name, row in rows_of(shape, reader):
             if name in arrays:
                 arrays[name][i] = row
-    packed: dict[str, Any] = {name: primitives.by_primitive(name, rows, look_of) for name, rows in arrays.items()}
+    packed: dict[str, Any] = {name: by_primitive(primitives, name, rows, look_of) for name, rows in arrays.items()}
     if "transparent" in packed:
         mark_mixed(packed["transparent"], primitives.owner)
     maps = {name: packed.pop(name) for name in MAPS if name in packed}

@@ -125,7 +125,7 @@ class ShapeArrays:
             np.zeros(counts[group], TRIANGLE_ROW if kind is MESH else row_type(kind)) for group, kind in enumerate(used)
         )
         self.tints: dict[int, Triple] = {}  # by the indices of meshes: the colours that are written for them
-        self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # last rows of `by_primitive`, and its result
+        self.of_looks: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # see `looks.by_primitive`
         self.triangles: Any = None  # of meshes, see `minirt.rendering.packing.mesh_trees.place_meshes`
         self.placed: dict[int, Shape] = {}  # the meshes of these triangles, by their numbers
         self.slots = np.stack([groups, np.zeros(count, np.int64)], axis=1)
@@ -187,27 +187,6 @@ class ShapeArrays:
         for into, rows, (start, stop) in pairs:
             into[:start], into[stop:] = rows[:start], rows[len(rows) - len(into) + stop :]
         return first, last
-
-    def looks(self) -> tuple[Sequence[Shape], np.ndarray]:
-        """Return shapes of one material each, meshes once for each of theirs, and that of each primitive, (n,)."""
-        if Mesh not in self.group_numbers:
-            return self.shapes, self.owner
-        looks = [shape.looks if isinstance(shape, Mesh) else (shape,) for shape in self.shapes]
-        numbers = np.cumsum([0, *map(len, looks)])[self.owner]
-        for shape, start, end in zip(self.shapes, self.first_primitive, self.first_primitive[1:], strict=False):
-            if isinstance(shape, Mesh):
-                numbers[start:end] += shape.look_numbers()
-        return tuple(chain.from_iterable(looks)), numbers
-
-    def by_primitive(self, name: str, rows: np.ndarray, look_of: np.ndarray) -> np.ndarray:
-        """Return a row for each primitive, given one for each of the `looks` and which look each primitive has.
-
-        It is the same array as the last one of this name while the rows are the same: a million triangles that are
-        moved keep what they are made of.
-        """
-        if name not in self.of_looks or not np.array_equal(self.of_looks[name][0], rows):
-            self.of_looks[name] = rows, rows[look_of]
-        return self.of_looks[name][1]
 
     def smooth(self) -> np.ndarray:
         """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""

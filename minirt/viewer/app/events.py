@@ -103,8 +103,7 @@ class EventDispatcher:
     def show_controls(self, x: int, y: int) -> None:
         """Show the tab of the panel where the pointer is near it, and the name of the tool that it is on."""
         session, screen = self.session, self.session.screen
-        is_panel_open = self.panel is not None and self.panel.is_open
-        screen.has_tab = not session.pressed and not is_panel_open and screen.is_on_tab(x, y, NEAR)
+        screen.has_tab = not (session.pressed or (self.panel and self.panel.is_open)) and screen.is_on_tab(x, y, NEAR)
         screen.tool = None if session.pressed or screen.list_box else screen.tool_at(x, y)
         session.refresh()  # handles may come or go, too
 

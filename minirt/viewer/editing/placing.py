@@ -48,8 +48,8 @@ def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, 
     elif shape or to_ground > BACKGROUND * size:  # a shape beyond that, too, is background
         shape, point = None, linear_combination(1.0, view.eye, size, ray)
     else:
-        ground_x, _, ground_z = linear_combination(1.0, view.eye, to_ground, ray)
-        point = ground_x, 0.0, ground_z
+        x, _, z = linear_combination(1.0, view.eye, to_ground, ray)
+        point = x, 0.0, z
         normal = UP if height > 0 else DOWN
     if normal:
         cell = min(STEP_SHARE * size, size_of_new(view, shape, point, normal) / 2)
@@ -86,8 +86,7 @@ def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:
 def size_of_new(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
     """Size of a new element at a point: SHARE of the picture, and at most a share of the shape that it stands on.
 
-    `shape` is None for an element that stands on no shape, `normal` for one in the air.
-    """
+    `shape` is None for an element that stands on no shape, `normal` for one in the air."""
     size = 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up))
     box = shape.bounds() if shape and normal else None
     if box and normal:
