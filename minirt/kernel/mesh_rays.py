@@ -104,16 +104,20 @@ def find_candidates(rays: RayPacket, group: Group, row: int, ray: int) -> int:
 
 
 def triangles_on_ray(nodes: Any, leaf: int, numbers: Any, ray: int) -> Mask:
-    """Return which triangles of a leaf a ray may hit up to its limit."""
+    """Return which triangles of a leaf a ray may hit up to its limit.
+
+    As seen along it the ray is the point 0. It hits a triangle if its areas with the three edges have one sign, within
+    a margin for coordinates that are rounded by `ROUNDING` of their sizes and by the ray's own `rounding`.
+    """
     a, b = sheared(nodes, leaf, numbers, ray), sheared(nodes, leaf + 3 * WIDE, numbers, ray)
     c = sheared(nodes, leaf + CORNERS, numbers, ray)
-    at, slope, rounding = numbers[AT + ray], numbers[SLOPE + ray], numbers[ROUNDED + ray]
+    at, slope, rounding = numbers[AT + ray], numbers[SLOPE + ray], numbers[ROUNDED + ray]  # slope > 0: see `shear_rays`
     most = at + slope * numbers[LIMIT + ray] + (rounding + numbers[SLACK + ray])
     least = at + slope * numbers[BEGIN + ray] - (rounding + numbers[SLACK + ray])
     inside = (minimum(minimum(a.x, b.x), c.x) <= most) & (maximum(maximum(a.x, b.x), c.x) >= least)
     ab, bc, ca = b - a, c - b, a - c
     of_a, of_b, of_c = b.y * bc.z - b.z * bc.y, c.y * ca.z - c.z * ca.y, a.y * ab.z - a.z * ab.y
-    longest = maximum(maximum(fabs(ab.y), fabs(ab.z)), maximum(fabs(ca.y), fabs(ca.z)))
+    longest = maximum(maximum(fabs(ab.y), fabs(ab.z)), maximum(fabs(ca.y), fabs(ca.z)))  # bc is at most twice as long
     margin = (ROUNDING * (maximum(fabs(a.y), fabs(a.z)) + longest) + rounding) * longest
     low, high = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
     return inside & ((low >= -margin) | (high <= margin))

@@ -127,7 +127,8 @@ def unoccluded(scene: SceneArrays, memory: Any, rays: ShadowRays, active: Mask, 
     return visible
 
 
-Arguments = tuple[SceneArrays, ShadowRays, int, Mask, bool]  # and the rays' cell, which of them are in it, and glass
+# And the rays' cell, which of them are in it, and whether transparent shapes alone count or opaque ones alone: `glass`.
+Arguments = tuple[SceneArrays, ShadowRays, int, Mask, bool]
 
 
 def unoccluded_by_kind(group: Group, visible: Mask, arguments: Arguments) -> Mask:

@@ -30,9 +30,10 @@ class Lines(NamedTuple):
 
 
 def read(lines: Lines) -> None:
-    """Read lines until one is wrong, and write what is in them into the arrays of `lines`.
+    """Read lines, up to and with the first one that is wrong, and write what is in them into the arrays of `lines`.
 
-    `lines.counts[WRONG]` becomes 1 where the last row is of a wrong line.
+    `lines.counts[WRONG]` becomes 1 where the last row is of a wrong line. The text ends with newlines, so that no line
+    needs a look at its size.
     """
     text, counts, rows, at = lines.text, lines.counts, lines.rows, 0
     while at < lines.size and counts[WRONG] == 0:

@@ -235,7 +235,7 @@ def follow_shadow_rays(
 def behind_surface(
     scene: SceneArrays, index: int, point: Vec, direction: Vec, extent: Number, light: Vec, medium: Vec
 ) -> tuple[Vec, Vec, Vec]:
-    """Return where shadow rays go on that cross the surface of shape `index` at `point`, which is known within
+    """Return where shadow rays go on that cross the surface of shape `index`, of that `extent`, at `point`, within
     rounding, and the light and the medium behind the surface; `light` and `medium` are those before it."""
     on, normal, shading_normal = surface_of(scene, index, point)
     cosine = fabs(dot(shading_normal, direction))
