@@ -147,7 +147,8 @@ def turn_ring(state: State, start: DragStart, handle: Handle, ends: tuple[Pixel,
     smallest = FINE if start.fine else 1.0
     angle = snapped(clockwise * from_above, SNAP_ANGLE if start.snaps else smallest)
     turned = motion.rotate_all(state, start.element, [(axis, angle)], *MERGED)
-    return turned.with_message(f"turned by {angle:.3g} degrees{GAP}Ctrl: by steps of {SNAP_ANGLE:g}")
+    said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
+    return turned.with_message(GAP.join(said))
 
 
 def way_on_level(view: Projection, centre: Triple, ends: tuple[Pixel, Pixel]) -> Triple:
