@@ -15,6 +15,7 @@ from minirt.lanes import Vec
 from minirt.shapes.plane_normals import plane_normals
 from minirt.shapes.triangle import PackedTriangle, Triangle, may_meet
 from minirt.shapes.triangle import intersect as watertight
+from tests.seeds import seed_of
 from tests.shapes.execution_modes import Intersect, U
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit
 from tests.stability.mutants import in_single_precision
@@ -67,6 +68,28 @@ def test_no_ray_passes_between_triangles(intersect: Intersect) -> None:
 
 def test_no_ray_passes_between_triangles_in_single_precision() -> None:
     assert gaps(in_single_precision) == 0
+
+
+def test_grazing_rays_meet_a_triangle_of_any_size_alike(intersect: Intersect) -> None:
+    """Whether a ray grazes, and is clamped to the triangle, is no question of the unit of length."""
+    random, scale = np.random.default_rng(seed_of("grazing rays")), 2.0**40
+    triangles = [corners for corners in random.integers(-8, 9, (12, 3, 3)).astype(float) if not is_thin(corners)]
+    hits = 0
+    for corners in triangles:
+        small, large = (Triangle(*map(tuple, k * corners), GREY) for k in (1.0, scale))
+        inside, other = random.dirichlet([1, 1, 1], (2, RAYS)) @ corners
+        rise = random.choice([0.0, 1e-12, 1e-8, 1e-5, 1e-3], (RAYS, 1)) * random.choice([-1, 1], (RAYS, 1))
+        origins = inside - random.choice([1, 100, 1e4], (RAYS, 1)) * (other - inside + rise * small.normal())
+        rays = origins[None], unit(inside - origins)[None]
+        t = intersect([small], *rays)
+        assert np.array_equal(intersect([large], scale * rays[0], rays[1]), scale * t)
+        hits += int(np.isfinite(t).sum())
+    assert hits > len(triangles)
+
+
+def is_thin(corners: Array) -> bool:
+    """Whether corners of integers lie on a line."""
+    return not np.cross(corners[1] - corners[0], corners[2] - corners[0]).any()
 
 
 def test_a_triangle_that_is_too_thin_is_refused() -> None:
