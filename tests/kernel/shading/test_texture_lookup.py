@@ -105,6 +105,16 @@ def test_lookup_is_bilinear_and_repeats_beyond_the_edges(which: int, lookup: Loo
     assert np.abs(lookup(which, u, v) - expected_colours(which, u, v)).max() < 1e-6
 
 
+@pytest.mark.parametrize("which", range(len(IMAGES)))
+def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
+    height, width = IMAGES[which].shape[:2]
+    u, v = np.random.default_rng(which).uniform(-2, 2, (2, 160))
+    slope_u = expected_colours(which, u + 0.5 / width, v) - expected_colours(which, u - 0.5 / width, v)
+    slope_v = expected_colours(which, u, v + 0.5 / height) - expected_colours(which, u, v - 0.5 / height)
+    expected = np.stack([slope_u[:, 0] * width, slope_v[:, 0] * height])
+    assert np.abs(np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)) - expected).max() < 1e-5
+
+
 @EITHER
 @pytest.mark.parametrize("which", COLOURED)
 def test_no_texture_coordinate_leads_out_of_the_picture(which: int, lookup: Lookup) -> None:
