@@ -166,7 +166,7 @@ def project_planes(seen: BinningArrays, slack: float, at: int) -> int:
         quantise_distance(seen, shape)
         if seen.shown[number] and abs(height) <= seen.reach:
             for row in range(seen.grid.frames.shape[0] * seen.grid.down):
-                away = -side * vector(plane, 0)  # 0, 0, 0 from a point on the plane, whose cells are all covered
+                away = -side * vector(plane, 0)  # 0, 0, 0 where the point may lie on it: all cells are covered
                 column, columns = cells_of_plane(seen.grid, row, away, seen.lean)
                 if columns > 0:
                     at = write_rectangle(seen, at, shape, row, column, columns, 1)

@@ -181,9 +181,9 @@ def light_through_glass(
 ) -> Vec:
     """Return the shares of red, green and blue of a light source that reach the origin of shadow rays.
 
-    The `clear` rays are known to meet nothing. Of the others those that are `lit` are followed through glass, which is
-    opaque to rays whose light hardly `matters`; the rest get no light. `lit`: the source lights the point where nothing
-    is between. `medium` is the absorption where rays start."""
+    The `clear` rays meet nothing. Of the others the `lit` ones, whose points face the source, pass glass, which
+    is opaque to rays whose light hardly `matters`; the rest get no light. `medium`: the absorption where they start.
+    """
     share = where(clear, splat(1.0, rays.distance), 0.0)
     light = Vec(share, share, share)
     last_medium, last_length = medium, rays.distance  # of the last part of the way, for clear rays all of it

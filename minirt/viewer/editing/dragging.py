@@ -123,7 +123,8 @@ def pull(state: State, start: DragStart, _x: int, _y: int) -> State:
         way = way_on_level(view, centre, ends)
     else:
         before, after = (view.distance_along(*end, centre, axis) for end in ends)
-        if not before or after is None:  # seen from the end of the axis, where pixels tell no distance along it
+        is_over_centre = handle.value and before == 0.0  # where no length can be told from it
+        if before is None or after is None or is_over_centre:
             return state.with_message("the view is along the axis: nothing moves")
         if handle.value:
             length = handle.value.current(element) * abs(after / before)
@@ -142,10 +143,10 @@ def turn_ring(state: State, start: DragStart, handle: Handle, ends: tuple[Pixel,
     view, axis = start.projection, AXES[handle.axis]
     middle_x, middle_y = view.pixel(handle.centre) or (0.0, 0.0)
     first, last = (degrees(atan2(y - middle_y, x - middle_x)) for x, y in ends)
-    from_above = copysign(1.0, dot(axis, subtract(view.eye, handle.centre)))  # 1 if the axis points to the eye, else -1
-    clockwise = remainder(first - last, 360.0) * motion.handedness(start.camera)
+    towards_eye = copysign(1.0, dot(axis, subtract(view.eye, handle.centre)))  # 1 if the axis points there, else -1
+    counterclockwise = remainder(first - last, 360.0) * motion.handedness(start.camera)  # as y goes down in pictures
     smallest = FINE if start.fine else 1.0
-    angle = snapped(clockwise * from_above, SNAP_ANGLE if start.snaps else smallest)
+    angle = snapped(counterclockwise * towards_eye, SNAP_ANGLE if start.snaps else smallest)
     turned = motion.rotate_all(state, start.element, [(axis, angle)], *MERGED)
     said = f"turned by {angle:.3g} degrees", f"Ctrl: by steps of {SNAP_ANGLE:g}"
     return turned.with_message(GAP.join(said))

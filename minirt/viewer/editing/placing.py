@@ -74,8 +74,9 @@ def aim_at_top(view: Projection, shape: Shape) -> Aim | None:
     box, ((x, _, z), radius) = shape.bounds(), middle_of(shape)
     assert box
     found = first_hit(shape, (x, box[1][1] + radius, z), (0.0, -1.0, 0.0))
-    aim = aim_at(view, shape, *(found or ((x, box[1][1], z), UP)))
-    return aim if aim.size >= TINY * aim.usual else None
+    point, normal = found or ((x, box[1][1], z), UP)
+    there = aim_at(view, shape, point, normal)
+    return there if there.size >= TINY * there.usual else None
 
 
 def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:
@@ -84,9 +85,8 @@ def beneath(shape: Shape | None, normal: Triple | None) -> Shape | None:
 
 
 def size_of_new(view: Projection, shape: Shape | None, point: Triple, normal: Triple | None) -> float:
-    """Size of a new element at a point: SHARE of the picture, and at most a share of the shape that it stands on.
-
-    `shape` is None for an element that stands on no shape, `normal` for one in the air."""
+    """Size of a new element at a point: SHARE of the picture, and at most a share of the shape that it stands on, which
+    is None for other elements; `normal` is None in the air."""
     size = 2 * SHARE * view.depth(point) * min(hypot(*view.right), hypot(*view.up))
     box = shape.bounds() if shape and normal else None
     if box and normal:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import cos, inf, radians
 
 import numpy as np
 import pytest
@@ -93,6 +93,11 @@ STAGE = [
         for z in range(-4, 9, 2)
     ),
 ]
+
+
+def test_a_spot_light_whose_rim_has_no_width_is_as_steep_as_can_be() -> None:
+    sharp, soft = (SpotLight((0, 9, 0), (0, -1, 0), 40, 1, rim=rim) for rim in (0, 0.5))
+    assert spot_parameters([sharp, soft])[:, 4] == pytest.approx([1e30, 1 / (cos(radians(10)) - cos(radians(20)))])
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

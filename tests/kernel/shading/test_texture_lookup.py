@@ -57,6 +57,10 @@ def colour_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any)
     return colour.x, colour.y, colour.z
 
 
+def gradient_lanes(i: int, texels: Any, pictures: Any, which: int, u: Any, v: Any) -> Any:
+    return texturing.height_gradient(texels, pictures, which, load(u, i), load(v, i))
+
+
 def compiled(which: int, u: Array, v: Array) -> Array:
     """Look up colours by the compiled kernel, (n, 3)."""
     return on_lanes(colour_lanes, 3, TEXELS, PICTURES, which, u, v).T
@@ -112,7 +116,9 @@ def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
     slope_u = expected_colours(which, u + 0.5 / width, v) - expected_colours(which, u - 0.5 / width, v)
     slope_v = expected_colours(which, u, v + 0.5 / height) - expected_colours(which, u, v - 0.5 / height)
     expected = np.stack([slope_u[:, 0] * width, slope_v[:, 0] * height])
-    assert np.abs(np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)) - expected).max() < 1e-5
+    lanes = on_lanes(gradient_lanes, 2, TEXELS, PICTURES, which, u, v)
+    for found in (np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
+        assert np.abs(found - expected).max() < 1e-5
 
 
 @EITHER

@@ -163,7 +163,6 @@ def test_each_feature_is_found_where_it_is_used() -> None:
     assert features_of(Background((0, 0, 9))) == {"background"}
     assert features_of(SUN) == {"spots", "parallel"}
     assert features_of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
-    assert SpotLight((0, 9, 0), (0, -1, 0), 40, 1, rim=0).cone()[-1] == 1e30  # a border without width, and no division
     assert features_of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
 
 

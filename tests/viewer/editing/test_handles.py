@@ -134,6 +134,19 @@ def test_a_ring_follows_the_pointer_all_around_in_mirrored_pictures_too(axis: in
         assert turned.message.startswith(f"turned by {angle:.3g} degrees")
 
 
+def test_over_the_centre_a_box_handle_does_nothing_and_an_arrow_moves() -> None:
+    """The ray there meets the axis at the centre: how many times as far away the pointer went has no answer."""
+    text = "A 1 9,9,9\nC 0,0,9 0,0,-1 60\nbo 0,0,0 0,1,0 2,1,1 9,9,9"
+    state = played(*OPEN, text=text).state
+    box, camera = state.element, state.scene.camera
+    view = projection_of(camera, 641, 481)
+    by_kind = {each.kind: each for each in handles_of(box, view, 1.0) if each.axis == 0}
+    start = DragStart(view, 320, 240, box, camera, None, reach=(90.0, 0.0))
+    resized, moved = (pull(state, start._replace(handle=by_kind[kind]), 0, 0) for kind in (SIZE, MOVE))
+    assert (resized.element, resized.message) == (box, "the view is along the axis: nothing moves")
+    assert moved.element.centre[0] > 1
+
+
 @pytest.mark.parametrize(("axis", "old"), [(0, 2.0), (1, 1.0), (2, 1.5)])
 def test_a_box_handle_changes_one_size_in_proportion(axis: int, old: float) -> None:
     start = handle(SIZE, axis).points[0]
