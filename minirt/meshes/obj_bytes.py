@@ -124,8 +124,9 @@ def read_corner(lines: Lines, at: int) -> int:
     Its numbers count points, uvs or normals from 1 on, or back from the last one, -1. One that is counted back beyond
     the first is wrong for a point, and `NOWHERE` for a uv or normal. 0 is wrong for a point, and `ABSENT` for others.
     """
-    text, counts, row, part, end = lines.text, lines.counts, lines.corners[lines.counts[CORNERS]], 0, at
-    row[0], row[1], row[2] = ABSENT, ABSENT, ABSENT
+    text, counts, corners, part, end = lines.text, lines.counts, lines.corners, 0, at
+    row = counts[CORNERS]
+    corners[row, 0], corners[row, 1], corners[row, 2] = ABSENT, ABSENT, ABSENT
     counts[CORNERS] += 1
     while part < 3 and (part == 0 or text[end] == SLASH):
         start = end if part == 0 else end + 1  # behind the slash
@@ -133,9 +134,9 @@ def read_corner(lines: Lines, at: int) -> int:
         if end - start > LONGEST or abs(number) == LARGEST:
             return at
         if end > start and number >= 0:
-            row[part] = number - 1  # ABSENT for 0
+            corners[row, part] = number - 1  # ABSENT for 0
         elif end > start:
             index = counts[part] + number
-            row[part] = index if index >= 0 else NOWHERE
+            corners[row, part] = index if index >= 0 else NOWHERE
         part += 1
-    return end if row[0] >= 0 else at
+    return end if corners[row, 0] >= 0 else at
